@@ -7,7 +7,7 @@
 //! A moment. You learn what a boundary answers (where it is, when a disk touches it, what its surface is
 //! like), and that its geometry is made of the same bricks as the vessels of the library.
 
-use granular_edmd::boundary::laws;
+use granular_edmd::boundary::{Overlap, Probe, laws};
 use granular_edmd::prelude::*;
 use std::borrow::Cow;
 
@@ -49,9 +49,9 @@ impl Boundary for Drum {
         surface.with_response(Response::Thermal(self.temperatures[wall]))
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
-        let depth = radius - self.rim.signed_distance(position);
-        (depth > 0.0).then_some((usize::from(position.x < 0.0), depth))
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        let depth = probe.radius() - self.rim.signed_distance(probe.position());
+        (depth > 0.0).then_some(Overlap::new(usize::from(probe.position().x < 0.0), depth))
     }
 }
 

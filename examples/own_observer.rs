@@ -4,7 +4,7 @@
 //! cargo run --release --example own_observer > force.csv
 //! ```
 //!
-//! A moment. You learn how an observer hears of collisions, has a clock, and never changes a run.
+//! A start. You learn how an observer hears of collisions, has a clock, and never changes a run.
 
 use anyhow::Context;
 use granular_edmd::prelude::*;
@@ -20,9 +20,9 @@ struct Force {
 }
 
 impl Observer for Force {
-    fn on_start(&mut self, moment: &Moment) {
-        self.clock.start_at(moment.time());
-        self.last = moment.time();
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.clock.start_at(start.time());
+        self.last = start.time();
     }
 
     fn on_collision(&mut self, collision: &Collision) {

@@ -37,6 +37,8 @@ pub mod laws;
 mod obstacles;
 mod part;
 mod plane;
+mod probe;
+mod reaction;
 mod squares;
 mod surface;
 mod touch;
@@ -50,6 +52,8 @@ pub use domain::{Domain, Region};
 pub use error::VesselError;
 pub use obstacles::Obstacles;
 pub use part::Part;
+pub use probe::{Overlap, Probe};
+pub use reaction::{Impact, Reaction};
 pub(crate) use squares::Squares;
 #[doc(alias("thermostat", "heat bath"))]
 pub use surface::Thermal;
@@ -65,7 +69,8 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::{Fingerprint, Flight};
+use crate::quantity::accept;
+use crate::{Fingerprint, Flight, ParameterError};
 
 /// The walls around the disks.
 ///
@@ -121,7 +126,8 @@ use crate::{Fingerprint, Flight};
 /// ```
 /// use std::borrow::Cow;
 /// use granular_edmd::Flight;
-/// use granular_edmd::boundary::{Boundary, Domain, FirstTouch, Region, Surface, Touch, laws};
+/// use granular_edmd::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch};
+/// use granular_edmd::boundary::laws;
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::roots::first_descent_of_quartic;
 ///
@@ -163,9 +169,9 @@ use crate::{Fingerprint, Flight};
 ///     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
 ///         Surface::new(-position.normalize_or(DVec2::Y), DVec2::ZERO)
 ///     }
-///     fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
-///         let depth = position.length() + radius - self.radius;
-///         (depth > 0.0).then_some((0, depth))
+///     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+///         let depth = probe.position().length() + probe.radius() - self.radius;
+///         (depth > 0.0).then_some(Overlap::new(0, depth))
 ///     }
 /// }
 ///
@@ -203,7 +209,7 @@ pub trait Boundary {
     ///
     /// If other walls are set between two runs, the engine tells from this point whether a wall of the same
     /// name has jumped. It is `None` unless implemented.
-    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None
     }
@@ -232,10 +238,10 @@ pub trait Boundary {
     /// The wall must exist; for any other index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// Returns a wall that a disk at `position` overlaps at `time`, and the depth.
+    /// Returns the wall that a disk overlaps deepest, and the depth; `None` if the disk is inside.
     ///
-    /// The result is `None` if the disk is inside.
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
+    /// A wall that does not concern disks of the probe's kind is not overlapped.
+    fn overlap(&self, probe: &Probe) -> Option<Overlap>;
 
     /// Returns the walls at `time` as lines of points, for pictures.
     ///
@@ -254,7 +260,59 @@ pub trait Boundary {
         None
     }
 
-    /// Returns the fingerprint of the boundary: its name and everything on which its answers depend.
+    /// Returns the area of the places in `region` at which the center of a disk of this radius is free at
+    /// `time`; `None` if the boundary does not know it.
+    ///
+    /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
+    /// it, and refuse to measure without it where the domain is not all free. It is `None` unless
+    /// implemented.
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        let _ = (region, radius, time);
+        None
+    }
+
+    /// Receives the blow of a disk against a wall, and returns whether the wall moves otherwise from now on.
+    ///
+    /// The engine calls it after each collision with a wall. A wall that reacts has a finite
+    /// [mass](Surface::with_mass), and its motion between two blows is known. If the answer is
+    /// [`Reaction::Moved`], the engine predicts all flights anew that [`may_meet`](Self::may_meet) names. The
+    /// default reacts to nothing, and costs nothing.
+    #[inline]
+    fn react(&mut self, impact: &Impact) -> Reaction {
+        let _ = impact;
+        Reaction::None
+    }
+
+    /// Returns whether a disk with its center in `region` may touch this wall at any time up to `until`.
+    ///
+    /// The engine asks after a wall has [reacted](Self::react), in order to find the disks whose flights may
+    /// now end otherwise. A narrow answer saves predictions; the default is that of
+    /// [`may_touch`](Self::may_touch).
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
+        let _ = (wall, until);
+        self.may_touch(region, radius)
+    }
+
+    /// Returns the numbers of the walls that [react](Self::react) at the time origin: places, velocities,
+    /// and whatever else blows have changed.
+    ///
+    /// A checkpoint keeps them, since a boundary that is given again begins anew. It is empty unless
+    /// implemented.
+    fn state(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Sets the numbers that [`state`](Self::state) returned, at the present time origin.
+    ///
+    /// # Errors
+    /// If the numbers are not a state of this boundary.
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
+        accept(state.is_empty(), "state of the walls", "empty, since no wall reacts", state.len() as f64)
+            .map(drop)
+    }
+
+    /// Returns the fingerprint of the boundary: its name and everything on which its answers depend, but not
+    /// its [state](Self::state).
     ///
     /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {

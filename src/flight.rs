@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::Kind;
+
 /// The free flight of a disk at constant acceleration, from a given time on.
 ///
 /// The center moves as $`\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2`$. Times are
@@ -21,13 +23,28 @@ pub struct Flight {
     velocity: DVec2,
     acceleration: DVec2,
     radius: f64,
+    kind: Kind,
 }
 
 impl Flight {
-    /// Creates a flight that starts at `time` with this position and velocity of the center.
+    /// Creates a flight of a disk of the default kind that starts at `time` with this position and velocity of
+    /// the center.
     #[inline]
     pub const fn new(time: f64, position: DVec2, velocity: DVec2, acceleration: DVec2, radius: f64) -> Self {
-        Self { time, position, velocity, acceleration, radius }
+        Self { time, position, velocity, acceleration, radius, kind: Kind::DEFAULT }
+    }
+
+    /// Returns the same flight of a disk of another kind.
+    #[must_use]
+    #[inline]
+    pub const fn with_kind(self, kind: Kind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// Returns the disk's kind, by which a boundary may let it pass.
+    #[inline]
+    pub const fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// Returns the time at which the flight starts.

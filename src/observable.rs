@@ -51,7 +51,7 @@
 //! checks the contract of an observer.
 //!
 //! ```
-//! use granular_edmd::observable::{Collision, Moment, Observer, SampleTimes, Snapshot, laws};
+//! use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, laws};
 //!
 //! /// Counts the collisions within each interval.
 //! struct Beats {
@@ -61,8 +61,8 @@
 //! }
 //!
 //! impl Observer for Beats {
-//!     fn on_start(&mut self, moment: &Moment) {
-//!         self.times.start_at(moment.time());
+//!     fn on_start(&mut self, start: &Snapshot<'_>) {
+//!         self.times.start_at(start.time());
 //!     }
 //!     fn on_collision(&mut self, _: &Collision) {
 //!         self.present += 1;
@@ -116,7 +116,6 @@ mod height_profile;
 mod lags;
 pub mod laws;
 mod mean_squared_displacement;
-mod moment;
 mod order_parameters;
 mod pair_correlation;
 mod per_disk;
@@ -162,7 +161,6 @@ pub use grid::Grid;
 pub use height_profile::{DenseLayer, HeightProfile};
 #[doc(alias("MSD", "mean squared", "diffusion"))]
 pub use mean_squared_displacement::MeanSquaredDisplacement;
-pub use moment::Moment;
 #[doc(alias("convection", "psi", "Ψ1", "Ψ2"))]
 pub use order_parameters::{ConvectionOrder, OrderParameters};
 #[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
@@ -171,6 +169,7 @@ pub use per_disk::PerDisk;
 pub use sample_times::SampleTimes;
 pub use sampled::{Accumulator, Sampled};
 pub use series::Series;
+pub(crate) use snapshot::Moving;
 pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 #[doc(alias("pressure", "pressure tensor", "virial"))]

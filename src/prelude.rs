@@ -15,8 +15,8 @@ pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};
 pub use crate::observable::{
     Arrivals, BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Grid,
-    Moment, Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Sampled, Series, Snapshot,
-    Table, Tabular, Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
+    Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Sampled, Series, Snapshot, Table,
+    Tabular, Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{

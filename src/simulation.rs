@@ -63,7 +63,7 @@ pub use warnings::Warning;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::boundary::{Boundary, Container};
+use crate::boundary::{Boundary, Container, Overlap, Probe};
 use crate::collision::{CollisionRule, Frictional};
 use crate::instructions::Instructions;
 use crate::observable::{Observable, Partner, Snapshot};
@@ -168,8 +168,6 @@ struct Scratch {
     found: Vec<u32>,
     /// The times of all disks.
     due: Vec<f64>,
-    /// The disks of one snapshot.
-    copies: Vec<Disk>,
     /// Number of disks that the scheduler has room for.
     seats: usize,
 }
@@ -217,49 +215,37 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # use granular_edmd::{glam::DVec2, observable::Partner};
     /// let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
     /// let run = Simulation::builder(Elastic, Container::closed(9.0, 2.0)?).disks([disk(2.0)?]).build()?;
-    /// assert_eq!(run.overlap(&disk(2.75)?), Some((Partner::Disk(0), 0.25)));
-    /// assert_eq!(run.overlap(&disk(0.25)?), Some((Partner::Wall(1), 0.25)));
-    /// assert_eq!(run.overlap(&disk(4.0)?), None);
+    /// let with = |x| Ok::<_, granular_edmd::ParameterError>(run.overlap(&disk(x)?).map(|overlap| overlap.with));
+    /// assert_eq!(with(2.75)?, Some(Partner::Disk(0)));
+    /// assert_eq!(with(0.25)?, Some(Partner::Wall(1)));
+    /// assert_eq!(with(4.0)?, None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn overlap(&self, disk: &Disk) -> Option<(Partner, f64)> {
+    pub fn overlap(&self, disk: &Disk) -> Option<Overlap<Partner>> {
         let (position, domain) = (disk.position(), self.boundary.domain());
         let with_disk = |other: usize| {
             let apart = domain.separation(position, self.bodies.position(other, self.clock.now)).length();
-            (Partner::Disk(other), disk.radius() + self.bodies.radius(other) - apart)
+            Overlap::new(Partner::Disk(other), disk.radius() + self.bodies.radius(other) - apart)
         };
-        let wall = self.boundary.overlap(position, disk.radius(), self.clock.now);
-        let wall = wall.map(|(wall, depth)| (Partner::Wall(wall), depth));
-        let all = (0..self.len()).map(with_disk).chain(wall);
-        all.filter(|(_, depth)| *depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+        let wall = self.boundary.overlap(&Probe::of(disk, self.clock.now));
+        let wall = wall.map(|overlap| Overlap::new(Partner::Wall(overlap.with), overlap.depth));
+        Overlap::deepest((0..self.len()).map(with_disk).chain(wall))
     }
 
     /// Returns the present value of an observable.
     pub fn measure<Q: Observable + ?Sized>(&self, observable: &Q) -> Q::Value {
-        let disks = self.disks();
-        observable.measure(&self.snapshot_of(self.time(), &disks))
+        observable.measure(&self.snapshot())
     }
 
-    /// Returns the present state, for observables and observers of your own.
-    ///
-    /// The method needs `&mut self`, since the simulation keeps the copies of the disks as a buffer for the
-    /// next snapshot.
-    pub fn snapshot(&mut self) -> Snapshot<'_> {
+    /// Returns the present state, for custom observables and observers.
+    pub fn snapshot(&self) -> Snapshot<'_> {
         self.snapshot_as_of(self.time())
     }
 
     /// Returns the present state as of the time that was asked for. [`Self::time`] may differ from that time
     /// by rounding.
-    fn snapshot_as_of(&mut self, time: f64) -> Snapshot<'_> {
-        let Self { bodies, scratch, clock, .. } = self;
-        scratch.copies.clear();
-        scratch.copies.extend((0..bodies.len()).map(|disk| bodies.disk(disk, clock.now)));
-        self.snapshot_of(time, &self.scratch.copies)
-    }
-
-    fn snapshot_of<'a>(&'a self, time: f64, disks: &'a [Disk]) -> Snapshot<'a> {
-        let (domain, gravity) = (self.boundary.domain(), self.bodies.gravity);
-        Snapshot::new(time, disks, domain, gravity).with_walls(&self.boundary, self.clock.now)
+    fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
+        Snapshot::of_run(time, self.clock.now, &self.bodies, &self.boundary, self.bodies.gravity)
     }
 
     /// Returns the numbers of events since the simulation was built.

@@ -72,7 +72,7 @@
 //! granular_edmd::trajectory::laws::check(&Heights).unwrap();
 //! let snapshot = Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0);
 //! let mut text = Vec::new();
-//! Heights.write_frame(&Frame::new(0, snapshot), &mut text)?;
+//! Heights.write_frame(&Frame::new(0, &snapshot), &mut text)?;
 //! assert_eq!(text, b"0.5\n");
 //! # Ok::<(), io::Error>(())
 //! ```

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::{Boundary, Domain, FirstTouch, Region, Surface, Touch};
+use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
 use crate::forward::forward;
-use crate::{Fingerprint, Flight};
+use crate::{Fingerprint, Flight, ParameterError};
 
 forward! { Boundary for [&mut T, Box<T>] {
     fn domain(&self) -> Domain;
@@ -16,11 +16,16 @@ forward! { Boundary for [&mut T, Box<T>] {
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
-    fn place(&self, wall: usize, time: f64) -> Option<DVec2>;
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
+    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2>;
+    fn overlap(&self, probe: &Probe) -> Option<Overlap>;
     fn tight_fit(&self, radius: f64) -> Option<usize>;
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>>;
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64>;
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool;
+    fn state(&self) -> Vec<f64>;
     fn fingerprint(&self) -> Option<Fingerprint>;
     mut
+    fn react(&mut self, impact: &Impact) -> Reaction;
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError>;
     fn set_time_origin(&mut self, origin: f64);
 }}

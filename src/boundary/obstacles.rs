@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::brick::Brick;
-use super::{Boundary, Domain, FirstTouch, Region, Surface, Touch};
-use crate::{Disk, Fingerprint, Flight};
+use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
+use crate::{Disk, Fingerprint, Flight, ParameterError};
 
 /// A boundary with fixed round obstacles inside, such as pegs.
 ///
@@ -135,22 +135,38 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         self.boundary.wall_lines(time).into_iter().chain(self.obstacles.iter().map(circle)).collect()
     }
 
-    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.boundary.place(wall, time)
+    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
+        self.boundary.wall_point(wall, time)
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let depth = |(index, obstacle): (usize, &Disk)| {
-            let distance = self.domain().separation(obstacle.position(), position).length();
-            (self.boundary.wall_count() + index, radius + obstacle.radius() - distance)
+            let distance = self.domain().separation(obstacle.position(), probe.position()).length();
+            Overlap::new(self.boundary.wall_count() + index, probe.radius() + obstacle.radius() - distance)
         };
-        let others = self.obstacles.iter().enumerate().map(depth).filter(|&(_, depth)| depth > 0.0);
-        let all = self.boundary.overlap(position, radius, time).into_iter().chain(others);
-        all.max_by(|a, b| a.1.total_cmp(&b.1))
+        let others = self.obstacles.iter().enumerate().map(depth);
+        Overlap::deepest(self.boundary.overlap(probe).into_iter().chain(others))
     }
 
     fn tight_fit(&self, radius: f64) -> Option<usize> {
         self.boundary.tight_fit(radius)
+    }
+
+    fn react(&mut self, impact: &Impact) -> Reaction {
+        // An obstacle never moves, and the boundary knows no wall of its index.
+        if impact.wall() < self.boundary.wall_count() { self.boundary.react(impact) } else { Reaction::None }
+    }
+
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
+        self.boundary.may_meet(wall, region, radius, until)
+    }
+
+    fn state(&self) -> Vec<f64> {
+        self.boundary.state()
+    }
+
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
+        self.boundary.set_state(state)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

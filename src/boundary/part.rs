@@ -214,7 +214,7 @@ impl Part {
     /// let wheel = wheel.with_rotation(DVec2::new(4.0, 0.5), 0.7)?.starting_at(30.0)?;
     /// let vessel = Vessel::around([("wheel", wheel)])?;
     /// // At time 30 the wheel lies as it was built.
-    /// let depth = |time| vessel.overlap(DVec2::new(1.0, 1.25), 0.5, time).map_or(0.0, |(_, depth)| depth);
+    /// let depth = |time| vessel.overlap(&Probe::new(DVec2::new(1.0, 1.25), 0.5, time)).map_or(0.0, |overlap| overlap.depth);
     /// assert!((depth(30.0) - 0.25).abs() < 1e-12);
     /// assert_eq!(depth(0.0), 0.0);
     /// # Ok::<(), granular_edmd::boundary::VesselError>(())

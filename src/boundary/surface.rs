@@ -33,6 +33,11 @@ pub struct Surface<'a> {
     /// Radius of the surface, for the contact that a rule sees: infinite if it is straight, negative if it is
     /// hollow.
     pub radius: f64,
+    /// Mass that resists along the normal; infinite unless the wall [reacts](super::Boundary::react).
+    pub mass: f64,
+    /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
+    /// radius R with the moment of inertia I.
+    pub tangential_mass: f64,
 }
 
 impl<'a> Surface<'a> {
@@ -40,7 +45,15 @@ impl<'a> Surface<'a> {
     /// disks and has the kind [`Kind::WALL`].
     #[inline]
     pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
-        Self { normal, velocity, response: Response::Shared, kind: Kind::WALL, radius: f64::INFINITY }
+        Self {
+            normal,
+            velocity,
+            response: Response::Shared,
+            kind: Kind::WALL,
+            radius: f64::INFINITY,
+            mass: f64::INFINITY,
+            tangential_mass: f64::INFINITY,
+        }
     }
 
     /// Returns the same surface with another response.
@@ -70,6 +83,23 @@ impl<'a> Surface<'a> {
     #[inline]
     pub const fn with_radius(self, radius: f64) -> Self {
         Self { radius, ..self }
+    }
+
+    /// Returns the same surface of a wall with this mass, which is guided along its normal.
+    ///
+    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary takes the
+    /// opposite impulse in [`react`](super::Boundary::react).
+    #[must_use]
+    #[inline]
+    pub const fn with_mass(self, mass: f64) -> Self {
+        Self { mass, ..self }
+    }
+
+    /// Returns the same surface, which resists forces along itself as this mass does.
+    #[must_use]
+    #[inline]
+    pub const fn with_tangential_mass(self, tangential_mass: f64) -> Self {
+        Self { tangential_mass, ..self }
     }
 }
 

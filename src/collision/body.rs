@@ -17,14 +17,18 @@ pub(crate) struct Material {
     tangential_compliance: f64,
     /// Angular velocity per tangential impulse, 1/(β m R).
     spin_response: f64,
+    /// Angular velocity per couple, 1/I.
+    inverse_inertia: f64,
     pub(crate) kind: Kind,
 }
 
 impl Material {
-    /// Returns the properties of a wall, which takes any impulse without a change of its motion.
-    pub(crate) const fn of_wall(kind: Kind, radius: f64) -> Self {
-        let (inverse_mass, tangential_compliance, spin_response) = (0.0, 0.0, 0.0);
-        Self { arm: 0.0, radius, inverse_mass, tangential_compliance, spin_response, kind }
+    /// Returns the properties of a wall that resists as these masses do along its normal and along its surface;
+    /// with infinite masses, it takes any impulse without a change of its motion.
+    pub(crate) const fn of_wall(kind: Kind, radius: f64, [normal, tangential]: [f64; 2]) -> Self {
+        let (inverse_mass, tangential_compliance) = (1.0 / normal, 1.0 / tangential);
+        let (spin_response, inverse_inertia) = (0.0, 0.0);
+        Self { arm: 0.0, radius, inverse_mass, tangential_compliance, spin_response, inverse_inertia, kind }
     }
 
     pub(crate) fn of(disk: &Disk) -> Self {
@@ -35,6 +39,7 @@ impl Material {
             inverse_mass: 1.0 / mass,
             tangential_compliance: (1.0 + 1.0 / factor) / mass,
             spin_response: 1.0 / (factor * mass * disk.radius()),
+            inverse_inertia: 1.0 / disk.moment_of_inertia(),
             kind: disk.kind(),
         }
     }
@@ -70,16 +75,21 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
     Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
         .with_kinds([first.1.kind, second.1.kind])
         .with_radii([first.1.radius, second.1.radius])
+        .with_spin(
+            first.0.angular_velocity - second.0.angular_velocity,
+            1.0 / (first.1.inverse_inertia + second.1.inverse_inertia),
+            first.1.spin_response - second.1.spin_response,
+        )
 }
 
-/// Returns `body` after an impulse along the normal and its perpendicular. A tangential impulse changes the
-/// spins of both partners in the same sense.
+/// Returns `body` after an impulse along the normal and its perpendicular, and a couple. A tangential impulse
+/// changes the spins of both partners in the same sense, a couple in opposite senses.
 #[inline]
-fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Body {
-    Body {
-        velocity: body.velocity + kick * material.inverse_mass,
-        angular_velocity: body.angular_velocity - tangential * material.spin_response,
-    }
+fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64, couple: f64) -> Body {
+    let spin = body.angular_velocity - tangential * material.spin_response;
+    // A rule that never gives a couple pays nothing for it: the comparison is known when it is compiled.
+    let spin = if couple == 0.0 { spin } else { spin - couple * material.inverse_inertia };
+    Body { velocity: body.velocity + kick * material.inverse_mass, angular_velocity: spin }
 }
 
 /// Two bodies after a collision, with the contact and the impulse.
@@ -103,8 +113,8 @@ pub(crate) fn collide_bodies<R: CollisionRule + ?Sized>(
     let impulse = rule.impulse(&contact);
     let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
     Outcome {
-        first: kicked(first.0, first.1, kick, impulse.tangential()),
-        second: kicked(second.0, second.1, -kick, impulse.tangential()),
+        first: kicked(first.0, first.1, kick, impulse.tangential(), impulse.couple()),
+        second: kicked(second.0, second.1, -kick, impulse.tangential(), -impulse.couple()),
         contact,
         impulse,
     }

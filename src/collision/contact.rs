@@ -13,6 +13,15 @@ use crate::Kind;
 /// $`\Delta_t`$ changes $`v_t`$ by $`-\Delta_t/\mu_t`$, where $`1/\mu = \sum 1/m_i`$ and
 /// $`1/\mu_t = \sum (1 + 1/\beta_i)/m_i`$ (for homogeneous disks $`\mu_t = \mu/3`$).
 ///
+/// The relative spin is $`\omega = \omega_1 - \omega_2`$, counterclockwise. A couple $`C`$ changes it by
+/// $`-C/I`$, where $`1/I = \sum 1/I_i`$, and the slip speed by $`-kC`$, where
+/// $`k = R_1/I_1 - R_2/I_2`$; a tangential impulse changes the relative spin by $`-k\Delta_t`$.
+///
+/// # Order of the partners
+/// Partner 2 is the wall, if there is one. Of two disks, either may be partner 1, so a rule must give the
+/// same physics for the partners in either order, and for the mirror image of the contact:
+/// [`laws::check`](super::laws::check) tests both.
+///
 /// A wall is a partner of infinite mass. The radius of a straight one is infinite, that of a hollow one
 /// negative.
 ///
@@ -31,10 +40,14 @@ pub struct Contact {
     time_since_last_collision: f64,
     kinds: [Kind; 2],
     radii: [f64; 2],
+    relative_spin: f64,
+    spin_inertia: f64,
+    spin_response: f64,
 }
 
 impl Contact {
-    /// Creates a contact of two disks that have never collided before, of radius 1/2 and of the default kind.
+    /// Creates a contact of two disks that have never collided before, homogeneous, of radius 1/2 and of the
+    /// default kind, which turn alike.
     #[inline]
     pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
         Self {
@@ -45,6 +58,9 @@ impl Contact {
             time_since_last_collision: f64::INFINITY,
             kinds: [Kind::DEFAULT; 2],
             radii: [0.5; 2],
+            relative_spin: 0.0,
+            spin_inertia: 0.125 * normal_mass,
+            spin_response: 0.0,
         }
     }
 
@@ -65,6 +81,13 @@ impl Contact {
     #[inline]
     pub const fn with_radii(self, radii: [f64; 2]) -> Self {
         Self { radii, ..self }
+    }
+
+    /// Returns the same contact with this relative spin ω, the moment of inertia I that resists a couple, and
+    /// the response k of the spin to a tangential impulse.
+    #[inline]
+    pub const fn with_spin(self, relative_spin: f64, spin_inertia: f64, spin_response: f64) -> Self {
+        Self { relative_spin, spin_inertia, spin_response, ..self }
     }
 
     /// Returns the speed v_n at which the surfaces approach, which is never negative in a collision.
@@ -115,6 +138,25 @@ impl Contact {
         self.radii
     }
 
+    /// Returns the relative spin ω = ω₁ − ω₂; a wall does not turn.
+    #[inline]
+    pub const fn relative_spin(&self) -> f64 {
+        self.relative_spin
+    }
+
+    /// Returns the moment of inertia I that resists a couple, 1/I = 1/I₁ + 1/I₂.
+    #[inline]
+    pub const fn spin_inertia(&self) -> f64 {
+        self.spin_inertia
+    }
+
+    /// Returns the response k = R₁/I₁ − R₂/I₂ of the relative spin to a tangential impulse, and of the slip
+    /// speed to a couple; zero for equal disks.
+    #[inline]
+    pub const fn spin_response(&self) -> f64 {
+        self.spin_response
+    }
+
     /// Returns the effective radius, R₁R₂/(R₁ + R₂).
     ///
     /// At a straight wall, it is the radius of the disk; in a hollow one, it is larger. The laws of Hertz for
@@ -139,9 +181,9 @@ impl Contact {
         }
     }
 
-    /// Returns the kinetic energy of the relative motion, ½μ v_n² + ½μ_t v_t².
+    /// Returns the kinetic energy of the relative motion of the surfaces, ½μ v_n² + ½μ_t v_t².
     ///
-    /// A collision can lose no more than that.
+    /// A collision without a couple can lose no more than that.
     #[inline]
     pub const fn available_energy(&self) -> f64 {
         let (closing, slip) = (self.closing_speed, self.slip_speed);

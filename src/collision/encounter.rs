@@ -99,7 +99,7 @@ pub fn collide_with_wall<R: CollisionRule + ?Sized>(
         normal,
         f64::INFINITY,
         arriving,
-        (&wall, &Material::of_wall(Kind::WALL, f64::INFINITY)),
+        (&wall, &Material::of_wall(Kind::WALL, f64::INFINITY, [f64::INFINITY; 2])),
     );
     WallEncounter { disk: moved(disk, outcome.first), contact: outcome.contact, impulse: outcome.impulse }
 }

@@ -21,7 +21,7 @@ pub enum Regime {
     ElasticBelow,
 }
 
-/// The momentum that partner 1 receives along the normal and the tangent.
+/// The momentum that partner 1 receives along the normal and the tangent, and a couple.
 ///
 /// Partner 2 receives the opposite.
 ///
@@ -35,6 +35,7 @@ pub enum Regime {
 pub struct Impulse {
     normal: f64,
     tangential: f64,
+    couple: f64,
     regime: Regime,
 }
 
@@ -42,13 +43,28 @@ impl Impulse {
     /// Creates an impulse from its normal and its tangential part.
     #[inline]
     pub const fn new(normal: f64, tangential: f64) -> Self {
-        Self { normal, tangential, regime: Regime::Unspecified }
+        Self { normal, tangential, couple: 0.0, regime: Regime::Unspecified }
+    }
+
+    /// Returns the same impulse with a couple, an angular impulse that acts against the relative spin if it
+    /// has the same sign.
+    ///
+    /// Partner 1 loses this angular momentum about its center, and partner 2 receives it, so the total stays.
+    /// A couple models rolling friction: it needs a contact that is not a point.
+    #[inline]
+    pub const fn with_couple(self, couple: f64) -> Self {
+        Self { couple, ..self }
     }
 
     /// Returns the same impulse with this label.
     #[inline]
     pub const fn with_regime(self, regime: Regime) -> Self {
         Self { regime, ..self }
+    }
+
+    /// Returns the same impulse with another normal part.
+    pub(crate) const fn with_normal(self, normal: f64) -> Self {
+        Self { normal, ..self }
     }
 
     /// Returns the same impulse, with a normal part large enough that the surfaces part at this speed at
@@ -73,6 +89,12 @@ impl Impulse {
         self.tangential
     }
 
+    /// Returns the couple C, which has the sign of the relative spin if it slows the rolling.
+    #[inline]
+    pub const fn couple(&self) -> f64 {
+        self.couple
+    }
+
     /// Returns the course that the collision took.
     #[inline]
     pub const fn regime(&self) -> Regime {
@@ -85,10 +107,18 @@ impl Impulse {
         contact.closing_speed() - self.normal / contact.normal_mass()
     }
 
-    /// Returns the slip speed after the collision, v_t′ = v_t − Δ_t/μ_t.
+    /// Returns the slip speed after the collision, v_t′ = v_t − Δ_t/μ_t − kC.
     #[inline]
     pub fn slip_speed_after(&self, contact: &Contact) -> f64 {
-        contact.slip_speed() - self.tangential / contact.tangential_mass()
+        let slip = contact.slip_speed() - self.tangential / contact.tangential_mass();
+        if self.couple == 0.0 { slip } else { slip - contact.spin_response() * self.couple }
+    }
+
+    /// Returns the relative spin after the collision, ω′ = ω − kΔ_t − C/I.
+    #[inline]
+    pub fn relative_spin_after(&self, contact: &Contact) -> f64 {
+        let rolling = contact.relative_spin() - contact.spin_response() * self.tangential;
+        rolling - self.couple / contact.spin_inertia()
     }
 
     /// Returns the change of kinetic energy in the collision, as seen from the wall if one partner is a wall:
@@ -96,6 +126,7 @@ impl Impulse {
     /// ```math
     /// dE = -\Delta_n\left(v_n - \frac{\Delta_n}{2\mu}\right)
     /// - \Delta_t\left(v_t - \frac{\Delta_t}{2\mu_t}\right)
+    /// - C\left(\omega - k\Delta_t - \frac{C}{2I}\right)
     /// ```
     ///
     /// For two disks the change does not depend on the frame. With Eqs. (3)–(5) for equal homogeneous disks,
@@ -106,12 +137,18 @@ impl Impulse {
         let normal = self.normal * (contact.closing_speed() - 0.5 * self.normal / contact.normal_mass());
         let tangential =
             self.tangential * (contact.slip_speed() - 0.5 * self.tangential / contact.tangential_mass());
-        -(normal + tangential)
+        // A rule that never gives a couple pays nothing for it: the comparison is known when it is compiled.
+        if self.couple == 0.0 {
+            return -(normal + tangential);
+        }
+        let rolling = contact.relative_spin() - contact.spin_response() * self.tangential;
+        -(normal + tangential + self.couple * (rolling - 0.5 * self.couple / contact.spin_inertia()))
     }
 }
 
 impl fmt::Display for Impulse {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "({:?}, {:?})", self.normal, self.tangential)
+        write!(formatter, "({:?}, {:?})", self.normal, self.tangential)?;
+        if self.couple == 0.0 { Ok(()) } else { write!(formatter, " with a couple of {:?}", self.couple) }
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{CLOSE, PlacementError, countable, room, spacings};
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::{Boundary, Domain, Probe};
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
@@ -105,7 +105,10 @@ fn free_sites<B: Boundary + ?Sized>(boundary: &B, room: &Domain, spacing: f64, r
         let height = room.bottom + row as f64 * rise;
         (0..columns).map(move |column| DVec2::new(room.left + column as f64 * pitch, height))
     };
-    (0..rows).flat_map(row).filter(|&site| boundary.overlap(site, radius, 0.0).is_none()).collect()
+    (0..rows)
+        .flat_map(row)
+        .filter(|&site| boundary.overlap(&Probe::new(site, radius, 0.0)).is_none())
+        .collect()
 }
 
 /// Returns up to `count` disks on a square lattice with at least this spacing, where they overlap no wall.
@@ -121,7 +124,7 @@ fn free_disks<B: Boundary + ?Sized>(
     for row in 0..rows(room, spacing) {
         let height = room.bottom + row as f64 * spacing;
         let sites = (0..columns).map(|column| DVec2::new(room.left + column as f64 * pitch, height));
-        let free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());
+        let free = sites.filter(|&site| boundary.overlap(&Probe::new(site, radius, 0.0)).is_none());
         let before = disks.len();
         for site in free.take(count - before) {
             disks.push(Disk::new(site, radius)?);

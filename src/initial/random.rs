@@ -7,7 +7,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::{PlacementError, countable, cut, room};
 use crate::Disk;
 use crate::boundary::Squares;
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::{Boundary, Domain, Probe};
 use crate::quantity::positive;
 use crate::random::uniform;
 
@@ -80,11 +80,11 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     let mut squares = Squares::new(&boundary.domain(), disks.iter().map(Disk::radius));
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));
     for disk in disks {
-        let radius = disk.radius();
+        let (radius, probe) = (disk.radius(), Probe::of(&disk, 0.0));
         let no_room = PlacementError::NoRoom { count, placed: placed.len(), radius, interior };
         let Some(room) = room_for(&interior, radius) else { return Err(no_room) };
         let sites = std::iter::repeat_with(|| random_site(&room, &mut generator)).take(TRIALS);
-        let mut free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());
+        let mut free = sites.filter(|&site| boundary.overlap(&probe.with_position(site)).is_none());
         let site = free.find(|&site| squares.is_free(site, radius, &placed)).ok_or(no_room)?;
         squares.add(site, radius, placed.len());
         placed.push(disk.with_position(site)?);

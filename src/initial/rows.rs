@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::{PlacementError, countable, spacings};
 use crate::Disk;
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::{Boundary, Domain, Probe};
 
 /// Number of places tried for each disk.
 const TRIALS: usize = 100_000;
@@ -77,7 +77,7 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
                 return None;
             }
             let site = self.corner + DVec2::new(0.5 * size, self.column.y + 0.5 * size);
-            let is_free = self.boundary.overlap(site, radius, 0.0).is_none();
+            let is_free = self.boundary.overlap(&Probe::new(site, radius, 0.0)).is_none();
             // Next to an obstacle, the search advances in steps of about a radius.
             self.column =
                 DVec2::new(self.column.x.max(size), self.column.y + if is_free { size } else { 0.5 * size });

@@ -3,7 +3,7 @@
 use super::stretch::Stretch;
 use super::table::Table;
 use super::wall_stress::check_wall;
-use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::{Estimate, block_average};
 
@@ -80,9 +80,9 @@ impl Arrivals {
 }
 
 impl Observer for Arrivals {
-    fn on_start(&mut self, moment: &Moment) {
-        self.fault = self.walls.iter().find_map(|&wall| check_wall(wall, moment).err());
-        if self.stretch.begin(moment.time()) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.fault = self.walls.iter().find_map(|&wall| check_wall(wall, start).err());
+        if self.stretch.begin(start.time()) {
             self.present = 0;
         }
     }
@@ -105,8 +105,8 @@ impl Observer for Arrivals {
         }
     }
 
-    fn on_end(&mut self, moment: &Moment) {
-        self.stretch.pause(moment.time());
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.stretch.pause(end.time());
     }
 
     #[inline]

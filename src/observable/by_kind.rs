@@ -1,12 +1,12 @@
 //! Observables and observers of the disks of one kind, and of the collisions between two kinds.
 
-use super::{Collision, Heading, Moment, Observable, Observer, Partner, Snapshot, Tabular, Verdict};
+use super::{Collision, Heading, Observable, Observer, Partner, Snapshot, Tabular, Verdict};
 use crate::{Disk, Kind};
 
 /// A filter: an observable or observer that sees only disks of one kind.
 ///
 /// Its snapshots hold only these disks, in their order. It passes on the collisions in which a disk of the
-/// kind takes part. It passes on a [`Moment`] as it is, with the number of all disks.
+/// kind takes part. The start and the end of a run are passed on as they are, with all disks.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -73,8 +73,8 @@ impl<T: Tabular> Tabular for OfKind<T> {
 }
 
 impl<T: Observer> Observer for OfKind<T> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.inner.on_start(moment);
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.inner.on_start(start);
     }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
@@ -91,8 +91,8 @@ impl<T: Observer> Observer for OfKind<T> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.inner.on_sample(&snapshot.with_disks(&self.chosen(snapshot)));
     }
-    fn on_end(&mut self, moment: &Moment) {
-        self.inner.on_end(moment);
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.inner.on_end(end);
     }
     #[inline]
     fn verdict(&mut self) -> Verdict {
@@ -143,8 +143,8 @@ impl<T> BetweenKinds<T> {
 }
 
 impl<T: Observer> Observer for BetweenKinds<T> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.inner.on_start(moment);
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.inner.on_start(start);
     }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
@@ -158,8 +158,8 @@ impl<T: Observer> Observer for BetweenKinds<T> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.inner.on_sample(snapshot);
     }
-    fn on_end(&mut self, moment: &Moment) {
-        self.inner.on_end(moment);
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.inner.on_end(end);
     }
     #[inline]
     fn verdict(&mut self) -> Verdict {

@@ -83,7 +83,7 @@ impl Collision {
         let momentum = (after - before) / inverse_mass;
         self.energy_change += momentum.dot(0.5 * (before + after));
         let normal = self.impulse.normal() + momentum.dot(self.normal);
-        self.impulse = Impulse::new(normal, self.impulse.tangential()).with_regime(self.impulse.regime());
+        self.impulse = self.impulse.with_normal(normal);
     }
 
     /// Returns the position of the partner: the center of a disk, or the point where a wall is touched.

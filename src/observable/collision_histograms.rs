@@ -2,7 +2,7 @@
 
 use super::table::{Table, histogram_headings, histogram_rows};
 use super::wall_stress::check_wall;
-use super::{Collision, Heading, Moment, Observer, Partner, Verdict, contract};
+use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::Histogram;
 
@@ -91,8 +91,8 @@ impl CollisionHistograms {
 }
 
 impl Observer for CollisionHistograms {
-    fn on_start(&mut self, moment: &Moment) {
-        self.fault = self.wall.and_then(|wall| check_wall(wall, moment).err());
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.fault = self.wall.and_then(|wall| check_wall(wall, start).err());
     }
 
     fn on_collision(&mut self, collision: &Collision) {

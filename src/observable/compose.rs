@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Heading, Moment, Observable, Observer, Snapshot, Tabular, Verdict};
+use super::{Collision, Heading, Observable, Observer, Snapshot, Tabular, Verdict};
 use crate::forward::forward;
 
 /// The observer that does nothing and costs nothing.
@@ -15,10 +15,10 @@ impl Observer for () {}
 forward! { Observer for [&mut T, Box<T>] {
     fn next_sample(&self) -> f64;
     mut
-    fn on_start(&mut self, moment: &Moment);
+    fn on_start(&mut self, start: &Snapshot<'_>);
     fn on_collision(&mut self, collision: &Collision);
     fn on_sample(&mut self, snapshot: &Snapshot<'_>);
-    fn on_end(&mut self, moment: &Moment);
+    fn on_end(&mut self, end: &Snapshot<'_>);
     fn verdict(&mut self) -> Verdict;
 }}
 
@@ -26,9 +26,9 @@ forward! { Observer for [&mut T, Box<T>] {
 macro_rules! compose_all {
     ($($holder:ty),+) => {
         $(impl<T: Observer> Observer for $holder {
-            fn on_start(&mut self, moment: &Moment) {
+            fn on_start(&mut self, end: &Snapshot<'_>) {
                 for observer in self.iter_mut() {
-                    observer.on_start(moment);
+                    observer.on_start(end);
                 }
             }
             #[inline]
@@ -45,9 +45,9 @@ macro_rules! compose_all {
                     sample_if_due(observer, snapshot);
                 }
             }
-            fn on_end(&mut self, moment: &Moment) {
+            fn on_end(&mut self, end: &Snapshot<'_>) {
                 for observer in self.iter_mut() {
-                    observer.on_end(moment);
+                    observer.on_end(end);
                 }
             }
             #[inline]
@@ -83,8 +83,8 @@ fn either(first: ControlFlow<()>, second: ControlFlow<()>) -> ControlFlow<()> {
 macro_rules! compose_tuple {
     ($($name:ident $index:tt),+) => {
         impl<$($name: Observer),+> Observer for ($($name,)+) {
-            fn on_start(&mut self, moment: &Moment) {
-                $(self.$index.on_start(moment);)+
+            fn on_start(&mut self, start: &Snapshot<'_>) {
+                $(self.$index.on_start(start);)+
             }
             #[inline]
             fn on_collision(&mut self, collision: &Collision) {
@@ -98,8 +98,8 @@ macro_rules! compose_tuple {
             fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
                 $(sample_if_due(&mut self.$index, snapshot);)+
             }
-            fn on_end(&mut self, moment: &Moment) {
-                $(self.$index.on_end(moment);)+
+            fn on_end(&mut self, end: &Snapshot<'_>) {
+                $(self.$index.on_end(end);)+
             }
             #[inline]
             fn verdict(&mut self) -> Verdict {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Moment, Snapshot};
+use super::{Collision, Snapshot};
 
 /// A quantity that a snapshot determines.
 ///
@@ -74,8 +74,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 )]
 pub trait Observer {
     /// Receives the start of a run, which may continue an earlier run.
-    fn on_start(&mut self, moment: &Moment) {
-        let _ = moment;
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        let _ = start;
     }
 
     /// Receives a collision that has just happened.
@@ -94,8 +94,8 @@ pub trait Observer {
     }
 
     /// Receives the end of a run, also of one that fails.
-    fn on_end(&mut self, moment: &Moment) {
-        let _ = moment;
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        let _ = end;
     }
 
     /// Decides whether the run goes on, stops here, or fails.

@@ -2,7 +2,7 @@
 
 use super::grid::check_heights;
 use super::table::{ENERGY, Table, headings, row};
-use super::{Accumulator, Collision, Heading, Moment, Partner, Snapshot};
+use super::{Accumulator, Collision, Heading, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Bins, BlockedMean};
 
@@ -116,8 +116,8 @@ impl Accumulator for EnergyChangeProfile {
         }
     }
 
-    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
-        check_heights(&self.bins, &moment.domain())
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        check_heights(&self.bins, &start.domain())
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::grid::CellSums;
 use super::table::{ENERGY, Table, headings};
-use super::{Accumulator, Grid, Heading, Moment, Snapshot};
+use super::{Accumulator, Grid, Heading, Snapshot};
 use crate::ParameterError;
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
@@ -135,8 +135,8 @@ impl Accumulator for Fields {
         self.samples += 1;
     }
 
-    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
-        self.grid.check_against(&moment.domain())
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        self.grid.check_against(&start.domain())
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::grid::check_heights;
 use super::table::{Table, headings};
-use super::{Accumulator, Heading, Moment, Snapshot};
+use super::{Accumulator, Heading, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Bins;
 
@@ -154,8 +154,8 @@ impl Accumulator for HeightProfile {
         self.samples += 1;
     }
 
-    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
-        check_heights(&self.bins, &moment.domain())
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        check_heights(&self.bins, &start.domain())
     }
 }
 

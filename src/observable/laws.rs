@@ -6,7 +6,7 @@
 use glam::DVec2;
 use thiserror::Error;
 
-use super::{Collision, Moment, Observer, Partner, Snapshot};
+use super::{Collision, Observer, Partner, Snapshot};
 use crate::boundary::Domain;
 use crate::collision::{Contact, Impulse, Regime};
 use crate::{Disk, ParameterError};
@@ -109,7 +109,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
 
     /// Runs the script, and returns the time at the end.
     fn run(mut self) -> Result<f64, Violation> {
-        self.observer.on_start(&self.moment());
+        self.observer.on_start(&snapshot(self.now, &disks(0)));
         self.wanted = self.next_sample()?;
         if self.wanted < self.now - ROUNDING * self.now.abs() {
             return Err(Violation::BeforeStart { start: self.now, next: self.wanted });
@@ -118,7 +118,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         for _ in 0..SAMPLES {
             goes_on = goes_on && self.collide()? && self.sample()?;
         }
-        self.observer.on_end(&self.moment());
+        self.observer.on_end(&snapshot(self.now, &disks(self.collisions)));
         self.goes_on()?;
         Ok(self.now)
     }
@@ -145,8 +145,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         }
         // The engine does the same: a sample time that has passed by rounding is sampled now.
         self.now = self.wanted.max(self.now);
-        let disks: Vec<Disk> = (0..DISKS).filter_map(|index| disk(index, self.collisions).ok()).collect();
-        self.observer.on_sample(&Snapshot::new(self.now, &disks, DOMAIN, GRAVITY));
+        self.observer.on_sample(&snapshot(self.now, &disks(self.collisions)));
         let next = self.next_sample()?;
         if next <= self.now {
             return Err(Violation::NotLater { sample: self.now, next });
@@ -166,10 +165,14 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         let next = self.next_sample()?;
         if next == self.wanted { Ok(goes_on) } else { Err(Violation::Moved { before: self.wanted, next }) }
     }
+}
 
-    fn moment(&self) -> Moment {
-        Moment::new(self.now, DISKS, WALLS, DOMAIN, GRAVITY)
-    }
+fn snapshot(time: f64, disks: &[Disk]) -> Snapshot<'_> {
+    Snapshot::new(time, disks, DOMAIN, GRAVITY).with_wall_count(WALLS)
+}
+
+fn disks(round: usize) -> Vec<Disk> {
+    (0..DISKS).filter_map(|index| disk(index, round).ok()).collect()
 }
 
 /// Returns one of three disks, at one of a few places.

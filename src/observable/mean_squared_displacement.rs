@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lags::Lags;
 use super::table::{Table, headings, row};
-use super::{Heading, Moment, Observer, PerDisk, SampleTimes, Snapshot};
+use super::{Heading, Observer, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -95,8 +95,8 @@ fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
 }
 
 impl Observer for MeanSquaredDisplacement {
-    fn on_start(&mut self, moment: &Moment) {
-        self.lags.sample_times.start_at(moment.time());
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.lags.sample_times.start_at(start.time());
     }
 
     fn next_sample(&self) -> f64 {

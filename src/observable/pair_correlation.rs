@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::grid::{checked_region, inside};
 use super::table::{Table, headings, row};
-use super::{Accumulator, Heading, Moment, Snapshot};
+use super::{Accumulator, Heading, Snapshot};
 use crate::boundary::{Domain, Region, Squares};
 use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
@@ -187,11 +187,11 @@ impl PairCorrelation {
 }
 
 impl Accumulator for PairCorrelation {
-    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
-        let (has_room, walls) = (self.region.is_some() || moment.wall_count() <= SIDES, moment.wall_count());
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        let (has_room, walls) = (self.region.is_some() || start.wall_count() <= SIDES, start.wall_count());
         let requirement = "at most 4, or the correlation within a region away from them";
         accept(has_room, "number of walls", requirement, walls as f64)?;
-        self.counted(&moment.domain()).map(|_| ())
+        self.counted(&start.domain()).map(|_| ())
     }
 
     fn add(&mut self, snapshot: &Snapshot<'_>) {

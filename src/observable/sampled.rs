@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 
 /// A measure that adds up snapshots, whenever it is given one.
@@ -52,8 +52,8 @@ pub trait Accumulator {
     ///
     /// # Errors
     /// If not, for example because a region is not inside the domain. The run then ends with this error.
-    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
-        let _ = moment;
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        let _ = start;
         Ok(())
     }
 }
@@ -112,9 +112,9 @@ impl<A> DerefMut for Sampled<A> {
 }
 
 impl<A: Accumulator> Observer for Sampled<A> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.fault = self.accumulator.check(moment).err();
-        self.sample_times.start_at(moment.time());
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.fault = self.accumulator.check(start).err();
+        self.sample_times.start_at(start.time());
     }
 
     #[inline]

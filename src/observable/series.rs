@@ -1,6 +1,6 @@
 //! Series of the values of an observable at set times.
 
-use super::{Moment, Observable, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::{Observable, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
@@ -101,8 +101,8 @@ impl<Q: Observable> Series<Q> {
 }
 
 impl<Q: Observable> Observer for Series<Q> {
-    fn on_start(&mut self, moment: &Moment) {
-        let time = moment.time();
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        let time = start.time();
         let goes_on = self.times.last().is_none_or(|&last| time >= last);
         let requirement = "not before the last sample of the series; clear it for another run";
         self.fault = accept(goes_on, "start of the run", requirement, time).err();

@@ -1,22 +1,49 @@
-//! Snapshots: the state of all disks at one time.
+//! Snapshots: the state of a run at one time.
 
+use std::cell::OnceCell;
 use std::fmt;
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::{Boundary, Domain, Region};
 use crate::{Disk, Gravity};
 
-/// The disks at one time, as copies.
+/// The state of a run at one time: the disks as copies, the walls, gravity.
 ///
-/// The run does not see changes of these copies.
-#[derive(Debug, Clone, Copy)]
+/// The run does not see changes of these copies. They are made when somebody asks for them, so the start of a
+/// run costs nothing for an observer that only reads the time.
+#[derive(Debug, Clone)]
 pub struct Snapshot<'a> {
     time: f64,
-    disks: &'a [Disk],
+    disks: Disks<'a>,
     domain: Domain,
     gravity: Gravity,
     walls: Option<Walls<'a>>,
+    wall_count: usize,
+}
+
+/// The disks of a run as they move, which a snapshot copies if it is asked for them.
+pub(crate) trait Moving {
+    /// Returns the number of disks.
+    fn count(&self) -> usize;
+
+    /// Returns copies of all disks at an offset of the time.
+    fn copies(&self, offset: f64) -> Vec<Disk>;
+}
+
+#[derive(Clone)]
+enum Disks<'a> {
+    Given(&'a [Disk]),
+    Moving { source: &'a dyn Moving, offset: f64, copies: OnceCell<Vec<Disk>> },
+}
+
+impl fmt::Debug for Disks<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Given(disks) => disks.fmt(formatter),
+            Self::Moving { source, .. } => write!(formatter, "[{} disks]", source.count()),
+        }
+    }
 }
 
 /// The boundary of a run, and the time of a snapshot as the boundary counts it.
@@ -37,13 +64,33 @@ impl<'a> Snapshot<'a> {
     ///
     /// The engine creates snapshots, and tests may do so.
     pub fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: impl Into<Gravity>) -> Self {
-        Self { time, disks, domain, gravity: gravity.into(), walls: None }
+        Self { time, disks: Disks::Given(disks), domain, gravity: gravity.into(), walls: None, wall_count: 0 }
     }
 
-    /// Returns the same snapshot with the walls of a boundary, for which the snapshot is at this time after
-    /// its origin.
-    pub(crate) const fn with_walls(self, boundary: &'a dyn Boundary, time: f64) -> Self {
-        Self { walls: Some(Walls { boundary, time }), ..self }
+    /// Creates a snapshot of disks as they move, at an absolute time and at its offset, with the walls around
+    /// them.
+    pub(crate) fn of_run(
+        time: f64,
+        offset: f64,
+        source: &'a dyn Moving,
+        boundary: &'a dyn Boundary,
+        gravity: Gravity,
+    ) -> Self {
+        let disks = Disks::Moving { source, offset, copies: OnceCell::new() };
+        let (domain, walls, wall_count) = (boundary.domain(), None, 0);
+        Self { time, disks, domain, gravity, walls, wall_count }.with_walls(boundary, offset)
+    }
+
+    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time origin.
+    #[must_use]
+    pub fn with_walls(self, boundary: &'a dyn Boundary, time: f64) -> Self {
+        Self { walls: Some(Walls { boundary, time }), wall_count: boundary.wall_count(), ..self }
+    }
+
+    /// Returns the same snapshot with walls of which only the number is known, for tests of observers.
+    #[must_use]
+    pub fn with_wall_count(self, wall_count: usize) -> Self {
+        Self { wall_count, ..self }
     }
 
     /// Returns the absolute time of the snapshot.
@@ -52,8 +99,51 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the disks, in the order in which they were given to the simulation.
-    pub const fn disks(&self) -> &'a [Disk] {
-        self.disks
+    pub fn disks(&self) -> &[Disk] {
+        match &self.disks {
+            Disks::Given(disks) => disks,
+            Disks::Moving { source, offset, copies } => copies.get_or_init(|| source.copies(*offset)),
+        }
+    }
+
+    /// Returns the number of disks.
+    pub fn len(&self) -> usize {
+        match &self.disks {
+            Disks::Given(disks) => disks.len(),
+            Disks::Moving { source, .. } => source.count(),
+        }
+    }
+
+    /// Returns whether there are no disks.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns the number of walls, whose indices are less than it; 0 for a snapshot without walls.
+    pub const fn wall_count(&self) -> usize {
+        self.wall_count
+    }
+
+    /// Returns a point of a wall, which moves with the wall; `None` if it is not known.
+    ///
+    /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the place
+    /// of the wall.
+    pub fn wall_point(&self, wall: usize) -> Option<DVec2> {
+        self.walls.and_then(|walls| walls.boundary.wall_point(wall, walls.time))
+    }
+
+    /// Returns the velocity of a wall's surface at its [point](Self::wall_point); `None` if it is not known.
+    pub fn wall_velocity(&self, wall: usize) -> Option<DVec2> {
+        let (walls, point) = (self.walls?, self.wall_point(wall)?);
+        Some(walls.boundary.surface(wall, point, walls.time).velocity)
+    }
+
+    /// Returns the area of the places in `region` at which the center of a disk of this radius is free;
+    /// `None` if it is not known.
+    ///
+    /// With a radius of 0, it is the area that matter can fill.
+    pub fn area(&self, region: &Region, radius: f64) -> Option<f64> {
+        self.walls.and_then(|walls| walls.boundary.area(region, radius, walls.time))
     }
 
     /// Returns the rectangle that holds the centers of the disks.
@@ -95,11 +185,12 @@ impl<'a> Snapshot<'a> {
     where
         'a: 'b,
     {
-        Snapshot { disks, ..*self }
+        let Self { time, domain, gravity, walls, wall_count, .. } = *self;
+        Snapshot { time, disks: Disks::Given(disks), domain, gravity, walls, wall_count }
     }
 
     /// Returns the mean of a quantity over the disks; NaN without disks.
     pub fn mean(&self, quantity: impl Fn(&Disk) -> f64) -> f64 {
-        self.disks.iter().map(quantity).sum::<f64>() / self.disks.len() as f64
+        self.disks().iter().map(quantity).sum::<f64>() / self.len() as f64
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict};
+use super::{Collision, Observer, SampleTimes, Snapshot, Verdict};
 
 /// A closure that stops a run at a collision; made by [`stop_when`].
 #[derive(Debug, Clone)]
@@ -32,7 +32,7 @@ pub const fn stop_when<F: FnMut(&Collision) -> bool>(condition: F) -> StopWhen<F
 }
 
 impl<F: FnMut(&Collision) -> bool> Observer for StopWhen<F> {
-    fn on_start(&mut self, _: &Moment) {
+    fn on_start(&mut self, _: &Snapshot<'_>) {
         self.holds = false;
     }
 
@@ -77,9 +77,9 @@ where
 }
 
 impl<F: FnMut(&Snapshot<'_>) -> bool> Observer for StopWhenSampled<F> {
-    fn on_start(&mut self, moment: &Moment) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
         self.holds = false;
-        self.times.start_at(moment.time());
+        self.times.start_at(start.time());
     }
 
     fn next_sample(&self) -> f64 {

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::grid::{checked_region, inside};
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
-use super::{Collision, Heading, Moment, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::quantity::accept;
@@ -176,16 +176,16 @@ fn share_in(region: &Region, from: DVec2, to: DVec2) -> f64 {
 }
 
 impl Observer for Stress {
-    fn on_start(&mut self, moment: &Moment) {
-        if self.domain.replace(moment.domain()) != Some(moment.domain()) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        if self.domain.replace(start.domain()) != Some(start.domain()) {
             self.stretch.forget();
         }
-        let area = self.area(&moment.domain());
+        let area = self.area(&start.domain());
         let requirement = "finite: choose a region";
         let finite = accept(area.is_finite(), "area of the domain", requirement, area);
-        let within = self.region.map_or(Ok(()), |region| inside(region, &moment.domain()).map(|_| ()));
+        let within = self.region.map_or(Ok(()), |region| inside(region, &start.domain()).map(|_| ()));
         self.fault = finite.and(within.map(|()| area)).err();
-        if self.stretch.begin(moment.time()) {
+        if self.stretch.begin(start.time()) {
             self.transferred = [0.0; 4];
         }
     }
@@ -222,8 +222,8 @@ impl Observer for Stress {
         self.total.push([0, 1, 2, 3].map(|entry| kinetic[entry] + collisional[entry]));
     }
 
-    fn on_end(&mut self, moment: &Moment) {
-        self.stretch.pause(moment.time());
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.stretch.pause(end.time());
     }
 
     fn verdict(&mut self) -> Verdict {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lags::Lags;
 use super::table::{Table, headings, row};
-use super::{Heading, Moment, Observable, Observer, PerDisk, SampleTimes, Snapshot};
+use super::{Heading, Observable, Observer, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Estimate;
 
@@ -127,8 +127,8 @@ impl<Q: Observable> TimeCorrelation<Q> {
 }
 
 impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.lags.sample_times.start_at(moment.time());
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.lags.sample_times.start_at(start.time());
     }
 
     fn next_sample(&self) -> f64 {

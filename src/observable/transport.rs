@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::lags::Lags;
 use super::stretch::Stretch;
 use super::table::{Table, headings, row};
-use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::boundary::Domain;
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate, RunningMean};
@@ -292,20 +292,20 @@ impl TransportCoefficients {
 }
 
 impl Observer for TransportCoefficients {
-    fn on_start(&mut self, moment: &Moment) {
-        let periods = moment.domain().periods();
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        let periods = start.domain().periods();
         let periodic =
             accept(periods.min_element() > 0.0, "period of the domain", "positive", periods.min_element());
-        let gravity = moment.gravity().larger();
+        let gravity = start.gravity().larger();
         let weightless = accept(gravity == 0.0, "gravity", "0 for transport coefficients", gravity);
-        let (begins, is_first) = (self.stretch.begin(moment.time()), self.domain.is_none());
+        let (begins, is_first) = (self.stretch.begin(start.time()), self.domain.is_none());
         let (name, previous) =
             ("start of the run", "the end of the previous one, for transport coefficients");
-        let goes_on = accept(is_first || !begins, name, previous, moment.time());
-        let area = moment.domain().width() * moment.domain().height();
-        let domain = *self.domain.get_or_insert(moment.domain());
+        let goes_on = accept(is_first || !begins, name, previous, start.time());
+        let area = start.domain().width() * start.domain().height();
+        let domain = *self.domain.get_or_insert(start.domain());
         let (name, same) = ("area of the domain", "that of the previous run, for transport coefficients");
-        let stays = accept(domain == moment.domain(), name, same, area);
+        let stays = accept(domain == start.domain(), name, same, area);
         self.fault = periodic.and(weightless).and(goes_on).and(stays).err();
     }
 
@@ -351,9 +351,9 @@ impl Observer for TransportCoefficients {
         self.stretch.finish(snapshot.time());
     }
 
-    fn on_end(&mut self, moment: &Moment) {
-        self.advance(moment.time());
-        self.stretch.pause(moment.time());
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.advance(end.time());
+        self.stretch.pause(end.time());
     }
 
     fn verdict(&mut self) -> Verdict {

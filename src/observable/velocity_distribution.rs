@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::grid::CellSums;
 use super::table::{Table, histogram_headings, histogram_rows};
-use super::{Accumulator, Grid, Heading, Moment, Snapshot};
+use super::{Accumulator, Grid, Heading, Snapshot};
 use crate::disk::LEAST_THERMAL;
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
@@ -221,8 +221,8 @@ impl Accumulator for VelocityDistribution {
         }
     }
 
-    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
-        if let Frame::Flow(grid) = &self.frame { grid.check_against(&moment.domain()) } else { Ok(()) }
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        if let Frame::Flow(grid) = &self.frame { grid.check_against(&start.domain()) } else { Ok(()) }
     }
 }
 

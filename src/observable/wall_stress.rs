@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
-use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::{accept, positive};
 use crate::statistics::{BlockedMean, Estimate};
@@ -99,15 +99,15 @@ impl WallStress {
 }
 
 /// Checks that the boundary of a run has the wall of this index.
-pub(super) fn check_wall(wall: usize, moment: &Moment) -> Result<f64, ParameterError> {
-    let is_there = wall < moment.wall_count();
+pub(super) fn check_wall(wall: usize, start: &Snapshot<'_>) -> Result<f64, ParameterError> {
+    let is_there = wall < start.wall_count();
     accept(is_there, "index of a wall", "less than the number of walls", wall as f64)
 }
 
 impl Observer for WallStress {
-    fn on_start(&mut self, moment: &Moment) {
-        self.fault = self.walls.keys().find_map(|&wall| check_wall(wall, moment).err());
-        if self.stretch.begin(moment.time()) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.fault = self.walls.keys().find_map(|&wall| check_wall(wall, start).err());
+        if self.stretch.begin(start.time()) {
             self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
         }
     }
@@ -135,8 +135,8 @@ impl Observer for WallStress {
         }
     }
 
-    fn on_end(&mut self, moment: &Moment) {
-        self.stretch.pause(moment.time());
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.stretch.pause(end.time());
     }
 
     fn verdict(&mut self) -> Verdict {

@@ -8,7 +8,7 @@ use super::cells::{CellSize, Cells};
 use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock, Identities};
 use super::{BuildError, Counters, Scratch, Simulation};
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
 use crate::instructions::Instructions;
@@ -230,7 +230,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
         if !domain.contains(position, TOUCHING * radius) {
             return Err(BuildError::Outside { disk, x: position.x, y: position.y, domain });
         }
-        if let Some((wall, depth)) = boundary.overlap(position, radius, offset)
+        if let Some(Overlap { with: wall, depth }) = boundary.overlap(&Probe::of(state, offset))
             && (depth.is_nan() || depth > TOUCHING * radius)
         {
             let wall = boundary.wall_name(wall).into_owned();

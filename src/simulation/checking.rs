@@ -12,8 +12,8 @@ use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::forecasting::HORIZON;
 use super::state::{FARTHEST, Forecast};
-use crate::boundary::{Boundary, FirstTouch};
-use crate::collision::CollisionRule;
+use crate::boundary::{Boundary, FirstTouch, Overlap, Probe};
+use crate::collision::{CollisionRule, Material};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
@@ -37,17 +37,23 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// One question serves both. With a radius enlarged by the largest gap, a disk that touches overlaps, and
     /// the depth less the gap is its own.
     #[inline]
-    pub(super) fn check_touch(&mut self, disk: usize, wall: usize, position: DVec2) -> Outcome<()> {
-        let radius = self.bodies.radius(disk);
-        let gap = NEAR * radius;
-        match self.boundary.overlap(position, radius + gap, self.clock.now) {
-            Some((_, depth)) if depth - gap <= self.counters.max_wall_overlap => Ok(()),
+    pub(super) fn check_touch(&mut self, disk: usize, wall: usize) -> Outcome<()> {
+        let probe = self.probe(disk);
+        let gap = NEAR * probe.radius();
+        match self.boundary.overlap(&probe.with_radius(probe.radius() + gap)) {
+            Some(overlap) if overlap.depth - gap <= self.counters.max_wall_overlap => Ok(()),
             // The deepest wall need not be the one that was touched.
-            Some((deepest, depth)) => {
+            Some(Overlap { with: deepest, depth }) => {
                 self.note_overlap(disk, Partner::Wall(wall), Partner::Wall(deepest), depth - gap)
             }
-            None => self.check_gap(disk, wall, position),
+            None => self.check_gap(disk, wall, &probe),
         }
+    }
+
+    /// Returns the disk as it is now, as a boundary is asked about it.
+    pub(super) fn probe(&self, disk: usize) -> Probe {
+        let Material { radius, kind, .. } = self.bodies.material(disk);
+        Probe::new(self.bodies.position(disk, self.clock.now), radius, self.clock.now).with_kind(kind)
     }
 
     /// Keeps an overlap that is larger than all before, if it can be rounding.
@@ -80,17 +86,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Checks that a gap before a wall is rounding.
     #[cold]
-    fn check_gap(&self, disk: usize, wall: usize, position: DVec2) -> Outcome<()> {
-        let (now, radius) = (self.clock.now, self.bodies.radius(disk));
-        let reach = (1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall));
+    fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
+        let (now, radius) = (self.clock.now, probe.radius());
+        let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
         // A wall that jumps away from the disks may have done so in the rounding of the time. The engine
         // never asks about times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);
-        if [now, before].iter().any(|&time| self.boundary.overlap(position, reach, time).is_some()) {
+        if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {
             return Ok(());
         }
         let mut gaps = std::iter::successors(Some(NEAR * radius), |gap| Some(2.0 * gap)).take(MOST_DOUBLINGS);
-        let found = |gap: f64| Some(gap - self.boundary.overlap(position, radius + gap, now)?.1);
+        let found = |gap: f64| Some(gap - self.boundary.overlap(&probe.with_radius(radius + gap))?.depth);
         let gap = gaps.find_map(found).unwrap_or(f64::INFINITY);
         Err(self.false_contact(disk, Partner::Wall(wall), -gap).into())
     }
@@ -118,10 +124,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Checks a disk that came to the horizon of a search without a touch: a wall that let it pass would find
     /// no other.
     pub(super) fn check_passed(&self, disk: usize) -> Outcome<()> {
-        let (position, radius) = (self.bodies.position(disk, self.clock.now), self.bodies.radius(disk));
-        match self.boundary.overlap(position, radius, self.clock.now) {
-            Some((wall, depth))
-                if depth.is_nan() || depth > DEEP * radius + self.rounding_at(disk, Partner::Wall(wall)) =>
+        let probe = self.probe(disk);
+        match self.boundary.overlap(&probe) {
+            Some(Overlap { with: wall, depth })
+                if depth.is_nan()
+                    || depth > DEEP * probe.radius() + self.rounding_at(disk, Partner::Wall(wall)) =>
             {
                 Err(self.false_contact(disk, Partner::Wall(wall), depth).into())
             }

@@ -27,9 +27,10 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANEDMD", 7);
+const SEAL: Seal = Seal::new(*b"GRANEDMD", 8);
 
-/// Everything on which the future of a run depends, except its rule and its boundary.
+/// Everything on which the future of a run depends, except its rule and its boundary. The numbers of walls
+/// that [react](Boundary::react) are kept.
 ///
 /// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
@@ -81,6 +82,8 @@ struct Saved {
     typical_diameter: f64,
     fresh_count: u32,
     inlets: Vec<Inlet>,
+    /// Numbers of the walls that react.
+    walls: Vec<f64>,
     forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
@@ -272,6 +275,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             typical_diameter: self.bodies.typical_diameter,
             fresh_count: self.bodies.fresh_count,
             inlets: self.inlets.clone(),
+            walls: self.boundary.state(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),

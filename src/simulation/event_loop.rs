@@ -10,10 +10,10 @@
 use glam::DVec2;
 
 use super::errors::{BoundaryFault, Outcome};
-use super::resolution::{Kick, failed, is_parting, is_possible, resolve_pair, resolve_wall};
-use super::state::{Clock, Earliest, Exit};
+use super::resolution::{Kick, failed, impact_of, is_parting, is_possible, resolve_pair, resolve_wall};
+use super::state::{Clock, Earliest, Exit, Forecast};
 use super::{Event, Simulation};
-use crate::boundary::{Boundary, Response};
+use crate::boundary::{Boundary, Reaction, Response};
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer, Partner};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
@@ -88,7 +88,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Outcome<Event> {
         let periods = self.cells.grid().periods();
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
-        if !(self.is_tame(&kicks[0]) & self.is_tame(&kicks[1])) {
+        // A couple can make a spin impossible while the velocity stays. Without one, the comparison is known
+        // when the rule is compiled.
+        let is_rolling = collision.impulse.couple() != 0.0 && !kicks.iter().all(Kick::is_possible);
+        if is_rolling || !(self.is_tame(&kicks[0]) & self.is_tame(&kicks[1])) {
             self.prepare_for_pair(disk, partner)?;
         }
         let depth = self.bodies.radius(disk) + self.bodies.radius(partner) - collision.distance;
@@ -137,20 +140,41 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
         }
-        self.check_touch(disk, wall, position)?;
+        self.check_touch(disk, wall)?;
         if !self.is_tame(&kick) {
             self.begin_epoch_for(&[kick])?;
         }
         self.counters.wall_collisions += 1;
         self.count_regime(&collision);
         self.kick(disk, &kick);
+        let reaction = self.boundary.react(&impact_of(&collision, wall, self.clock.now));
         self.find_next(disk);
         if parts {
             self.leave_wall(disk, wall, &mut collision);
         }
         observer.on_collision(&collision);
         self.schedule(disk);
+        if reaction == Reaction::Moved {
+            self.end_flights_that_may_meet(wall);
+        }
         Ok(Event::WallCollision { disk, wall })
+    }
+
+    /// Ends the flights anew that may meet a wall which now moves otherwise. Their partners stay the same.
+    #[cold]
+    #[inline(never)]
+    fn end_flights_that_may_meet(&mut self, wall: usize) {
+        for disk in 0..self.bodies.len() {
+            let (region, at_wall) = self.cells.region(disk);
+            let Forecast { exit, exit_due: until, wall: expected, .. } = *self.forecast(disk);
+            // A touch that was expected may be later now, or never.
+            let was_to_meet = exit == Exit::Wall && usize::from(expected) == wall;
+            let may_meet = || self.boundary.may_meet(wall, &region, self.bodies.radius(disk), until);
+            if at_wall && (was_to_meet || may_meet()) {
+                self.end_flight(disk);
+                self.schedule(disk);
+            }
+        }
     }
 
     /// Takes a disk out of the run that has come to a sink.
@@ -165,10 +189,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Event {
         self.counters.wall_collisions += 1;
         self.counters.removals += 1;
+        let reaction = self.boundary.react(&impact_of(collision, wall, self.clock.now));
         observer.on_collision(collision);
         let gone = self.bodies.disk(disk, self.clock.now);
         self.take_out(disk);
         self.take_back(&gone);
+        if reaction == Reaction::Moved {
+            self.end_flights_that_may_meet(wall);
+        }
         Event::WallCollision { disk, wall }
     }
 

@@ -8,7 +8,7 @@ use super::prediction::{LANES, cell_exit, earliest_collision};
 use super::state::{Earliest, Exit, Forecast};
 use crate::Flight;
 use crate::boundary::{Boundary, FirstTouch, Touch};
-use crate::collision::CollisionRule;
+use crate::collision::{CollisionRule, Material};
 use crate::scheduler::EventScheduler;
 
 /// Number of epochs ahead to which the search for a wall extends. The limit makes every search end.
@@ -135,7 +135,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn flight(&self, disk: usize) -> Flight {
         let now = self.clock.now;
         let (position, velocity) = (self.bodies.position(disk, now), self.bodies.velocity(disk, now));
-        Flight::new(now, position, velocity, self.bodies.gravity.acceleration(), self.bodies.radius(disk))
+        let Material { radius, kind, .. } = self.bodies.material(disk);
+        Flight::new(now, position, velocity, self.bodies.gravity.acceleration(), radius).with_kind(kind)
     }
 
     #[inline]

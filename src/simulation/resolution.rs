@@ -7,7 +7,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::prediction::nearest_image;
 use super::state::{Bodies, Clock};
 use super::{FailedCollision, RunError};
-use crate::boundary::{Response, Surface, Thermal};
+use crate::boundary::{Impact, Response, Surface, Thermal};
 use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, collide_bodies};
 use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
@@ -103,7 +103,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
-    let (partner, wall) = (&partner, &Material::of_wall(surface.kind, surface.radius));
+    let (partner, wall) =
+        (&partner, &Material::of_wall(surface.kind, surface.radius, [surface.mass, surface.tangential_mass]));
     let against = |rule: &dyn CollisionRule| {
         collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
@@ -152,14 +153,16 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
 }
 
 /// Tells whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
-/// radius is neither zero nor NaN.
+/// radius is neither zero nor NaN, and its masses are positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;
+    let has_mass = surface.mass > 0.0 && surface.tangential_mass > 0.0;
     (surface.normal.length() - 1.0).abs() <= UNIT
         && velocity.x <= LARGEST
         && velocity.y <= LARGEST
         && is_curved
+        && has_mass
 }
 
 /// Returns the error of a collision whose outcome is not a possible motion.
@@ -167,6 +170,14 @@ pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
 pub(super) fn failed(collision: &Collision, wall: Option<String>) -> RunError {
     let Collision { disk, partner, time, contact, impulse, .. } = *collision;
     RunError::NotFinite(Box::new(FailedCollision { disk, partner, wall, time, contact, impulse }))
+}
+
+/// Returns the blow that a wall receives in a collision at this offset.
+#[inline]
+pub(super) fn impact_of(collision: &Collision, wall: usize, offset: f64) -> Impact {
+    let impulse = collision.impulse;
+    let momentum = -(collision.normal * impulse.normal() + collision.normal.perp() * impulse.tangential());
+    Impact::new(wall, momentum, collision.partner_position(), offset).with_couple(impulse.couple())
 }
 
 /// Returns the motion with which a disk leaves a thermal wall.

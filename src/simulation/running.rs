@@ -8,7 +8,7 @@ use super::state::effort;
 use super::{Event, RunEnd, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::observable::{Moment, Observer};
+use crate::observable::Observer;
 use crate::scheduler::EventScheduler;
 
 /// The point to which a run has come.
@@ -62,7 +62,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let watch = Watch::new(limits, &self.counters);
         let (events, start) = (self.counters.events(), self.time());
         self.clock.events_to_look = 1;
-        observer.on_start(&self.moment());
+        observer.on_start(&self.snapshot());
         let ended = match self.verdict_of(observer) {
             Ok(ControlFlow::Continue(())) => self.instructions.run(
                 #[inline(always)]
@@ -76,7 +76,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             || self.time() - start >= self.clock.epoch_length;
         let is_due = ended.is_ok() && is_long;
         let ended = if is_due { self.check_all(self.clock.now).and(ended) } else { ended };
-        observer.on_end(&self.moment());
+        observer.on_end(&self.snapshot());
         // A verdict to stop comes too late now. A failure, such as that of a last write, must still be
         // reported.
         let last = self.verdict_of(observer);
@@ -226,10 +226,5 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
         observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))
-    }
-
-    fn moment(&self) -> Moment {
-        let domain = self.boundary.domain();
-        Moment::new(self.time(), self.len(), self.wall_count, domain, self.bodies.gravity)
     }
 }

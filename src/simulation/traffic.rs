@@ -8,7 +8,7 @@
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
 use super::{Inlet, Simulation};
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::MOST_DISKS;
 use crate::quantity::accept;
@@ -105,7 +105,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             apart >= radius + self.bodies.radius(other)
         };
         found[..count].iter().all(|&other| is_free(other as usize))
-            && self.boundary.overlap(position, radius, now).is_none()
+            && self.boundary.overlap(&Probe::of(disk, now)).is_none()
     }
 
     /// Gives a disk that a sink took out to the inlet that puts such disks back.

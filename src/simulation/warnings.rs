@@ -147,7 +147,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, (usize, DVec2)> {
     let mut places = BTreeMap::new();
     for wall in 0..boundary.wall_count() {
-        if let Some(place) = boundary.place(wall, time) {
+        if let Some(place) = boundary.wall_point(wall, time) {
             places.entry(boundary.wall_name(wall).into_owned()).or_insert((wall, place));
         }
     }

@@ -42,7 +42,7 @@ use crate::{Disk, Gravity};
 /// let disks = [Disk::new(DVec2::new(0.1, 0.7), 0.5)?.with_velocity(DVec2::new(1.0 / 3.0, -2.0))?];
 /// let snapshot = Snapshot::new(12.5, &disks, Domain::new(-1.0, 4.0, 0.0, f64::INFINITY), 1.0);
 /// let mut text = Vec::new();
-/// ExtendedXyz.write_frame(&Frame::new(0, snapshot), &mut text)?;
+/// ExtendedXyz.write_frame(&Frame::new(0, &snapshot), &mut text)?;
 /// let state = State::from_xyz(text.as_slice())?;
 /// assert_eq!((state.disks(), state.time()), ([disks[0].with_id(1)?].as_slice(), Some(12.5)));
 /// assert_eq!(state.domain(), Some(snapshot.domain()));

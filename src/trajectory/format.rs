@@ -10,14 +10,14 @@ use crate::observable::Snapshot;
 #[derive(Debug, Clone, Copy)]
 pub struct Frame<'a> {
     number: usize,
-    snapshot: Snapshot<'a>,
+    snapshot: &'a Snapshot<'a>,
 }
 
 impl<'a> Frame<'a> {
     /// Creates the frame of this number.
     ///
     /// The first frame of a file has the number 0.
-    pub const fn new(number: usize, snapshot: Snapshot<'a>) -> Self {
+    pub const fn new(number: usize, snapshot: &'a Snapshot<'a>) -> Self {
         Self { number, snapshot }
     }
 
@@ -28,7 +28,7 @@ impl<'a> Frame<'a> {
 
     /// Returns the snapshot.
     pub const fn snapshot(&self) -> &Snapshot<'a> {
-        &self.snapshot
+        self.snapshot
     }
 }
 

@@ -29,7 +29,7 @@ use crate::disk::numbered;
 ///
 /// let snapshot = Snapshot::new(2.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0).with_periodic_sides(), 1.0);
 /// let mut text = Vec::new();
-/// LammpsDump.write_frame(&Frame::new(0, snapshot), &mut text)?;
+/// LammpsDump.write_frame(&Frame::new(0, &snapshot), &mut text)?;
 /// let text = String::from_utf8(text)?;
 /// assert!(text.starts_with("ITEM: UNITS\nlj\nITEM: TIME\n2.5\nITEM: TIMESTEP\n0\n"));
 /// assert!(text.contains("ITEM: BOX BOUNDS pp ff pp\n0.0 4.0\n0.0 6.0\n"));

@@ -82,7 +82,7 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
     let snapshots = snapshots(&disks);
     let mut frames = Vec::new();
     for (number, snapshot) in snapshots.iter().enumerate() {
-        let frame = Frame::new(number, *snapshot);
+        let frame = Frame::new(number, snapshot);
         let [mut once, mut again] = [Vec::new(), Vec::new()];
         format.write_frame(&frame, &mut once).map_err(failed(number))?;
         format.write_frame(&frame, &mut again).map_err(failed(number))?;

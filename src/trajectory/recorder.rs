@@ -8,7 +8,7 @@ use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
 use super::{Format, Frame, RecordError};
-use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict, verdict};
+use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 
 /// An observer that writes a frame to a file at set times.
 ///
@@ -268,15 +268,15 @@ impl Recorder {
     /// Makes the bytes of a frame.
     fn write_frame(&mut self, number: usize, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         self.bytes.clear();
-        let made = self.format.write_frame(&Frame::new(number, *snapshot), &mut self.bytes);
+        let made = self.format.write_frame(&Frame::new(number, snapshot), &mut self.bytes);
         made.map_err(RecordError::io("make a frame of", self.path()))
     }
 }
 
 impl Observer for Recorder {
-    fn on_start(&mut self, moment: &Moment) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
         self.clock = self.before_failure.take().unwrap_or(self.clock);
-        let (time, missed) = (moment.time(), self.clock.upcoming());
+        let (time, missed) = (start.time(), self.clock.upcoming());
         let mut clock = self.clock;
         clock.start_at(time);
         if self.must_follow && missed < clock.upcoming().min(time) {
@@ -299,7 +299,7 @@ impl Observer for Recorder {
         self.clock.advance_past(snapshot.time());
     }
 
-    fn on_end(&mut self, _: &Moment) {
+    fn on_end(&mut self, _: &Snapshot<'_>) {
         if self.failure.is_none() {
             self.failure = self.store.file().sync().err();
         }

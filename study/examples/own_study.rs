@@ -9,6 +9,7 @@
 //!
 //! A moment. You learn what an experiment is, and find the tables of the study in `out/own_study`.
 
+use granular_edmd::boundary::{Overlap, Probe};
 use granular_edmd::prelude::*;
 use granular_edmd::quantity::{finite, non_negative};
 use granular_edmd_study::{
@@ -69,9 +70,9 @@ impl Boundary for Drum {
         let surface = Surface::new(normal, -self.spin * self.radius * normal.perp());
         surface.with_response(Response::Thermal(self.heat))
     }
-    fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
-        let depth = radius - self.rim.signed_distance(position);
-        (depth > 0.0).then_some((0, depth))
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        let depth = probe.radius() - self.rim.signed_distance(probe.position());
+        (depth > 0.0).then_some(Overlap::new(0, depth))
     }
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("Drum").number(self.radius).number(self.spin))

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Thermal, Touch, Wall};
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Thermal, Touch, Wall,
+};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{Sinusoidal, Triangular};
@@ -126,10 +128,19 @@ fn a_flight_touches_the_wall_that_is_in_its_way() {
 
 #[test]
 fn the_deepest_overlap_counts_and_touching_is_none() {
-    assert_eq!(closed().overlap(DVec2::new(0.125, 0.25), RADIUS, 0.0), Some((LEFT, 0.375)));
-    assert_eq!(closed().overlap(DVec2::new(0.25, 0.125), RADIUS, 0.0), Some((FLOOR, 0.375)));
-    assert_eq!(closed().overlap(DVec2::new(9.75, 19.875), RADIUS, 0.0), Some((3, 0.375)));
-    assert_eq!(closed().overlap(DVec2::new(0.5, 19.5), RADIUS, 0.0), None);
+    assert_eq!(
+        closed().overlap(&Probe::new(DVec2::new(0.125, 0.25), RADIUS, 0.0)),
+        Some(Overlap::new(LEFT, 0.375))
+    );
+    assert_eq!(
+        closed().overlap(&Probe::new(DVec2::new(0.25, 0.125), RADIUS, 0.0)),
+        Some(Overlap::new(FLOOR, 0.375))
+    );
+    assert_eq!(
+        closed().overlap(&Probe::new(DVec2::new(9.75, 19.875), RADIUS, 0.0)),
+        Some(Overlap::new(3, 0.375))
+    );
+    assert_eq!(closed().overlap(&Probe::new(DVec2::new(0.5, 19.5), RADIUS, 0.0)), None);
 }
 
 #[test]
@@ -161,7 +172,7 @@ fn said(mut boundary: impl Boundary, origin: f64) -> String {
     let falling = Flight::new(0.25, DVec2::new(5.0, 2.0), DVec2::NEG_Y, DVec2::NEG_Y, RADIUS);
     let states = [0.25, 0.375].map(|time| {
         let surface = boundary.surface(FLOOR, DVec2::ZERO, time);
-        (surface.normal, surface.velocity, boundary.overlap(DVec2::new(5.0, 0.5), RADIUS, time))
+        (surface.normal, surface.velocity, boundary.overlap(&Probe::new(DVec2::new(5.0, 0.5), RADIUS, time)))
     });
     let near = [0.5, 9.0].map(|bottom| boundary.may_touch(&region((4.0, bottom), (6.0, 10.0)), RADIUS));
     let rectangles = (boundary.domain(), boundary.interior());
@@ -184,8 +195,11 @@ fn said(mut boundary: impl Boundary, origin: f64) -> String {
 fn a_moving_floor_is_where_its_motion_is_at_the_absolute_time() {
     let mut container = moving(Wall::Floor, 0.5);
     container.set_time_origin(1e9);
-    let at = |time| container.overlap(DVec2::new(5.0, 0.5), RADIUS, time);
-    assert_eq!((at(0.0), at(0.125), at(0.375)), (None, Some((FLOOR, 0.25)), Some((FLOOR, 0.25))));
+    let at = |time| container.overlap(&Probe::new(DVec2::new(5.0, 0.5), RADIUS, time));
+    assert_eq!(
+        (at(0.0), at(0.125), at(0.375)),
+        (None, Some(Overlap::new(FLOOR, 0.25)), Some(Overlap::new(FLOOR, 0.25)))
+    );
     let velocity = |time| container.surface(FLOOR, DVec2::ZERO, time).velocity;
     assert_eq!([0.125, 0.375].map(velocity), [DVec2::new(0.0, 2.0), DVec2::new(0.0, -2.0)]);
     let meeting = Flight::new(0.0, DVec2::new(5.0, 1.0), DVec2::new(0.0, -2.0), DVec2::ZERO, RADIUS);

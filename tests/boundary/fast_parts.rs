@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
+use granular_edmd::boundary::{Boundary, Container, Part, Probe, Vessel};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Event, Limits, RunEnd, RunError};
@@ -101,7 +101,9 @@ fn checked_run(mut run: Simulation<Elastic, Vessel>, end: f64, amplitude: f64, d
     let mut vessel = run.boundary().clone();
     vessel.set_time_origin(0.0);
     let depth = |disk: &Disk, time: f64, more: f64| {
-        vessel.overlap(disk.position(), disk.radius() + more, time).map_or(0.0, |(_, depth)| depth)
+        vessel
+            .overlap(&Probe::new(disk.position(), disk.radius() + more, time))
+            .map_or(0.0, |overlap| overlap.depth)
     };
     let energy = |disk: &Disk| 0.5 * disk.mass() * disk.velocity().length_squared();
     let mut before = run.disks();

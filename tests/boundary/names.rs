@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch};
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch,
+};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BuildError;
@@ -34,8 +36,8 @@ impl Boundary for Named {
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
         self.0.surface(wall, position, time)
     }
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        self.0.overlap(position, radius, time)
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        self.0.overlap(probe)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Round obstacles inside another boundary.
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall, laws};
+use granular_edmd::boundary::{Boundary, Container, Obstacles, Overlap, Probe, Wall, laws};
 use granular_edmd::collision::{Contact, Elastic, Impulse, from_fn};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::BiParabolic;
@@ -41,7 +41,9 @@ fn a_gas_flows_around_obstacles() {
     for time in 1..=200 {
         run.run_until(f64::from(time), &mut ()).unwrap();
         for disk in run.disks() {
-            let depth = board().overlap(disk.position(), disk.radius(), 0.0).map_or(0.0, |(_, depth)| depth);
+            let depth = board()
+                .overlap(&Probe::new(disk.position(), disk.radius(), 0.0))
+                .map_or(0.0, |overlap| overlap.depth);
             assert!(depth < 1e-10, "{disk:?} is in an obstacle by {depth}");
         }
     }
@@ -82,7 +84,7 @@ fn obstacles_have_names_kinds_and_a_fingerprint() {
     assert_eq!((board.wall_count(), board.wall_name(3)), (4, "obstacle 0".into()));
     assert_eq!((board.wall_name(0), board.wall_name(9)), ("floor".into(), "wall 9".into()));
     assert_eq!(board.surface(3, DVec2::new(5.0, 4.0), 0.0).kind, Kind::new(7));
-    assert_eq!(board.overlap(DVec2::new(5.0, 3.0), 0.5, 0.0), Some((3, 0.5)));
+    assert_eq!(board.overlap(&Probe::new(DVec2::new(5.0, 3.0), 0.5, 0.0)), Some(Overlap::new(3, 0.5)));
     assert_eq!((board.boundary().width(), board.obstacles().len()), (10.0, 1));
     let other = Obstacles::new(container(), [peg(5.0, 2.0, 1.5)]);
     assert_ne!(board.fingerprint(), other.fingerprint());

@@ -1,6 +1,6 @@
 //! Parts beyond the sides of a periodic container: all their images count.
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, VesselError, laws};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Vessel, VesselError, laws};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BuildError;
@@ -56,8 +56,9 @@ fn parts_of_several_periods_are_whole() {
         let (here, there) = (vessel(0.0), vessel(-70.0));
         for k in 0..4000 {
             let place = point(f64::from(k % 40) * 0.25, f64::from(k / 40) * 0.4);
-            let depths =
-                [&here, &there].map(|vessel| vessel.overlap(place, 0.5, 1.3).map_or(0.0, |(_, d)| d));
+            let depths = [&here, &there].map(|vessel| {
+                vessel.overlap(&Probe::new(place, 0.5, 1.3)).map_or(0.0, |overlap| overlap.depth)
+            });
             assert!((depths[0] - depths[1]).abs() < 1e-12, "{number} at {place}: {depths:?}");
         }
     }

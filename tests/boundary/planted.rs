@@ -2,7 +2,9 @@
 
 use granular_edmd::Flight;
 use granular_edmd::boundary::laws::{Violation, check};
-use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, Wall};
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch, Wall,
+};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Sinusoidal;
 
@@ -100,7 +102,8 @@ impl Boundary for Spoilt {
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let touch = self.container.first_touch(flight, until).touch();
         let start = flight.time();
-        let is_at_wall = self.container.overlap(flight.position(start), 1.000_001 * flight.radius(), start);
+        let is_at_wall =
+            self.container.overlap(&Probe::new(flight.position(start), 1.000_001 * flight.radius(), start));
         if self.fault == Fault::StandsStill {
             return FirstTouch::NotBefore(start);
         }
@@ -115,7 +118,7 @@ impl Boundary for Spoilt {
             Fault::TouchNaN => Some(Touch::new(f64::NAN, 0)),
             Fault::WallTooLarge => touch.map(|touch| Touch::new(touch.time, 4 + touch.wall)),
             Fault::TouchWhileLeaving => {
-                is_at_wall.map(|(wall, _)| Touch::new(start, wall)).filter(|_| start <= until).or(touch)
+                is_at_wall.map(|overlap| Touch::new(start, overlap.with)).filter(|_| start <= until).or(touch)
             }
             Fault::MissesWhatItTouches => touch.filter(|touch| touch.time > start + 1e-6),
             _ => touch,
@@ -135,13 +138,13 @@ impl Boundary for Spoilt {
         Surface::new(normal, velocity).with_response(response)
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         match self.fault {
-            Fault::OpenHole if is_over_hole(position) => {
-                self.container.overlap(position, radius, time).filter(|&(wall, _)| wall != 0)
+            Fault::OpenHole if is_over_hole(probe.position()) => {
+                self.container.overlap(probe).filter(|overlap| overlap.with != 0)
             }
-            Fault::Full => Some((0, 1.0)),
-            _ => self.container.overlap(position, radius, time),
+            Fault::Full => Some(Overlap::new(0, 1.0)),
+            _ => self.container.overlap(probe),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, VesselError, Wall, laws};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Vessel, VesselError, Wall, laws};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion};
@@ -103,7 +103,7 @@ fn vessels_that_move_keep_the_contract() {
 fn a_motion_counts_from_its_start() {
     const START: f64 = 12_345.678_9;
     let place = DVec2::new(3.2, 5.1);
-    let depth = |vessel: &Vessel, time: f64| vessel.overlap(place, 0.9, time);
+    let depth = |vessel: &Vessel, time: f64| vessel.overlap(&Probe::new(place, 0.9, time));
     for part in [
         mixed().with_rotation(DVec2::new(6.0, 6.0), 0.7).unwrap(),
         mixed().with_motion(DVec2::ONE, Sinusoidal::new(0.4, 2.0).unwrap()).unwrap(),
@@ -118,8 +118,9 @@ fn a_motion_counts_from_its_start() {
             vessel.replace("part", late.clone()).unwrap();
             for wait in [0.0, 0.3, 5.0, 20.0] {
                 let (now, then) = (START - origin + wait, depth(&early, wait));
-                assert_eq!(depth(&set, now).map(|touch| touch.0), then.map(|touch| touch.0));
-                let off = depth(&set, now).map_or(0.0, |touch| touch.1) - then.map_or(0.0, |touch| touch.1);
+                assert_eq!(depth(&set, now).map(|overlap| overlap.with), then.map(|overlap| overlap.with));
+                let off = depth(&set, now).map_or(0.0, |overlap| overlap.depth)
+                    - then.map_or(0.0, |overlap| overlap.depth);
                 assert!(off.abs() < 1e-11, "{origin} {wait}: {off:e}");
                 assert_eq!(depth(&vessel, now), depth(&set, now));
             }
@@ -156,7 +157,9 @@ fn outlines_lie_on_the_parts() {
                     // Inside the room, no other wall is nearer.
                     let inside =
                         place.cmpgt(DVec2::splat(1e-3)).all() && place.cmplt(DVec2::splat(11.999)).all();
-                    let depth = vessel.overlap(*place, 1e-3, time - origin).map_or(0.0, |(_, depth)| depth);
+                    let depth = vessel
+                        .overlap(&Probe::new(*place, 1e-3, time - origin))
+                        .map_or(0.0, |overlap| overlap.depth);
                     assert!(!inside || (depth - 1e-3).abs() < 1e-10, "{place} at {time}: {depth}");
                 }
             }
@@ -214,8 +217,8 @@ fn a_gas_stays_in_its_vessel() {
             .unwrap();
         run.run_until(200.0, &mut ()).unwrap();
         for disk in run.disks() {
-            let overlap = vessel.overlap(disk.position(), disk.radius(), 0.0);
-            assert!(overlap.is_none_or(|(_, depth)| depth < 1e-10), "{disk:?} {overlap:?}");
+            let overlap = vessel.overlap(&Probe::new(disk.position(), disk.radius(), 0.0));
+            assert!(overlap.is_none_or(|overlap| overlap.depth < 1e-10), "{disk:?} {overlap:?}");
         }
         assert!((energy(&run.disks()) / energy(&disks) - 1.0).abs() < 1e-9);
         assert!(run.counters().wall_collisions > 500, "{:?}", run.counters());
@@ -315,7 +318,7 @@ fn numbers_of_every_kind_are_refused_or_taken() {
             let answer = vessel.first_touch(&flight, 10.0);
             assert!(answer.time() >= 0.0 && answer.time() <= 10.0);
             assert!(answer.touch().is_none_or(|touch| touch.wall < vessel.wall_count()));
-            let depth = vessel.overlap(place, 0.4, 0.0).map_or(0.0, |(_, depth)| depth);
+            let depth = vessel.overlap(&Probe::new(place, 0.4, 0.0)).map_or(0.0, |overlap| overlap.depth);
             assert!(!depth.is_nan());
             taken += 1;
         }
@@ -338,7 +341,9 @@ fn a_box_that_is_shaken_moves_as_one() {
             let velocity = container.surface(wall, DVec2::ONE, time).velocity;
             assert!((velocity.x - shaken.velocity).abs() < 1e-12, "{wall} at {time}: {velocity}");
         }
-        let depth = |x: f64| container.overlap(DVec2::new(x, 4.0), 1.0, time).map_or(0.0, |(_, depth)| depth);
+        let depth = |x: f64| {
+            container.overlap(&Probe::new(DVec2::new(x, 4.0), 1.0, time)).map_or(0.0, |overlap| overlap.depth)
+        };
         assert!((depth(0.0) - (1.0 + shaken.displacement)).abs() < 1e-12);
         assert!((depth(12.0) - (1.0 - shaken.displacement)).abs() < 1e-12);
         assert_eq!(container.surface(0, DVec2::ONE, time).velocity.y, floor.state(time).velocity);

@@ -1,7 +1,7 @@
 //! Zero, one and two of everything, and extreme numbers where they are not checked by name. Each gives an
 //! answer or an error, at once.
 
-use granular_edmd::boundary::{Boundary, Container, Region, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Region, Wall};
 use granular_edmd::collision::{Elastic, Encounter, Frictional, collide};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{
@@ -77,7 +77,8 @@ fn disks_of_any_size_find_their_places_or_an_error_at_once() {
                 let random = initial::random(&container, count, size, 10.0, 1);
                 for disks in [lattice, random].into_iter().flatten() {
                     assert_eq!(disks.len(), count);
-                    let overlap = |disk: &Disk| container.overlap(disk.position(), disk.radius(), 0.0);
+                    let overlap =
+                        |disk: &Disk| container.overlap(&Probe::new(disk.position(), disk.radius(), 0.0));
                     assert!(disks.iter().all(|disk| overlap(disk).is_none()), "{size:e}");
                 }
             }

@@ -1,7 +1,7 @@
 //! The invariants that hold after every event, seen from outside.
 
 use granular_edmd::Disk;
-use granular_edmd::boundary::Boundary;
+use granular_edmd::boundary::{Boundary, Probe};
 use granular_edmd::collision::laws;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Partner};
@@ -53,8 +53,8 @@ pub(crate) fn check_state(run: &Run, farthest: f64) -> Verdict {
         let inside = (domain.left - slack..=domain.right + slack).contains(&position.x)
             && (domain.bottom - slack..=domain.top + slack).contains(&position.y);
         prop_assert!(inside, "disk {index} escaped to {position} from {domain:?}");
-        let wall = boundary.overlap(position, disk.radius(), 0.0);
-        prop_assert!(wall.is_none_or(|(_, depth)| depth < slack), "disk {index} is in a wall: {wall:?}");
+        let wall = boundary.overlap(&Probe::new(position, disk.radius(), 0.0));
+        prop_assert!(wall.is_none_or(|overlap| overlap.depth < slack), "disk {index} is in a wall: {wall:?}");
         for (other, second) in disks[..index].iter().enumerate() {
             let distance = domain.separation(position, second.position()).length();
             let overlap = disk.radius() + second.radius() - distance;

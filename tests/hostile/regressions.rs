@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision};
@@ -66,7 +66,9 @@ fn a_disk_at_rest_on_a_moving_wall_sinks_by_less_than_the_rounding_of_its_bounce
         while run.counters().wall_collisions < 100_000 && run.step_until(run.time() + 1.0, &mut ()).is_ok() {}
         let mut walls = run.boundary().clone();
         walls.set_time_origin(run.time());
-        let depth = walls.overlap(run.disks()[0].position(), 0.5, 0.0).map_or(0.0, |(_, depth)| depth);
+        let depth = walls
+            .overlap(&Probe::new(run.disks()[0].position(), 0.5, 0.0))
+            .map_or(0.0, |overlap| overlap.depth);
         assert!(depth < 1e5 * 8.0 * f64::EPSILON, "{depth:e}");
     }
 }

@@ -28,7 +28,7 @@ fn texts() -> Vec<(&'static str, String, Read)> {
     let disks = disks();
     let state = with_snapshot(&disks, State::of);
     let (mut xyz, mut csv, mut lammps) = (Vec::new(), Vec::new(), Vec::new());
-    with_snapshot(&disks, |snapshot| ExtendedXyz.write_frame(&Frame::new(0, *snapshot), &mut xyz)).unwrap();
+    with_snapshot(&disks, |snapshot| ExtendedXyz.write_frame(&Frame::new(0, snapshot), &mut xyz)).unwrap();
     state.write_csv(&mut csv).unwrap();
     state.write_lammps_data(&mut lammps).unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();

@@ -1,7 +1,7 @@
 //! Random vessels: polygons that are anything but regular, and arcs, pegs and thin walls, at rest and in all
 //! motions. They keep the contract, and nothing gets out.
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, VesselError, laws};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Vessel, VesselError, laws};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, stop_when};
@@ -154,7 +154,7 @@ fn nothing_gets_out(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCaseE
     for time in 1..=20 {
         let end = run.run_until(f64::from(time), &mut squeezed).map_err(|error| fail(&error))?;
         for disk in run.disks() {
-            let overlap = vessel.overlap(disk.position(), 0.0, run.time());
+            let overlap = vessel.overlap(&Probe::new(disk.position(), 0.0, run.time()));
             prop_assert!(overlap.is_none(), "{:?} at {} is out: {:?}", disk, time, overlap);
         }
         prop_assert!(run.counters().max_wall_overlap < 1e-9, "{:?}", run.counters());

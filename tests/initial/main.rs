@@ -5,7 +5,7 @@ mod packed;
 mod radii;
 mod rows;
 
-use granular_edmd::boundary::Boundary;
+use granular_edmd::boundary::{Boundary, Probe};
 use granular_edmd::glam::DVec2;
 use granular_edmd::{Disk, Simulation, collision::Elastic};
 
@@ -18,7 +18,7 @@ fn disks(radii: impl IntoIterator<Item = f64>) -> Vec<Disk> {
 fn assert_apart<B: Boundary>(boundary: B, disks: &[Disk]) {
     let domain = boundary.domain();
     for (index, disk) in disks.iter().enumerate() {
-        assert_eq!(boundary.overlap(disk.position(), disk.radius(), 0.0), None, "{disk:?}");
+        assert_eq!(boundary.overlap(&Probe::new(disk.position(), disk.radius(), 0.0)), None, "{disk:?}");
         for other in &disks[..index] {
             let distance = domain.separation(disk.position(), other.position()).length();
             assert!(distance > disk.radius() + other.radius(), "{disk:?} overlaps {other:?}");

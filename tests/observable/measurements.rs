@@ -1,12 +1,12 @@
 //! Measurements as data: written halfway and read back, they end with the bits of a run without interruption.
 
-use granular_edmd::boundary::{Boundary, Container, Region, Wall};
+use granular_edmd::boundary::{Container, Region, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
-    Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observer, OrderParameters, PairCorrelation,
-    SampleTimes, Sampled, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
+    Grid, HeightProfile, MeanSquaredDisplacement, Observer, OrderParameters, PairCorrelation, SampleTimes,
+    Sampled, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
     VelocityDistribution, WallStress,
 };
 use granular_edmd::simulation::Checkpoint;
@@ -93,7 +93,7 @@ fn measured(
 ) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let mut run = simulation()?;
     let mut watchers = watchers()?;
-    watchers.on_start(&Moment::new(0.0, run.len(), 4, run.boundary().domain(), run.gravity()));
+    watchers.on_start(&run.snapshot());
     run.run_until(HALF, &mut watchers)?;
     let mut watchers = through(watchers)?;
     let mut run = Simulation::resume(&run.checkpoint(), rule()?, container()?).build()?;
@@ -112,7 +112,7 @@ fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
     // ran.
     let mut run = simulation()?;
     let mut uncut = watchers()?;
-    uncut.on_start(&Moment::new(0.0, run.len(), 4, run.boundary().domain(), run.gravity()));
+    uncut.on_start(&run.snapshot());
     run.run_until(END, &mut uncut)?;
     assert_eq!(postcard::to_stdvec(&uncut)?, whole);
     Ok(())

@@ -4,9 +4,8 @@ use granular_edmd::boundary::{Boundary, Container, Region};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Accumulator, CollisionHistograms, MeanSquaredDisplacement, Moment, Observer, PairCorrelation,
-    SampleTimes, Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress,
-    from_fn,
+    Accumulator, CollisionHistograms, MeanSquaredDisplacement, Observer, PairCorrelation, SampleTimes,
+    Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress, from_fn,
 };
 use granular_edmd::statistics::Estimate;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
@@ -83,7 +82,7 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
     let said = reason(Container::closed(20.0, 12.0)?, &mut pairs);
     assert!(said.contains("or have a region, but is 7"), "{said}");
     assert!(reason(Container::open(20.0)?, &mut pairs).contains("or have a region, but is 7"));
-    let moment = Moment::new(0.0, 0, 5, Container::periodic(20.0, 20.0)?.domain(), 0.0);
+    let moment = Snapshot::new(0.0, &[], Container::periodic(20.0, 20.0)?.domain(), 0.0).with_wall_count(5);
     let said = PairCorrelation::new(1.0, 3)?.check(&moment).unwrap_err().to_string();
     assert!(said.contains("number of walls must be at most 4, or the correlation within"), "{said}");
     let large = Region::new(DVec2::new(-1.0, 0.0), DVec2::new(5.0, 5.0));

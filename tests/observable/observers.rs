@@ -9,7 +9,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::laws::{self, Violation};
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange,
-    EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observable, Observer,
+    EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Observable, Observer,
     OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled, Series, Snapshot, Stress,
     TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, from_fn, on_collision, on_sample,
     stop_when, stop_when_sampled,
@@ -22,8 +22,8 @@ fn domain() -> Domain {
     Container::closed(10.0, 10.0).unwrap().domain()
 }
 
-fn moment(time: f64) -> Moment {
-    Moment::new(time, 0, 4, domain(), 1.0)
+fn moment(time: f64) -> Snapshot<'static> {
+    Snapshot::new(time, &[], domain(), 1.0).with_wall_count(4)
 }
 
 fn snapshot(time: f64) -> Snapshot<'static> {
@@ -139,7 +139,7 @@ struct Tally {
 }
 
 impl Observer for Tally {
-    fn on_start(&mut self, _: &Moment) {
+    fn on_start(&mut self, _: &Snapshot<'_>) {
         self.told[0] += 1;
     }
     fn on_collision(&mut self, _: &Collision) {
@@ -151,7 +151,7 @@ impl Observer for Tally {
     fn on_sample(&mut self, _: &Snapshot<'_>) {
         self.told[2] += 1;
     }
-    fn on_end(&mut self, _: &Moment) {
+    fn on_end(&mut self, _: &Snapshot<'_>) {
         self.told[3] += 1;
     }
     fn verdict(&mut self) -> Verdict {
@@ -286,9 +286,9 @@ fn faulty<F: Fn(f64) -> f64>(after_sample: F) -> Faulty<F> {
 }
 
 impl<F: Fn(f64) -> f64> Observer for Faulty<F> {
-    fn on_start(&mut self, moment: &Moment) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
         if self.started {
-            self.next = moment.time() + 0.5;
+            self.next = start.time() + 0.5;
         }
     }
     fn on_collision(&mut self, _: &Collision) {

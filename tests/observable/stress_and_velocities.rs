@@ -4,9 +4,9 @@ use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Accumulator, Arrivals, BetweenKinds, Collision, CollisionHistograms, Grid, Moment, Observable, Observer,
-    OfKind, PairCorrelation, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures,
-    TemperaturesAboutFlow, VelocityDistribution, WallStress,
+    Accumulator, Arrivals, BetweenKinds, Collision, CollisionHistograms, Grid, Observable, Observer, OfKind,
+    PairCorrelation, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures, TemperaturesAboutFlow,
+    VelocityDistribution, WallStress,
 };
 use granular_edmd::statistics::Histogram;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
@@ -25,7 +25,7 @@ fn a_region_gets_its_share_of_a_collision() -> Outcome {
     let domain = BOX.with_periodic_sides();
     let region = Region::new(DVec2::ZERO, DVec2::new(2.0, 10.0));
     let mut stress = Stress::new(times()?).within(region)?;
-    stress.on_start(&Moment::new(0.0, 2, 2, domain, 0.0));
+    stress.on_start(&Snapshot::new(0.0, &[], domain, 0.0).with_wall_count(2));
     let contact = Contact::new(2.0, 0.5, 0.5, 0.5 / 3.0);
     let at = |x: f64| {
         let impulse = Impulse::new(3.0, 1.0);
@@ -103,9 +103,9 @@ fn an_interval_that_is_cleared_in_its_middle_does_not_count() -> Outcome {
 fn an_interval_of_two_domains_does_not_count() -> Outcome {
     let mut stress = Stress::new(times()?);
     let other = Container::periodic(5.0, 3.0)?.domain();
-    stress.on_start(&Moment::new(0.0, 0, 4, BOX, 0.0));
-    stress.on_end(&Moment::new(0.5, 0, 4, BOX, 0.0));
-    stress.on_start(&Moment::new(0.5, 0, 4, other, 0.0));
+    stress.on_start(&Snapshot::new(0.0, &[], BOX, 0.0).with_wall_count(4));
+    stress.on_end(&Snapshot::new(0.5, &[], BOX, 0.0).with_wall_count(4));
+    stress.on_start(&Snapshot::new(0.5, &[], other, 0.0).with_wall_count(4));
     stress.on_sample(&Snapshot::new(1.0, &[], other, 0.0));
     assert_eq!(stress.samples(), 0);
     stress.on_sample(&Snapshot::new(2.0, &[], other, 0.0));

@@ -2,7 +2,7 @@
 //! escapes.
 
 use granular_edmd::Simulation;
-use granular_edmd::boundary::{Boundary, Wall};
+use granular_edmd::boundary::{Boundary, Probe, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Partner;
@@ -47,11 +47,11 @@ proptest! {
         let times = SampleTimes::every(0.05).unwrap().starting_at(setup.start).unwrap();
         let mut watch = on_sample(times, |s: &Snapshot<'_>| {
             for (i, disk) in s.disks().iter().enumerate() {
-                let wall = boundary.overlap(disk.position(), disk.radius(), s.time() - setup.start);
+                let wall = boundary.overlap(&Probe::new(disk.position(), disk.radius(), s.time() - setup.start));
                 let others = s.disks()[..i].iter().map(|other| {
                     disk.radius() + other.radius() - domain.separation(disk.position(), other.position()).length()
                 });
-                let depth = others.fold(wall.map_or(0.0, |(_, depth)| depth), f64::max);
+                let depth = others.fold(wall.map_or(0.0, |overlap| overlap.depth), f64::max);
                 // Late times are known to some 1e-9 only, and so is where the base is.
                 if depth > if setup.start > 1e6 { 1e-8 } else { 1e-9 } {
                     failure = Some((s.time(), i, depth));

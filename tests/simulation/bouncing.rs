@@ -1,6 +1,6 @@
 //! A ball on a plate: closed forms, the end of Zeno's bounces, and late times.
 
-use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Energies, on_collision};
@@ -186,7 +186,7 @@ fn a_lossy_ball_does_not_sink_into_a_floor_of_varying_acceleration() {
         assert!(matches!(error, RunError::Stalled { disk: 0, .. }), "{restitution}: {error}");
         let mut floor = simulation.boundary().clone();
         floor.set_time_origin(simulation.time());
-        let overlap = floor.overlap(simulation.disks()[0].position(), 0.5, 0.0);
-        assert!(overlap.is_none_or(|(_, depth)| depth < 1e-9), "{restitution}: {overlap:?}");
+        let overlap = floor.overlap(&Probe::new(simulation.disks()[0].position(), 0.5, 0.0));
+        assert!(overlap.is_none_or(|overlap| overlap.depth < 1e-9), "{restitution}: {overlap:?}");
     }
 }

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Thermal, Wall};
 use granular_edmd::collision::{Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Observer, Snapshot};
@@ -175,7 +175,9 @@ fn a_kick_late_in_a_long_epoch_moves_no_disk() {
                     Err(error) => panic!("{slow:e} {temperature:e}: {error}"),
                 }
                 for disk in run.disks() {
-                    let overlap = walls.overlap(disk.position(), 0.5, 0.0).map_or(0.0, |overlap| overlap.1);
+                    let overlap = walls
+                        .overlap(&Probe::new(disk.position(), 0.5, 0.0))
+                        .map_or(0.0, |overlap| overlap.depth);
                     assert!(overlap < 1e-12, "{slow:e} {temperature:e} {seed}: {overlap:e}");
                 }
             }

@@ -5,10 +5,12 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
-use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch};
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch,
+};
 use granular_edmd::collision::{CollisionRule, Contact, Elastic, Frictional, Impulse};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{Collision, Moment, Observer, Partner, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, Partner, Snapshot, Verdict};
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BoundaryFault, BuildError, RunError};
 use granular_edmd::{Disk, Flight, Simulation, initial};
@@ -28,8 +30,8 @@ fn assert_whole<R: CollisionRule, B: Boundary, S: EventScheduler>(run: &Simulati
     let walls = walls();
     for disk in run.disks() {
         assert!(disk.position().is_finite() && disk.velocity().is_finite() && disk.angle().is_finite());
-        let overlap = walls.overlap(disk.position(), disk.radius(), 0.0);
-        assert!(overlap.is_none_or(|(_, depth)| depth < 1e-9), "{overlap:?} at {}", run.time());
+        let overlap = walls.overlap(&Probe::new(disk.position(), disk.radius(), 0.0));
+        assert!(overlap.is_none_or(|overlap| overlap.depth < 1e-9), "{overlap:?} at {}", run.time());
     }
     #[cfg(feature = "serde")]
     {
@@ -100,10 +102,10 @@ impl Boundary for Liar {
             _ => surface,
         }
     }
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         match self.lie {
-            Lie::Depth if self.lies() => Some((2, f64::NAN)),
-            _ => self.honest.overlap(position, radius, time),
+            Lie::Depth if self.lies() => Some(Overlap::new(2, f64::NAN)),
+            _ => self.honest.overlap(probe),
         }
     }
 }
@@ -226,8 +228,8 @@ fn too_many_walls_are_refused() {
         fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
             self.0.surface(self.1 - 1 - wall, position, time)
         }
-        fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-            self.0.overlap(position, radius, time)
+        fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+            self.0.overlap(probe)
         }
     }
     let build = |count| Simulation::builder(Elastic, Many(walls(), count)).disks(disks()).build();
@@ -381,7 +383,7 @@ impl Failing {
 }
 
 impl Observer for Failing {
-    fn on_start(&mut self, _: &Moment) {
+    fn on_start(&mut self, _: &Snapshot<'_>) {
         self.starts += 1;
         self.reach(Stage::Start);
     }
@@ -396,7 +398,7 @@ impl Observer for Failing {
         self.sampled = true;
         self.reach(Stage::Sample);
     }
-    fn on_end(&mut self, _: &Moment) {
+    fn on_end(&mut self, _: &Snapshot<'_>) {
         self.ends += 1;
         self.reach(Stage::End);
     }
@@ -585,9 +587,9 @@ impl Boundary for Drum {
         let normal = -position.normalize_or(DVec2::Y);
         Surface::new(normal, normal.perp() * self.speed)
     }
-    fn overlap(&self, position: DVec2, radius: f64, _: f64) -> Option<(usize, f64)> {
-        let depth = position.length() + radius - self.radius;
-        (depth > 0.0).then_some((0, depth))
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        let depth = probe.position().length() + probe.radius() - self.radius;
+        (depth > 0.0).then_some(Overlap::new(0, depth))
     }
 }
 

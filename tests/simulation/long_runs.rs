@@ -4,7 +4,7 @@
 //! COLLISIONS=10000000 cargo test --release --test simulation -- --ignored --nocapture billion_collisions
 //! ```
 
-use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse, from_fn};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Energies;
@@ -100,8 +100,12 @@ fn disks_that_a_collision_makes_fast_keep_their_digits() {
     while simulation.counters().wall_collisions < 1000 {
         simulation.step_until(simulation.time() + 1.0, &mut ()).unwrap();
         for disk in simulation.disks() {
-            let overlap = walls.overlap(disk.position(), 0.5, simulation.time());
-            assert!(overlap.is_none_or(|(_, depth)| depth < 1e-12), "{overlap:?} at {}", simulation.time());
+            let overlap = walls.overlap(&Probe::new(disk.position(), 0.5, simulation.time()));
+            assert!(
+                overlap.is_none_or(|overlap| overlap.depth < 1e-12),
+                "{overlap:?} at {}",
+                simulation.time()
+            );
         }
     }
 }

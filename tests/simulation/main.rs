@@ -24,6 +24,7 @@ mod oracle;
 mod order;
 mod parting;
 mod periodic;
+mod pistons;
 mod population;
 mod replays;
 mod rest;

@@ -2,7 +2,8 @@
 //! that is wrong does not end as if it were right.
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Part, Region, Surface, Touch, Vessel, Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Vessel,
+    Wall,
 };
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
@@ -71,8 +72,8 @@ impl Boundary for Faulty {
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
         self.honest.surface(wall, position, time)
     }
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        self.honest.overlap(position, radius, time).filter(|_| !matches!(self.fault, Fault::Blind))
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        self.honest.overlap(probe).filter(|_| !matches!(self.fault, Fault::Blind))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Periodic boxes, with periodic sides, ends or both, and unwrapped positions.
 
 use granular_edmd::boundary::{
-    Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, Wall, WallError, laws,
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch, Wall, WallError, laws,
 };
 use granular_edmd::collision::{Elastic, Frictional};
 use granular_edmd::glam::DVec2;
@@ -177,7 +177,7 @@ impl Boundary for Endless {
     fn surface(&self, _: usize, _: DVec2, _: f64) -> Surface<'_> {
         Surface::new(DVec2::Y, DVec2::ZERO)
     }
-    fn overlap(&self, _: DVec2, _: f64, _: f64) -> Option<(usize, f64)> {
+    fn overlap(&self, _: &Probe) -> Option<Overlap> {
         None
     }
 }

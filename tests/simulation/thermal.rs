@@ -1,7 +1,7 @@
 //! Thermal walls: disks that leave them have the moments of the flux from a gas behind them.
 
 use granular_edmd::Simulation;
-use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision};
@@ -103,7 +103,7 @@ fn a_disk_that_a_wall_makes_fast_keeps_its_digits() {
     let mut simulation = Simulation::builder(Elastic, walls.clone()).disks([disk]).build().unwrap();
     while simulation.counters().wall_collisions < 1000 {
         simulation.step_until(simulation.time() + 1.0, &mut ()).unwrap();
-        let overlap = walls.overlap(simulation.disks()[0].position(), 0.5, simulation.time());
-        assert!(overlap.is_none_or(|(_, depth)| depth < 1e-12), "{overlap:?} at {}", simulation.time());
+        let overlap = walls.overlap(&Probe::new(simulation.disks()[0].position(), 0.5, simulation.time()));
+        assert!(overlap.is_none_or(|overlap| overlap.depth < 1e-12), "{overlap:?} at {}", simulation.time());
     }
 }

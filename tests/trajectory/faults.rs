@@ -275,7 +275,7 @@ fn damage_does_no_harm() {
     let disks = &random_disks(3, &domain)[..5];
     let snapshot = Snapshot::new(0.5, disks, domain, 1.0);
     let mut files = [Vec::new(), Vec::new(), Vec::new()];
-    ExtendedXyz.write_frame(&Frame::new(0, snapshot), &mut files[0]).unwrap();
+    ExtendedXyz.write_frame(&Frame::new(0, &snapshot), &mut files[0]).unwrap();
     State::of(&snapshot).write_csv(&mut files[1]).unwrap();
     State::of(&snapshot).write_lammps_data(&mut files[2]).unwrap();
     let mut refused = 0;

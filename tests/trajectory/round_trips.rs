@@ -13,7 +13,7 @@ use crate::states::{assert_same_bits, for_each_snapshot, mixture};
 
 fn text(format: &dyn Format, snapshot: &Snapshot<'_>) -> Vec<u8> {
     let mut text = Vec::new();
-    format.write_frame(&Frame::new(0, *snapshot), &mut text).unwrap();
+    format.write_frame(&Frame::new(0, snapshot), &mut text).unwrap();
     text
 }
 

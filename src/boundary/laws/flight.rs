@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::trial::Trial;
 use super::violation::Violation;
 use crate::Flight;
-use crate::boundary::{Boundary, Response, Surface, Touch};
+use crate::boundary::{Boundary, Overlap, Response, Surface, Touch};
 
 /// Number of samples along a flight.
 const SAMPLES: u32 = 200;
@@ -138,7 +138,7 @@ fn check_way<B: Boundary + ?Sized>(
     for k in 0..=SAMPLES {
         let time = (flight.time() + (end - flight.time()) * f64::from(k) / f64::from(SAMPLES)).min(end);
         let place = flight.position(time);
-        if let Some((wall, depth)) = trial.depth(place, -rounding, time) {
+        if let Some(Overlap { with: wall, depth }) = trial.depth(place, -rounding, time) {
             let (found, flight) = (found.map(|touch| touch.time), *flight);
             return Err(Violation::LetThrough { wall, depth, time, found, flight });
         }
@@ -188,12 +188,13 @@ fn check_surface<B: Boundary + ?Sized>(
         return Err(Violation::Velocity { wall, velocity: surface.velocity, time });
     }
     let step = STEP * trial.radius;
-    let depth = |place: DVec2| trial.depth(place, 2.0 * step, time).map_or((wall, 0.0), |deepest| deepest);
+    let none = Overlap::new(wall, 0.0);
+    let depth = |place: DVec2| trial.depth(place, 2.0 * step, time).unwrap_or(none);
     let (here, inward, outward) = (depth(place), depth(place - step * normal), depth(place + step * normal));
     // In a corner, another wall may be the deepest one, before the step and after it.
-    let is_alone = here.0 == wall && outward.0 == wall;
-    let comes_out = (here.1 - outward.1 - step).abs() <= SLOPE * step;
-    let goes_in = inward.1 - here.1 >= (1.0 - SLOPE) * step;
+    let is_alone = here.with == wall && outward.with == wall;
+    let comes_out = (here.depth - outward.depth - step).abs() <= SLOPE * step;
+    let goes_in = inward.depth - here.depth >= (1.0 - SLOPE) * step;
     if goes_in && (comes_out || !is_alone) {
         Ok(())
     } else {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::violation::Violation;
 use crate::Flight;
-use crate::boundary::{Boundary, Domain, FirstTouch, Region, Touch};
+use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Touch};
 
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
@@ -75,8 +75,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     }
 
     /// Returns the wall that a disk with a radius larger by `more` overlaps at this place, and the depth.
-    pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<(usize, f64)> {
-        self.boundary.overlap(place, self.radius + more, time)
+    pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<Overlap> {
+        self.boundary.overlap(&Probe::new(place, self.radius + more, time))
     }
 
     /// Checks that the domain and the number of walls have not changed.

@@ -5,8 +5,10 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::{Vessel, Wall};
-use crate::boundary::{Boundary, Domain, FirstTouch, Region, Surface, Touch};
-use crate::{Fingerprint, Flight};
+use crate::boundary::{
+    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch,
+};
+use crate::{Fingerprint, Flight, ParameterError};
 
 /// Relative difference of radii below which a disk counts as large as a hollow.
 const TIGHT: f64 = 1e-9;
@@ -69,19 +71,39 @@ impl Boundary for Vessel {
         }
     }
 
-    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let Some(brick) = wall.checked_sub(self.container.wall_count()) else {
-            return self.container.place(wall, time);
+            return self.container.wall_point(wall, time);
         };
         let Wall { part, brick } = self.walls.get(brick)?;
         let placed = &self.parts[*part];
         Some(placed.part.travel().pose(placed.phase.after(time)).outward(brick.landmarks().next()?))
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        let parts = self.overlap_with_parts(position, radius, time);
-        let all = self.container.overlap(position, radius, time).into_iter().chain(parts);
-        all.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        let parts = self.overlap_with_parts(probe);
+        Overlap::deepest(self.container.overlap(probe).into_iter().chain(parts))
+    }
+
+    fn react(&mut self, impact: &Impact) -> Reaction {
+        // Parts have no mass.
+        if impact.wall() < self.container.wall_count() {
+            self.container.react(impact)
+        } else {
+            Reaction::None
+        }
+    }
+
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
+        self.container.may_meet(wall, region, radius, until)
+    }
+
+    fn state(&self) -> Vec<f64> {
+        self.container.state()
+    }
+
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
+        self.container.set_state(state)
     }
 
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {

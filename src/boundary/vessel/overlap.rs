@@ -8,12 +8,13 @@ use glam::DVec2;
 
 use super::index::{Entry, Index};
 use super::{Placed, Vessel};
-use crate::boundary::Boundary;
 use crate::boundary::part::Sighted;
+use crate::boundary::{Boundary, Overlap, Probe};
 
 impl Vessel {
     /// Returns the wall of a part into which a disk reaches deepest, and the depth.
-    pub(super) fn overlap_with_parts(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    pub(super) fn overlap_with_parts(&self, probe: &Probe) -> Option<Overlap> {
+        let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
         let filled = self.filled.get(self.index.cell(position)).into_iter().flatten();
         let whole = self.moving.iter().chain(filled);
         let whole = whole.filter_map(|&part| self.depth(part as usize, position, radius, time));
@@ -22,12 +23,12 @@ impl Vessel {
         let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
                 Some((wall, sighted)) if sighted.distance() <= radius => {
-                    Some((wall, radius - sighted.signed_distance()))
+                    Some(Overlap::new(wall, radius - sighted.signed_distance()))
                 }
                 _ => self.depth(entries[0].0, position, radius, time),
             }
         });
-        whole.chain(beside).max_by(|a, b| a.1.total_cmp(&b.1))
+        Overlap::deepest(whole.chain(beside))
     }
 
     /// Returns the bricks at rest in the cells around a disk, with the numbers of their parts.
@@ -51,15 +52,15 @@ impl Vessel {
     }
 
     /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
-    fn depth(&self, part: usize, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn depth(&self, part: usize, position: DVec2, radius: f64, time: f64) -> Option<Overlap> {
         let placed = &self.parts[part];
         let pose = placed.part.travel().pose(placed.phase.after(time));
         let (low, high) = placed.bounds;
         let depths = self.container.domain().images_of(low, high).filter_map(|image| {
             let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;
-            Some((placed.first + brick, radius - distance))
+            Some(Overlap::new(placed.first + brick, radius - distance))
         });
-        depths.max_by(|a, b| a.1.total_cmp(&b.1))
+        Overlap::deepest(depths)
     }
 
     /// Lists, for each cell, the parts at rest that fill it: they have no brick in the cell, and all of it is
@@ -85,9 +86,7 @@ impl Vessel {
         let Index { columns, .. } = self.index;
         let has_brick =
             |cell: usize| self.index.within(cell).any(|entry| self.walls[entry.wall as usize].part == number);
-        let is_behind = |cell: usize| {
-            self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some_and(|(_, depth)| depth > 0.0)
-        };
+        let is_behind = |cell: usize| self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some();
         // The answers so far, for cells without a brick of the part: true if the cell is behind the part.
         let mut known: Vec<Option<bool>> = vec![None; self.index.len()];
         for cell in self.cells_to_look_at(placed) {

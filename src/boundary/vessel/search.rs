@@ -79,6 +79,7 @@ impl Vessel {
         let (time, radius) = (flight.time(), if is_line { 0.0 } else { flight.radius() });
         let (place, velocity) = (flight.position(time), flight.velocity(time));
         Flight::new(time, place - entry.image, velocity, flight.acceleration(), radius)
+            .with_kind(flight.kind())
     }
 
     fn touch(&self, entry: Entry, time: f64) -> Touch {

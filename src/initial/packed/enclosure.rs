@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, FirstTouch, Region, Response, Surface, Touch};
+use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch};
 use crate::initial::cut;
 use crate::roots::first_descent;
 use crate::{Flight, ParameterError};
@@ -87,13 +87,12 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
         }
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let count = self.sides().count();
-        let depths = self.sides().map(|(normal, place)| radius + place - position.dot(normal)).enumerate();
-        let own = depths.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1));
-        own.or_else(|| {
-            self.boundary.overlap(position, radius, time).map(|(wall, depth)| (wall + count, depth))
-        })
+        let depth = |(normal, place)| probe.radius() + place - probe.position().dot(normal);
+        let own = self.sides().map(depth).enumerate().map(|(wall, depth)| Overlap::new(wall, depth));
+        let behind = |overlap: Overlap| Overlap::new(overlap.with + count, overlap.depth);
+        Overlap::deepest(own).or_else(|| self.boundary.overlap(probe).map(behind))
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::Enclosure;
 use crate::boundary::Squares;
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::{Boundary, Domain, Probe};
 use crate::collision::Elastic;
 use crate::initial::{PlacementError, placed_at_random, with_maxwellian_velocities};
 use crate::observable::{Collision, stop_when};
@@ -160,9 +160,10 @@ fn placed<B: Boundary + ?Sized>(
 
 /// Returns a radius, at most this one, with which a disk at this place overlaps no wall; 0 if there is none.
 fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
-    let Some((_, depth)) = room.overlap(place, radius, 0.0) else { return radius };
-    let free = radius - depth / SHARE;
-    if room.overlap(place, free, 0.0).is_none() { free } else { 0.0 }
+    let probe = Probe::new(place, radius, 0.0);
+    let Some(overlap) = room.overlap(&probe) else { return radius };
+    let free = radius - overlap.depth / SHARE;
+    if room.overlap(&probe.with_radius(free)).is_none() { free } else { 0.0 }
 }
 
 fn resized(disk: &Disk, radius: f64) -> Result<Disk, ParameterError> {

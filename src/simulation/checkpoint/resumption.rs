@@ -98,6 +98,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         run.make_room();
         // This call gives the boundary its origin and the scheduler its times.
         run.shift_epoch(0.0);
+        let state = run.boundary.set_state(&saved.walls);
+        state.map_err(|error| CheckpointError::Inconsistent(error.to_string()))?;
         Ok(run)
     }
 

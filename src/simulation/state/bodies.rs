@@ -12,6 +12,7 @@ use super::forecast::Forecast;
 use super::identities::Identities;
 use super::properties::Properties;
 use crate::collision::{Body, Material};
+use crate::observable::Moving;
 use crate::{Disk, Gravity};
 
 /// A straight trajectory in the free-fall frame. One row is one 32-byte load.
@@ -316,5 +317,15 @@ impl Bodies {
             particle.trajectory.position.x += 0.5 * pushed * offset;
         }
         self.gravity = gravity;
+    }
+}
+
+impl Moving for Bodies {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn copies(&self, offset: f64) -> Vec<Disk> {
+        self.disks(offset)
     }
 }

@@ -160,7 +160,7 @@ fn state_before<E: Experiment>(
 fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
     let mut contents = Vec::new();
     match path.map_or("csv", ending) {
-        "xyz" => ExtendedXyz.write_frame(&Frame::new(0, run.snapshot()), &mut contents)?,
+        "xyz" => ExtendedXyz.write_frame(&Frame::new(0, &run.snapshot()), &mut contents)?,
         "csv" => State::of(&run.snapshot()).write_csv(&mut contents)?,
         "data" => State::of(&run.snapshot()).write_lammps_data(&mut contents)?,
         _ => contents = run.checkpoint().to_bytes()?,

@@ -2,7 +2,7 @@
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
-use granular_edmd::observable::{Collision, Moment, Observer, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 use granular_edmd::simulation::{Limits, RunEnd, RunError, Simulation};
 
 use crate::{ExperimentError, SavedDriving};
@@ -34,19 +34,19 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     observer: &mut O,
     is_under_way: &mut bool,
 ) -> Result<RunEnd, RunError> {
-    let mut sliced = Sliced { observer, is_under_way: *is_under_way, last: None };
+    let mut sliced = Sliced { observer, is_under_way: *is_under_way };
     let driving = riders.driving.as_deref_mut();
     let ended = match &mut riders.companion {
         None => run_to(simulation, limits, driving, &mut sliced),
         Some(companion) => {
-            let mut other = Sliced { observer: companion, is_under_way: riders.is_under_way, last: None };
+            let mut other = Sliced { observer: companion, is_under_way: riders.is_under_way };
             // One more kind of event loop for all companions.
             let both: &mut dyn Observer = &mut (&mut sliced, &mut other);
             let ended = run_to(simulation, limits, driving, both);
-            other.end(ended, &mut riders.is_under_way, simulation.time())
+            other.end(ended, &mut riders.is_under_way, &simulation.snapshot())
         }
     };
-    sliced.end(ended, is_under_way, simulation.time())
+    sliced.end(ended, is_under_way, &simulation.snapshot())
 }
 
 fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
@@ -65,8 +65,6 @@ fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
 struct Sliced<'a, O> {
     observer: &'a mut O,
     is_under_way: bool,
-    /// The end of the slice.
-    last: Option<Moment>,
 }
 
 impl<O: Observer> Sliced<'_, O> {
@@ -75,28 +73,26 @@ impl<O: Observer> Sliced<'_, O> {
         self,
         ended: Result<RunEnd, RunError>,
         is_under_way: &mut bool,
-        time: f64,
+        moment: &Snapshot<'_>,
     ) -> Result<RunEnd, RunError> {
         *is_under_way = matches!(ended, Ok(RunEnd::WallClock));
         if *is_under_way {
             return ended;
         }
-        if let Some(moment) = self.last {
-            self.observer.on_end(&moment);
-        }
+        self.observer.on_end(moment);
         // A verdict to stop comes too late now. A failure must still be reported, as after any run.
         match self.observer.verdict().err().filter(|_| ended.is_ok()) {
-            Some(source) => Err(RunError::Observer { time, source }),
+            Some(source) => Err(RunError::Observer { time: moment.time(), source }),
             None => ended,
         }
     }
 }
 
 impl<O: Observer> Observer for Sliced<'_, O> {
-    fn on_start(&mut self, moment: &Moment) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
         // A driven run starts anew after each kick.
         if !std::mem::replace(&mut self.is_under_way, true) {
-            self.observer.on_start(moment);
+            self.observer.on_start(start);
         }
     }
 
@@ -112,10 +108,6 @@ impl<O: Observer> Observer for Sliced<'_, O> {
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.observer.on_sample(snapshot);
-    }
-
-    fn on_end(&mut self, moment: &Moment) {
-        self.last = Some(*moment);
     }
 
     #[inline]

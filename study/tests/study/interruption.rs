@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
-use granular_edmd::observable::{Collision, Moment, Observer, Snapshot};
+use granular_edmd::observable::{Collision, Observer, Snapshot};
 use granular_edmd::{Disk, Fingerprint, initial};
 use granular_edmd_study::{Column, Control, Experiment, ExperimentError, Plan, Progress, Protocol, Study};
 use serde::{Deserialize, Serialize};
@@ -81,7 +81,7 @@ struct Heard {
 }
 
 impl Observer for Heard {
-    fn on_start(&mut self, _: &Moment) {
+    fn on_start(&mut self, _: &Snapshot<'_>) {
         self.starts += 1;
     }
 
@@ -89,7 +89,7 @@ impl Observer for Heard {
         self.collisions += 1;
     }
 
-    fn on_end(&mut self, _: &Moment) {
+    fn on_end(&mut self, _: &Snapshot<'_>) {
         self.ends += 1;
     }
 }

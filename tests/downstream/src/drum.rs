@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Domain, FirstTouch, Region, Response, Surface, Touch, VesselError,
+    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, VesselError,
 };
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
@@ -68,9 +68,9 @@ impl Boundary for Drum {
         Surface::new(normal, velocity).with_response(response)
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
-        let depth = radius - self.wall.signed_distance(position);
-        (depth > 0.0).then_some((0, depth))
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        let depth = probe.radius() - self.wall.signed_distance(probe.position());
+        (depth > 0.0).then_some(Overlap::new(0, depth))
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

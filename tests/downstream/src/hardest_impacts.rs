@@ -1,6 +1,6 @@
 //! An observer.
 
-use granular_edmd::observable::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
+use granular_edmd::observable::{Collision, Observer, Partner, SampleTimes, Snapshot};
 
 /// The hardest impact on each wall within each interval of time.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,9 +18,9 @@ impl HardestImpacts {
 }
 
 impl Observer for HardestImpacts {
-    fn on_start(&mut self, moment: &Moment) {
-        self.times.start_at(moment.time());
-        self.present.resize(moment.wall_count(), 0.0);
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.times.start_at(start.time());
+        self.present.resize(start.wall_count(), 0.0);
     }
 
     fn on_collision(&mut self, collision: &Collision) {

@@ -1,0 +1,76 @@
+//! Blows of disks against walls, and the reactions of walls that have a mass.
+
+use glam::DVec2;
+
+/// The blow of a disk against a wall, as the wall receives it.
+///
+/// ```
+/// use granular_edmd::boundary::Impact;
+/// use granular_edmd::glam::DVec2;
+/// let impact = Impact::new(3, DVec2::new(0.0, 2.0), DVec2::new(4.0, 9.0), 0.5);
+/// assert_eq!((impact.wall(), impact.impulse().y, impact.couple()), (3, 2.0, 0.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    wall: usize,
+    impulse: DVec2,
+    couple: f64,
+    point: DVec2,
+    time: f64,
+}
+
+impl Impact {
+    /// Creates a blow that gives this impulse to a wall at a point, at this offset from the time origin.
+    #[inline]
+    pub const fn new(wall: usize, impulse: DVec2, point: DVec2, time: f64) -> Self {
+        Self { wall, impulse, couple: 0.0, point, time }
+    }
+
+    /// Returns the same blow with a couple (an angular impulse besides that of the impulse at its point).
+    #[must_use]
+    #[inline]
+    pub const fn with_couple(self, couple: f64) -> Self {
+        Self { couple, ..self }
+    }
+
+    /// Returns the index of the wall.
+    #[inline]
+    pub const fn wall(&self) -> usize {
+        self.wall
+    }
+
+    /// Returns the impulse on the wall.
+    #[inline]
+    pub const fn impulse(&self) -> DVec2 {
+        self.impulse
+    }
+
+    /// Returns the couple on the wall, counterclockwise.
+    #[inline]
+    pub const fn couple(&self) -> f64 {
+        self.couple
+    }
+
+    /// Returns the point at which the disk touches the wall.
+    #[inline]
+    pub const fn point(&self) -> DVec2 {
+        self.point
+    }
+
+    /// Returns the time, as an offset from the boundary's origin.
+    #[inline]
+    pub const fn time(&self) -> f64 {
+        self.time
+    }
+}
+
+/// The answer of a boundary to a blow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Reaction {
+    /// All walls move on as before.
+    #[default]
+    None,
+    /// The wall that was hit moves otherwise from now on.
+    Moved,
+}
