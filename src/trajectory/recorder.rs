@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use super::gsd::{HoomdSchema, Indexed};
+use super::media;
 use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
@@ -301,7 +302,7 @@ impl Observer for Recorder {
 
     fn on_end(&mut self, _: &Snapshot<'_>) {
         if self.failure.is_none() {
-            self.failure = self.store.file().sync().err();
+            self.failure = media::sync(self.store.file()).err();
         }
     }
 
