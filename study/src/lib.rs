@@ -73,8 +73,10 @@ mod provenance;
 mod reading;
 mod scalar;
 mod seed;
+mod store;
 mod tables;
 pub mod vibrated_box;
+mod whole;
 
 pub use errors::{Difference, ExperimentError, PlanError, StudyError};
 pub use execution::control::{Control, Progress, Summary};

@@ -151,13 +151,11 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
-    /// Number of values that the engine could not finish, in the ramps that this run has looked at: they
-    /// stalled or failed. They have fewer samples or none; [`Outcome::reason`](crate::Outcome::reason)
-    /// and the `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
-    /// [`Control::with_verification`].
+    /// Number of values that were not finished: they stalled, failed, or reached a limit. They have fewer
+    /// samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
-    /// Number of values, in the same ramps, whose runs have
-    /// [warnings](granular_edmd::simulation::Counters::warnings). The `log.jsonl` of their ramp says of what.
+    /// Number of values whose runs have [warnings](granular_edmd::simulation::Counters::warnings). The files
+    /// `logs/*.jsonl` of the study say of what.
     pub warned: usize,
     /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,

@@ -7,6 +7,8 @@ mod folders;
 mod growth;
 mod identity;
 mod interruption;
+#[path = "../support/logs.rs"]
+mod logs;
 #[path = "../support/mixture.rs"]
 mod mixture;
 mod own;
