@@ -196,9 +196,9 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         say(&format!("{} was damaged and has been done again", file.display()))?;
     }
     say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()))?;
-    let logs = out.join("ramps/*/log.jsonl");
+    let logs = out.join("logs/*.jsonl");
     for (count, told, of) in [
-        (summary.failed, "stalled or failed; status lists them,", "why"),
+        (summary.failed, "were not finished; status lists them,", "why"),
         (summary.warned, "have warnings;", "of what"),
     ] {
         if count > 0 {
@@ -224,7 +224,7 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         ("waiting", of(RampStatus::Waiting)),
     ];
     let failed = study.failed()?;
-    let (spent, left) = study.seconds(&all);
+    let (spent, left) = study.seconds()?;
     if json {
         let object = Object::default().with("ramps", ramps);
         let object =

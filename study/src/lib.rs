@@ -73,13 +73,16 @@ mod provenance;
 mod reading;
 mod scalar;
 mod seed;
+mod store;
 mod tables;
 pub mod vibrated_box;
+mod whole;
 
 pub use errors::{Difference, ExperimentError, PlanError, StudyError};
 pub use execution::control::{Control, Progress, Summary};
 pub use experiment::columns::{Column, Table};
 pub use experiment::record::{Outcome, Record};
+pub use experiment::riders::{Interval, SavedDriving, Start};
 pub use experiment::{Experiment, Run};
 pub use leg::Leg;
 pub use opening::Study;
