@@ -16,6 +16,7 @@
 //! | [`ContactDuration`] | an adaptor: contacts soon after others lose nothing | Luding and McNamara 1998 |
 //! | [`ElasticBelow`] | an adaptor: slow contacts lose nothing | a cutoff in many codes |
 //! | [`LeastRebound`] | an adaptor: surfaces never part too slowly, which can add energy | |
+//! | [`RollingFriction`] | an adaptor: a couple slows the relative spin | Iwashita and Oda 1998 |
 //! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
 //! | [`KnownRule`] | any of the above, as one type that files can hold | |
 //! | [`from_fn`] | yours, as a closure | |
@@ -60,6 +61,7 @@ mod inelasticity;
 mod known;
 pub mod laws;
 mod least_rebound;
+mod rolling_friction;
 mod rough;
 mod rules_by_kind;
 mod smooth;
@@ -78,6 +80,7 @@ pub use from_fn::{FromFn, from_fn};
 pub use impulse::{Impulse, Regime};
 pub use known::KnownRule;
 pub use least_rebound::LeastRebound;
+pub use rolling_friction::RollingFriction;
 pub use rough::Rough;
 pub use rules_by_kind::RulesByKind;
 pub use smooth::Smooth;

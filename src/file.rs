@@ -1,4 +1,21 @@
-//! Files: contents under a seal that shows damage, writes that leave a file whole or as it was, and locks.
+//! Files that are whole or absent, show damage, and are locked: what checkpoints, trajectories and studies
+//! are made of, for stores of other packages.
+//!
+//! ```
+//! use granular_edmd::file::{Damage, Seal, write_whole};
+//!
+//! const SEAL: Seal = Seal::new(*b"MY STORE", 1);
+//! # let path = std::env::temp_dir().join(format!("granular-edmd-file-{}", std::process::id()));
+//! // A reader never sees half of the file, even if this process is killed.
+//! write_whole(&path, &SEAL.seal(b"contents"))?;
+//! let mut bytes = std::fs::read(&path)?;
+//! assert_eq!(SEAL.open(&bytes), Ok(b"contents".as_slice()));
+//! // A byte that a broken disk has changed does not go unnoticed.
+//! bytes[50] ^= 1;
+//! assert_eq!(SEAL.open(&bytes), Err(Damage::Changed));
+//! # std::fs::remove_file(&path)?;
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
 mod locked;
 #[cfg(feature = "serde")]
@@ -6,8 +23,8 @@ mod seal;
 #[cfg(feature = "serde")]
 mod whole;
 
-pub(crate) use locked::Locked;
+pub use locked::Locked;
 #[cfg(feature = "serde")]
-pub(crate) use seal::{Broken, Seal};
+pub use seal::{Damage, Seal};
 #[cfg(feature = "serde")]
-pub(crate) use whole::{Draft, is_temporary, unique_name, write_unsynced, write_whole};
+pub use whole::{Draft, is_temporary, unique_name, write_unsynced, write_whole};

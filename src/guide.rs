@@ -1,8 +1,5 @@
 #![doc(alias("event-driven", "hard-sphere", "tutorial", "timestep"))]
-#![cfg_attr(feature = "serde", doc = "[`study`]: crate::study")]
 #![cfg_attr(feature = "serde", doc = "[`Checkpoint`]: crate::simulation::Checkpoint")]
-#![cfg_attr(not(feature = "serde"), doc = "[`sweep_it`]: crate#features")]
-#![cfg_attr(not(feature = "serde"), doc = "[`study`]: crate#features")]
 #![cfg_attr(not(feature = "serde"), doc = "[`Checkpoint`]: crate#features")]
 #![doc = include_str!("../docs/guide/index.md")]
 // Chapters are modules without items, so that the tests compile and run their code, and the search of the
@@ -28,11 +25,6 @@ pub mod fill_it {}
 #[doc = include_str!("../docs/guide/watch_it.md")]
 pub mod watch_it {}
 
-#[cfg(feature = "serde")]
-#[doc(alias("parameter scan", "hysteresis", "ensemble"))]
-#[doc = include_str!("../docs/guide/sweep_it.md")]
-pub mod sweep_it {}
-
 #[doc(alias("error bar", "convergence", "equilibration"))]
 #[doc = include_str!("../docs/guide/believe_it.md")]
 pub mod believe_it {}
@@ -56,11 +48,6 @@ pub mod when_it_stalls {}
 #[doc(alias("speed", "parallel"))]
 #[doc = include_str!("../docs/guide/when_it_is_slow.md")]
 pub mod when_it_is_slow {}
-
-#[doc(alias("lecture", "exercise", "course"))]
-#[doc = "[images/fig3.png]: data:image/png,#docs/reproduction/fig3_order_parameters.png"]
-#[doc = include_str!("../docs/guide/exercise_rolls.md")]
-pub mod exercise_rolls {}
 
 #[doc(alias("lecture", "exercise", "course"))]
 #[doc = "[images/exercise_erratum.png]: data:image/png,#docs/images/exercise_erratum.png"]

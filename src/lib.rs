@@ -39,11 +39,13 @@
 //!
 //! The [`guide`] leads from a question to a figure, with a chapter for each step.
 //!
+//! Many runs, over the values of parameters, on all cores and in many processes, are a study: the package
+//! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, also by the
+//! command `granular-edmd`.
+//!
 //! # Map
 //! | module | contents |
 //! |---|---|
-//! | [`study`] (feature `serde`) | studies of your own experiments: plans, ramps, sweeps, records |
-//! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`speed`] | reports of runs, standard states, comparisons of parts |
 //! | [`initial`] | initial states: lattices, random places, dense packings, radii |
@@ -55,14 +57,14 @@
 //! | [`boundary`], [`wall`] | the walls around the disks, and their motion |
 //! | [`collision`] | the outcome of a collision |
 //! | [`Disk`] | one grain |
+//! | [`file`](mod@file) | files that are whole or absent, for stores of other packages |
 //! | [`statistics`] | means, and errors of correlated samples |
 //!
 //! # Features
 //! | feature | additions |
 //! |---|---|
-//! | `serde` | parameters that serialize through their validating constructors, checkpoints, studies |
-//! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits as on one |
-//! | `cli` | the command line of studies: the binary `granular-edmd`, and `study::cli` for your own binary |
+//! | `serde` | parameters that serialize through their validating constructors, checkpoints |
+//! | `rayon` | Monte Carlo on all cores, with the same bits as on one |
 //! | `gzip` | trajectories in files that end in `.gz` |
 //! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
 
@@ -73,12 +75,11 @@
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
 compile_error!("granular-edmd needs SSE2 on x86: build for i686, or with `-C target-feature=+sse2`");
 
-pub mod analysis;
 pub mod boundary;
 pub mod collision;
 mod disk;
 mod error;
-mod file;
+pub mod file;
 mod fingerprint;
 mod flight;
 mod forward;
@@ -102,8 +103,6 @@ pub mod speed;
 pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;
-#[cfg(feature = "serde")]
-pub mod study;
 pub mod trajectory;
 pub mod wall;
 

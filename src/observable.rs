@@ -40,6 +40,7 @@
 //! | [`TransportCoefficients`] | shear and bulk viscosity, thermal conductivity |
 //! | [`Stress`] | stress tensor of the disks, kinetic and collisional |
 //! | [`Arrivals`] | disks that come to walls, by time: the flow into a sink |
+//! | [`Crossings`] | crossings of a line by direction: the flux through it |
 //! | [`WallStress`] | pressure and shear stress on walls |
 //! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
 //! | [`OfKind`], [`BetweenKinds`] | what another observer keeps, for one kind or for collisions of two |
@@ -107,6 +108,7 @@ mod collision_event;
 mod collision_histograms;
 mod compose;
 mod contract;
+mod crossings;
 mod energies;
 mod energy_change;
 mod energy_change_profile;
@@ -155,6 +157,8 @@ pub use contract::Observable;
 pub use contract::Observer;
 pub(crate) use contract::verdict;
 pub use contract::{ObserverError, Verdict};
+#[doc(alias("counter", "flux", "throughput"))]
+pub use crossings::Crossings;
 pub use energies::{Energies, EnergyPerDisk};
 #[doc(alias("dissipation", "energy loss", "dE"))]
 pub use energy_change::EnergyChange;

@@ -29,8 +29,7 @@ mod differences;
 mod steps;
 
 pub use differences::{Differences, OtherPartner, TooFarApart};
-pub use steps::Replayed;
-pub(crate) use steps::Steps;
+pub use steps::{Replayed, Steps};
 
 use crate::ParameterError;
 use crate::boundary::Boundary;

@@ -36,6 +36,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A [`Piston`] is no planned motion: the disks push it, and it moves by its mass, force and spring.
+//!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
 //! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
 //! [`laws`] for a check of your own motion.
@@ -52,6 +54,7 @@ mod known;
 pub mod laws;
 mod motion;
 mod oscillation;
+mod piston;
 mod sawtooth;
 mod scaled;
 mod sinusoidal;
@@ -67,7 +70,11 @@ pub use delayed::Delayed;
 pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use fixed::Fixed;
+#[cfg(feature = "serde")]
+pub(crate) use known::motion_or_piston;
 pub(crate) use motion::Motion;
+pub use piston::Piston;
+pub(crate) use piston::Stroke;
 pub use sawtooth::Sawtooth;
 pub use scaled::Scaled;
 pub use sinusoidal::Sinusoidal;

@@ -6,14 +6,12 @@ mod report;
 
 use std::error::Error;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use granular_edmd::boundary::{Container, Domain, Part, Wall};
+use granular_edmd::boundary::{Container, Part, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::SampleTimes;
-use granular_edmd::simulation::{BuildError, Checkpoint, CheckpointError};
-use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Plan, PlanError, Protocol, Study, StudyError};
+use granular_edmd::simulation::Checkpoint;
 use granular_edmd::trajectory::{self, ExtendedXyz, Recorder, State};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
 use report::{messages, report};
@@ -25,39 +23,8 @@ fn tells_each_thing_once(error: &(dyn Error + 'static)) {
     }
 }
 
-fn plan() -> Plan<VibratedBox> {
-    let base = Base::Thermal { temperature: 1.0, slip: false };
-    Plan::new(VibratedBox::new(3, 4.0, base).with_height(3.0), Protocol::new(1, 1, 1).unwrap(), 1).unwrap()
-}
-
 fn no_parameter() -> ParameterError {
     Frictional::from_inelasticity(0.7, 0.7, 0.1).unwrap_err()
-}
-
-/// Returns one of each variant of a study's errors that has a source.
-fn study_errors() -> Vec<StudyError> {
-    let path = PathBuf::from("study/values.csv");
-    let outside = BuildError::Outside { disk: 3, x: 1.0, y: -2.0, domain: Domain::new(0.0, 4.0, 0.0, 4.0) };
-    vec![
-        StudyError::Plan(PlanError::Parameter(no_parameter())),
-        StudyError::Plan(PlanError::Experiment { place: String::new(), source: no_parameter().into() }),
-        StudyError::Io {
-            action: "write",
-            path: path.clone(),
-            source: io::Error::other("No space left on device"),
-        },
-        StudyError::Build { ramp: 1, value: 2, source: outside.into() },
-        StudyError::Build { ramp: 1, value: 2, source: BuildError::Parameter(no_parameter()).into() },
-        StudyError::Build { ramp: 1, value: 2, source: CheckpointError::Damaged.into() },
-        StudyError::Encode { path, source: "too long".into() },
-    ]
-}
-
-#[test]
-fn errors_of_studies_tell_each_thing_once() {
-    for error in study_errors() {
-        tells_each_thing_once(&error);
-    }
 }
 
 /// The errors occur as users meet them.
@@ -67,23 +34,15 @@ fn errors_that_happen_tell_each_thing_once() {
     let disk = Disk::new(DVec2::new(-9.0, 1.0), 0.5).unwrap();
     let build = Simulation::builder(Frictional::from_inelasticity(0.0, 0.0, 0.1).unwrap(), container.clone())
         .disks(vec![disk]);
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("errors-{}", std::process::id()));
-    std::fs::write(&file, "a file where a folder should be").unwrap();
-    let errors: [Box<dyn Error>; 6] = [
+    let errors: [Box<dyn Error>; 4] = [
         Box::new(no_parameter()),
         Box::new(build.build().unwrap_err()),
         Box::new(initial::lattice(&container, 1000, 0.5).unwrap_err()),
         Box::new(Container::open(4.0).unwrap().with_temperature(Wall::Lid, thermal()).unwrap_err()),
-        Box::new(Plan::<VibratedBox>::from_toml("seed = 1\nsede = 2").unwrap_err()),
-        Box::new(Study::create(&file, &plan()).unwrap_err()),
     ];
-    std::fs::remove_file(&file).unwrap();
     for error in &errors {
         tells_each_thing_once(error.as_ref());
     }
-    let said = report(errors[5].as_ref());
-    assert!(said.starts_with("cannot create") && said.contains("errors-"), "{said}");
-    assert_eq!(messages(errors[5].as_ref()).len(), 2, "{said}");
 }
 
 /// Every function that takes a path names it if the contents of the file are wrong.

@@ -19,8 +19,8 @@ use benches::Outcome;
 use benches::ask;
 use benches::state::{AMPLITUDE, ANGULAR_FREQUENCY, CONTACT_DURATION, DILUTE, DISKS, HEIGHT, WIDTH};
 use granular_edmd::speed::Quartiles;
-use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Axis, Control, Plan, PlanError, Protocol, Study};
+use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+use granular_edmd_study::{Axis, Control, Plan, PlanError, Protocol, Study};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 

@@ -15,13 +15,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use gallery::command_line;
 use gallery::results::Results;
-use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, thermal_noise};
 use granular_edmd::boundary::Container;
 use granular_edmd::observable::{Accumulator, HeightProfile, OrderParameters, Temperatures};
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::Experiment;
-use granular_edmd::study::vibrated_box::{Base, BoxRule, VibratedBox};
 use granular_edmd::{Disk, Simulation};
+use granular_edmd_study::Experiment;
+use granular_edmd_study::analysis::{ConvectiveRegime, StateCriteria, thermal_noise};
+use granular_edmd_study::vibrated_box::{Base, BoxRule, VibratedBox};
 use rayon::prelude::*;
 
 const GRAVITY: f64 = 0.002_025;

@@ -16,10 +16,12 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions};
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::vibrated_box::VibratedBox;
-use granular_edmd::study::{Axis, Course, Outcome, Plan, PlanError, Protocol, Ramp};
+use granular_edmd_study::analysis::{
+    ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions,
+};
+use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Axis, Course, Outcome, Plan, PlanError, Protocol, Ramp};
 use kuva::prelude::Plot;
 
 use gallery::look::Look;
@@ -33,7 +35,7 @@ struct Arguments {
     common: gallery::studies::Common,
 }
 
-type Record = granular_edmd::study::Record<VibratedBox>;
+type Record = granular_edmd_study::Record<VibratedBox>;
 
 /// The transitions of each ramp.
 type Ramps = Vec<Vec<Transition>>;

@@ -16,8 +16,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::statistics::Estimate;
-use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Axis, Plan, PlanError, Protocol, Record, Study};
+use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+use granular_edmd_study::{Axis, Plan, PlanError, Protocol, Record, Study};
 
 use gallery::look::{LOOKS, Look, QUIET};
 use gallery::panel::{self, COLUMN, Margins, Place};

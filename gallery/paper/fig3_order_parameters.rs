@@ -16,8 +16,8 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::study::vibrated_box::{Sample, VibratedBox};
-use granular_edmd::study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
+use granular_edmd_study::vibrated_box::{Sample, VibratedBox};
+use granular_edmd_study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
 use kuva::prelude::{Layout, TickFormat};
 
 use gallery::look::{self, BLUE, INK, Look, Mark, NOISE, VERMILION};
@@ -37,7 +37,7 @@ struct Arguments {
 /// Friction of the first value, and the step to the next value.
 const STEP: f64 = 0.005;
 
-type Record = granular_edmd::study::Record<VibratedBox>;
+type Record = granular_edmd_study::Record<VibratedBox>;
 
 impl Arguments {
     fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {

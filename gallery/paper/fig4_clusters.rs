@@ -17,11 +17,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
 use granular_edmd::glam::DVec2;
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::vibrated_box::VibratedBox;
-use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
+use granular_edmd_study::analysis::{Classification, ConvectiveState, StateCriteria};
+use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Plan, PlanError, Protocol, Record, Study};
 use kuva::prelude::Plot;
 
 use gallery::command_line::{non_negative, whole};

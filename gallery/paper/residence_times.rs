@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::Plan;
-use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd_study::Plan;
+use granular_edmd_study::vibrated_box::VibratedBox;
 
 use gallery::command_line::{self, Failure};
 use gallery::look::{BLUE, GREEN, Look, Mark, VERMILION};

@@ -1,7 +1,7 @@
 //! Numbers of the paper.
 
-use granular_edmd::analysis::TransitionLine;
-use granular_edmd::analysis::TransitionLine::{OneTwoBeginning, OneTwoEnd, TwoCollapse, ZeroOne};
+use granular_edmd_study::analysis::TransitionLine;
+use granular_edmd_study::analysis::TransitionLine::{OneTwoBeginning, OneTwoEnd, TwoCollapse, ZeroOne};
 
 /// A row of the paper's Table I, as printed.
 #[derive(Debug, Clone, Copy)]

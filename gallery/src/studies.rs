@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
-use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Control, Experiment, Plan, RampStatus, Study, StudyError, Summary};
+use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+use granular_edmd_study::{Control, Experiment, Plan, RampStatus, Study, StudyError, Summary};
 
 use crate::progress::Progress;
 use crate::results::Results;
@@ -101,7 +101,7 @@ pub fn complete<E: Experiment>(
 fn watched(run: impl FnOnce(&Control<'_>) -> Result<Summary, StudyError>) -> Result<Summary, Box<dyn Error>> {
     stop_on_ctrl_c()?;
     let progress = Progress::of("study");
-    let show = |now: &granular_edmd::study::Progress| progress.show(now.done, now.total);
+    let show = |now: &granular_edmd_study::Progress| progress.show(now.done, now.total);
     Ok(run(&Control::default().with_progress(&show).with_interrupt(&STOP))?)
 }
 

@@ -9,10 +9,13 @@ use glam::DVec2;
 use super::conduct::Conduct;
 use super::plane::Plane;
 use super::vector::finite_point;
-use super::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Surface, Thermal, Touch, Wall, WallError};
+use super::{
+    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Thermal, Touch, Wall,
+    WallError,
+};
 use crate::collision::CollisionRule;
-use crate::quantity::positive;
-use crate::wall::{Motion, WallMotion};
+use crate::quantity::{accept, positive};
+use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Fingerprint, Flight, Kind, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin, such as the paper's box.
@@ -136,6 +139,20 @@ impl Container {
         Ok(self)
     }
 
+    /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
+    ///
+    /// Initial states are placed where the wall is at the start. A blow of a disk changes when others meet
+    /// the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
+    ///
+    /// # Errors
+    /// If the container has no such wall, or the motion of the piston has numbers that are not finite.
+    pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
+        let motion = Motion::new(Stroke::from(piston));
+        let motion = motion.map_err(|violation| WallError::Motion { wall, violation })?;
+        self.plane_mut(wall)?.set_motion(motion);
+        Ok(self)
+    }
+
     /// Returns the same container with a wall that has its own rule.
     ///
     /// # Errors
@@ -236,7 +253,7 @@ impl Container {
 
     /// Returns how far a wall can move inward.
     fn advance(&self, wall: Wall) -> f64 {
-        self.index(wall).map_or(0.0, |index| self.planes[index].motion.reach().1.max(0.0))
+        self.index(wall).map_or(0.0, |index| self.planes[index].advance())
     }
 }
 
@@ -295,6 +312,34 @@ impl Boundary for Container {
         for plane in &mut self.planes {
             plane.set_time_origin(origin);
         }
+    }
+
+    fn react(&mut self, impact: &Impact) -> Reaction {
+        let is_moved = self.planes[impact.wall()].take(impact.impulse(), impact.time());
+        if is_moved { Reaction::Moved } else { Reaction::None }
+    }
+
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
+        self.planes[wall].may_meet(region, radius, until)
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let strokes = self.planes.iter().filter_map(|plane| plane.motion.stroke());
+        strokes.flat_map(Stroke::numbers).collect()
+    }
+
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
+        let (numbers, rest) = state.as_chunks::<3>();
+        let pistons = self.planes.iter_mut().filter(|plane| plane.motion.stroke().is_some());
+        let pistons: Vec<_> = pistons.collect();
+        let is_whole = rest.is_empty() && numbers.len() == pistons.len();
+        accept(is_whole, "state of the walls", "three numbers for each piston", state.len() as f64)?;
+        for (plane, &numbers) in pistons.into_iter().zip(numbers) {
+            if let Some(stroke) = plane.motion.stroke() {
+                plane.motion = Motion::of(stroke.with_numbers(numbers)?);
+            }
+        }
+        Ok(())
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::conduct::Conduct;
 use super::surface::Surface;
 use super::{Region, Wall, WallError};
-use crate::wall::{Approach, FirstTouch, Motion, first_touch};
+use crate::wall::{Approach, FirstTouch, Motion, Stroke, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall of a container: the disks stay on one side of a line.
@@ -22,6 +22,7 @@ pub(super) struct Plane {
     /// Place of the wall at rest, along its normal.
     #[cfg_attr(feature = "serde", serde(skip))]
     place: f64,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::wall::motion_or_piston"))]
     pub(super) motion: Motion,
     /// Largest displacement of the motion.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -99,11 +100,36 @@ impl Plane {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
 
+    /// Returns how far the wall can move inward; for a piston, its displacement at the start.
+    pub(super) fn advance(&self) -> f64 {
+        self.motion.stroke().map_or(self.highest, Stroke::first_displacement).max(0.0)
+    }
+
     pub(super) fn set_time_origin(&mut self, origin: f64) {
-        self.phase = self.motion.phase(origin);
+        self.phase = match self.motion.stroke() {
+            Some(stroke) => {
+                self.motion = Motion::of(stroke.at_origin(origin));
+                0.0
+            }
+            None => self.motion.phase(origin),
+        };
         if let Some(slide) = &mut self.slide {
             slide.set_time_origin(origin);
         }
+    }
+
+    /// Takes a blow with this impulse. Returns true if the wall has a mass, and moves otherwise from now on.
+    pub(super) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
+        let Some(stroke) = self.motion.stroke() else { return false };
+        self.motion = Motion::of(stroke.struck(impulse.dot(self.normal), time + self.phase));
+        true
+    }
+
+    /// Returns whether a disk with its center in `region` may touch the wall up to this time, unless the wall
+    /// takes another blow.
+    pub(super) fn may_meet(&self, region: &Region, radius: f64, until: f64) -> bool {
+        let highest = self.motion.stroke().map_or(self.highest, |stroke| stroke.highest_until(until));
+        region.least_along(self.normal) - self.place - radius <= highest
     }
 
     /// Tells whether a disk with its center in `region` can touch the wall at any time.
@@ -137,7 +163,9 @@ impl Plane {
             // To the right along a floor or a lid, and up along a side.
             velocity += self.normal.perp().abs() * slide.speed(time);
         }
-        Surface::new(self.normal, velocity).with_response(self.conduct.response()).with_kind(self.kind)
+        let surface = Surface::new(self.normal, velocity).with_response(self.conduct.response());
+        let mass = self.motion.stroke().map_or(f64::INFINITY, Stroke::mass);
+        surface.with_kind(self.kind).with_mass(mass)
     }
 
     /// Returns a point of the wall.

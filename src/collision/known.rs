@@ -1,8 +1,8 @@
 //! The list of the rules that can be written to files.
 
 use super::{
-    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Frictional, Impulse, LeastRebound, Rough,
-    RulesByKind, Smooth, SpeedDependent,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Frictional, Impulse, LeastRebound,
+    RollingFriction, Rough, RulesByKind, Smooth, SpeedDependent,
 };
 use crate::Fingerprint;
 
@@ -42,6 +42,7 @@ known! {
     ContactDuration(Box<ContactDuration<KnownRule>>),
     ElasticBelow(Box<ElasticBelow<KnownRule>>),
     LeastRebound(Box<LeastRebound<KnownRule>>),
+    RollingFriction(Box<RollingFriction<KnownRule>>),
     RulesByKind(Box<RulesByKind<KnownRule>>),
 }
 

@@ -57,19 +57,28 @@ pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violatio
     check_separation(contact, impulse)?;
     let energy_change = impulse.energy_change(contact);
     if energy_change > ROUNDING * contact.available_energy() + LEAST {
-        return Err(Violation { fault: Fault::EnergyGained { energy_change }, contact: *contact, impulse });
+        return Err(Violation {
+            fault: Fault::EnergyGained { energy_change },
+            contact: Box::new(*contact),
+            impulse,
+        });
     }
     Ok(())
 }
 
 /// Checks all laws except that of energy.
 fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
-    if !(impulse.normal().is_finite() && impulse.tangential().is_finite()) {
-        return Err(Violation { fault: Fault::NotFinite, contact: *contact, impulse });
+    let numbers = [impulse.normal(), impulse.tangential(), impulse.couple()];
+    if !numbers.iter().all(|number| number.is_finite()) {
+        return Err(Violation { fault: Fault::NotFinite, contact: Box::new(*contact), impulse });
     }
     let closing_speed = impulse.closing_speed_after(contact);
     if closing_speed > rounding_of(contact.closing_speed(), contact.normal_mass()) {
-        return Err(Violation { fault: Fault::StillClosing { closing_speed }, contact: *contact, impulse });
+        return Err(Violation {
+            fault: Fault::StillClosing { closing_speed },
+            contact: Box::new(*contact),
+            impulse,
+        });
     }
     Ok(())
 }
@@ -96,7 +105,7 @@ pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Resul
     if opposes && slip_speed.abs() <= bound {
         Ok(())
     } else {
-        Err(Violation { fault: Fault::SlipSpedUp { slip_speed }, contact: *contact, impulse })
+        Err(Violation { fault: Fault::SlipSpedUp { slip_speed }, contact: Box::new(*contact), impulse })
     }
 }
 
@@ -120,7 +129,7 @@ pub fn check_friction_cone(
     if impulse.tangential().abs() <= limit * (1.0 + ROUNDING) + LEAST {
         Ok(())
     } else {
-        Err(Violation { fault: Fault::OutsideFrictionCone { limit }, contact: *contact, impulse })
+        Err(Violation { fault: Fault::OutsideFrictionCone { limit }, contact: Box::new(*contact), impulse })
     }
 }
 

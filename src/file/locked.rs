@@ -5,33 +5,41 @@ use std::io;
 
 /// A file whose lock this process holds; dropping it gives the lock back.
 #[derive(Debug)]
-pub(crate) struct Locked(File);
+pub struct Locked(File);
 
 impl Locked {
-    #[cfg(feature = "serde")]
     /// Waits until nobody else has the lock of a file, and takes it.
-    pub(crate) fn wait(file: File) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// If the file system has no locks.
+    pub fn wait(file: File) -> io::Result<Self> {
         file.lock()?;
         Ok(Self(file))
     }
 
-    #[cfg(feature = "serde")]
     /// Takes the lock of a file, unless somebody has it.
-    pub(crate) fn take(file: File) -> Result<Self, TryLockError> {
+    ///
+    /// # Errors
+    /// If somebody has the lock, or the file system has no locks.
+    pub fn take(file: File) -> Result<Self, TryLockError> {
         file.try_lock()?;
         Ok(Self(file))
     }
 
     /// Takes the lock of a file, unless somebody has it. Goes on without a lock where the system has none,
     /// and outside Unix, where a lock could keep other programs from reading.
-    pub(crate) fn take_if_possible(file: File) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// [`WouldBlock`](io::ErrorKind::WouldBlock) if somebody has the lock.
+    pub fn take_if_possible(file: File) -> io::Result<Self> {
         match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
             Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
             Ok(()) | Err(TryLockError::Error(_)) => Ok(Self(file)),
         }
     }
 
-    pub(crate) const fn file(&self) -> &File {
+    /// Returns the file.
+    pub const fn file(&self) -> &File {
         &self.0
     }
 }

@@ -3,14 +3,15 @@
 /// Name and version of a format. A sealed file holds these first, then a checksum of the contents, then the
 /// contents.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Seal {
-    pub(crate) magic: [u8; 8],
-    pub(crate) version: u32,
+pub struct Seal {
+    magic: [u8; 8],
+    version: u32,
 }
 
 /// A fault that a seal shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Broken {
+#[non_exhaustive]
+pub enum Damage {
     /// The contents are of another format.
     Foreign,
     /// The contents are of another version of the format.
@@ -25,8 +26,18 @@ pub(crate) enum Broken {
 const HEADER: usize = 8 + 4 + blake3::OUT_LEN;
 
 impl Seal {
+    /// Creates the seal of a format with these first bytes, in this version.
+    pub const fn new(magic: [u8; 8], version: u32) -> Self {
+        Self { magic, version }
+    }
+
+    /// Returns the version of the format.
+    pub const fn version(self) -> u32 {
+        self.version
+    }
+
     /// Returns the contents with this seal before them.
-    pub(crate) fn seal(self, contents: &[u8]) -> Vec<u8> {
+    pub fn seal(self, contents: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + contents.len());
         bytes.extend_from_slice(&self.magic);
         bytes.extend_from_slice(&self.version.to_le_bytes());
@@ -36,16 +47,19 @@ impl Seal {
     }
 
     /// Checks the seal of these bytes, and returns the contents behind it.
-    pub(crate) fn open(self, bytes: &[u8]) -> Result<&[u8], Broken> {
-        let rest = bytes.strip_prefix(&self.magic).ok_or(Broken::Foreign)?;
-        let (version, rest) = rest.split_first_chunk::<4>().ok_or(Broken::Cut)?;
+    ///
+    /// # Errors
+    /// If they are of another format or version, or were cut or changed.
+    pub fn open(self, bytes: &[u8]) -> Result<&[u8], Damage> {
+        let rest = bytes.strip_prefix(&self.magic).ok_or(Damage::Foreign)?;
+        let (version, rest) = rest.split_first_chunk::<4>().ok_or(Damage::Cut)?;
         let version = u32::from_le_bytes(*version);
         if version != self.version {
-            return Err(Broken::Version(version));
+            return Err(Damage::Version(version));
         }
-        let (checksum, contents) = rest.split_first_chunk::<32>().ok_or(Broken::Cut)?;
+        let (checksum, contents) = rest.split_first_chunk::<32>().ok_or(Damage::Cut)?;
         if blake3::hash(contents) != blake3::Hash::from_bytes(*checksum) {
-            return Err(Broken::Changed);
+            return Err(Damage::Changed);
         }
         Ok(contents)
     }

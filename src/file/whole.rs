@@ -16,19 +16,25 @@ const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 /// The bytes go to a temporary file in the same folder, which then takes the name of the file. Any number of
 /// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
 /// last one to rename it wins.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+///
+/// # Errors
+/// If the system cannot write it.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Draft::with(path, bytes)?.finish()
 }
 
 /// Writes a file as [`write_whole`] does, but in a loss of power it may be lost or torn.
-pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+///
+/// # Errors
+/// If the system cannot write it.
+pub fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Draft::with(path, bytes)?.place()
 }
 
 /// A file that is written piece by piece, and takes its name when it is whole. A draft that is dropped leaves
 /// nothing.
 #[derive(Debug)]
-pub(crate) struct Draft {
+pub struct Draft {
     path: PathBuf,
     temporary: PathBuf,
     file: BufWriter<File>,
@@ -36,7 +42,10 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// Begins a file beside its place.
-    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// If the path names no file, or the system cannot create one beside it.
+    pub fn of(path: &Path) -> io::Result<Self> {
         if path.file_name().is_none() {
             let reason = "the path does not end in the name of a file";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
@@ -48,7 +57,10 @@ impl Draft {
     }
 
     /// Adds bytes to the file.
-    pub(crate) fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+    ///
+    /// # Errors
+    /// If the system cannot write them.
+    pub fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes)
     }
 
@@ -59,7 +71,10 @@ impl Draft {
     }
 
     /// Puts the file in its place, where it outlasts a loss of power.
-    pub(crate) fn finish(mut self) -> io::Result<()> {
+    ///
+    /// # Errors
+    /// If the system cannot write it. An older file of that name is then as it was.
+    pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         self.file.get_ref().sync_all()?;
         let path = self.path.clone();
@@ -87,8 +102,8 @@ impl Drop for Draft {
     }
 }
 
-/// Tells whether a name is that of a temporary file of [`write_whole`]. Every part of the name must match.
-pub(crate) fn is_temporary(name: &OsStr) -> bool {
+/// Returns whether a name is the name of a temporary file of [`write_whole`]. Every part of it must match.
+pub fn is_temporary(name: &OsStr) -> bool {
     let unique = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY.0)?.strip_suffix(TEMPORARY.1));
     let Some(unique) = unique else { return false };
     let is_decimal = |part: &str| !part.is_empty() && part.bytes().all(|digit| digit.is_ascii_digit());
@@ -103,7 +118,7 @@ pub(crate) fn is_temporary(name: &OsStr) -> bool {
 /// The process number tells programs on this host apart, the count tells writers in this process apart, and
 /// the random number tells hosts apart that share a disk. The file's own name is left out, so that the result
 /// cannot become too long.
-pub(crate) fn unique_name() -> String {
+pub fn unique_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     // The standard library seeds its hash tables from the system: a random number that needs no dependency.

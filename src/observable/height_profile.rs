@@ -59,7 +59,8 @@ impl DenseLayer {
 /// walls leave free there,
 ///
 /// ```math
-/// \phi_k = \Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle \Big/ \langle A(y_k, y_k + \Delta y)\rangle.
+/// \phi_k = \Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle
+/// \Big/ \langle A(y_k, y_k + \Delta y)\rangle.
 /// ```
 ///
 /// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor,

@@ -86,7 +86,8 @@ impl<'a> Snapshot<'a> {
         Self { time, disks, domain, gravity, walls, wall_count, marks }.with_walls(boundary, offset)
     }
 
-    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time origin.
+    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time
+    /// origin.
     #[must_use]
     pub fn with_walls(self, boundary: &'a dyn Boundary, time: f64) -> Self {
         Self { walls: Some(Walls { boundary, time }), wall_count: boundary.wall_count(), ..self }
@@ -135,6 +136,12 @@ impl<'a> Snapshot<'a> {
     /// of the wall.
     pub fn wall_point(&self, wall: usize) -> Option<DVec2> {
         self.walls.and_then(|walls| walls.boundary.wall_point(wall, walls.time))
+    }
+
+    /// Returns the velocity of a wall's surface at its [point](Self::wall_point); `None` if it is not known.
+    pub fn wall_velocity(&self, wall: usize) -> Option<DVec2> {
+        let (walls, point) = (self.walls?, self.wall_point(wall)?);
+        Some(walls.boundary.surface(wall, point, walls.time).velocity)
     }
 
     /// Returns the area of the places in `region` at which the center of a disk of this radius is free;

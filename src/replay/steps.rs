@@ -20,8 +20,21 @@ pub struct Replayed {
     pub collision: Collision,
 }
 
-/// A run, and the ids of its disks before the next collision.
-pub(crate) struct Steps<R, B, S> {
+/// A run taken collision by collision, each with the ids of its disks.
+///
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::replay::Steps;
+///
+/// let container = Container::closed(12.0, 12.0)?;
+/// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 40, 0.5)?, 1.0, 1)?;
+/// let mut steps = Steps::new(Simulation::builder(Elastic, container).disks(disks).build()?);
+/// let first = steps.next(5.0)?.ok_or("no collision until 5")?;
+/// assert_eq!((first.number, first.collision.time), (1, steps.run().time()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Steps<R, B, S> {
     run: Simulation<R, B, S>,
     ids: Vec<u64>,
     /// Numbers of disks that have come and gone.
@@ -29,14 +42,15 @@ pub(crate) struct Steps<R, B, S> {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
-    pub(crate) fn new(run: Simulation<R, B, S>) -> Self {
+    /// Begins with this run.
+    pub fn new(run: Simulation<R, B, S>) -> Self {
         let mut steps = Self { run, ids: Vec::new(), population: [u64::MAX; 2] };
         steps.name();
         steps
     }
 
-    #[cfg(feature = "cli")]
-    pub(crate) const fn run(&self) -> &Simulation<R, B, S> {
+    /// Returns the run after the last step.
+    pub const fn run(&self) -> &Simulation<R, B, S> {
         &self.run
     }
 
@@ -49,8 +63,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
         }
     }
 
-    /// Goes to the next collision, if it is not after `end`.
-    pub(crate) fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
+    /// Goes to the next collision; without one up to and at the absolute time `end`, the run goes there and
+    /// the result is `None`.
+    ///
+    /// # Errors
+    /// The same as for [`Simulation::step_until`].
+    pub fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
         let mut last = None;
         // A disk that comes in gets its name before it collides, so each opening of an inlet is a step.
         while last.is_none() {

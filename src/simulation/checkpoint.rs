@@ -18,16 +18,16 @@ use thiserror::Error;
 pub use resumption::Resumption;
 
 use super::cells::{Layouts, Place};
-use super::state::{Clock, Forecast, Identities, Spin, Trajectory};
+use super::state::{Clock, Forecast, Identities, Ledger, Spin, Trajectory};
 use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
-use crate::file::{Broken, Seal, write_whole};
+use crate::file::{Damage, Seal, write_whole};
 use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 8 };
+const SEAL: Seal = Seal::new(*b"GRANEDMD", 8);
 
 /// Everything on which the future of a run depends, except its rule and its boundary. The numbers of walls
 /// that [react](Boundary::react) are kept.
@@ -90,6 +90,7 @@ struct Saved {
     generator: Xoshiro256PlusPlus,
     clock: Clock,
     counters: Counters,
+    ledger: Ledger,
 }
 
 /// An error: a checkpoint cannot be written, read or resumed.
@@ -169,9 +170,14 @@ impl Checkpoint {
         self.0.trajectories.len()
     }
 
-    /// Returns the fingerprints of the rule and the boundary of the run.
-    pub(crate) const fn parts(&self) -> [Option<Fingerprint>; 2] {
-        [self.0.rule, self.0.boundary]
+    /// Returns the fingerprint of the rule of the run, if it has one.
+    pub const fn rule(&self) -> Option<Fingerprint> {
+        self.0.rule
+    }
+
+    /// Returns the fingerprint of the boundary of the run, if it has one.
+    pub const fn boundary(&self) -> Option<Fingerprint> {
+        self.0.boundary
     }
 
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.
@@ -218,9 +224,9 @@ fn read<T>(path: &Path, parse: impl Fn(&[u8]) -> Result<T, CheckpointError>) -> 
 /// Returns the contents behind a seal.
 fn opened(seal: Seal, bytes: &[u8]) -> Result<&[u8], CheckpointError> {
     seal.open(bytes).map_err(|broken| match broken {
-        Broken::Foreign => CheckpointError::NotACheckpoint,
-        Broken::Version(found) => CheckpointError::Version { found, known: seal.version },
-        Broken::Cut | Broken::Changed => CheckpointError::Damaged,
+        Damage::Foreign => CheckpointError::NotACheckpoint,
+        Damage::Version(found) => CheckpointError::Version { found, known: seal.version() },
+        Damage::Cut | Damage::Changed => CheckpointError::Damaged,
     })
 }
 
@@ -278,6 +284,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             // The next look is no part of the state.
             clock: Clock { events_to_look: 0, ..self.clock },
             counters: self.counters,
+            ledger: self.ledger,
         })
     }
 }

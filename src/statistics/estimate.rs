@@ -73,9 +73,10 @@ impl Estimate {
         Self { mean, standard_error, samples, correlated_samples, basis }
     }
 
-    /// Returns the same error about another mean. The error of a ratio, for example, is that of its
-    /// residuals.
-    pub(crate) fn about(self, mean: f64) -> Self {
+    /// Returns the same error about another mean.
+    ///
+    /// The error of a ratio, for example, is the error of the mean of its residuals.
+    pub fn about(self, mean: f64) -> Self {
         Self { mean, ..self }
     }
 

@@ -8,7 +8,7 @@ use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{
-    BiParabolic, Delayed, Fixed, Motion, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
+    BiParabolic, Delayed, Fixed, Motion, Sawtooth, Scaled, Sinusoidal, StartingAt, Stroke, Summed, Tabulated,
     Triangular, Violation,
 };
 
@@ -21,8 +21,16 @@ impl Serialize for Motion {
 
 impl<'de> Deserialize<'de> for Motion {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Known::deserialize(deserializer)?.motion().map_err(D::Error::custom)
+        let motion = motion_or_piston(deserializer)?;
+        // Inside another motion, or in a part, it would not react.
+        let reacts = motion.stroke().is_some();
+        if reacts { Err(D::Error::custom("a piston is a wall of a container")) } else { Ok(motion) }
     }
+}
+
+/// Reads a motion, which may be that of a piston.
+pub(crate) fn motion_or_piston<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Motion, D::Error> {
+    Known::deserialize(deserializer)?.motion().map_err(D::Error::custom)
 }
 
 /// Lists the motions with numbers.
@@ -51,4 +59,4 @@ macro_rules! known {
     };
 }
 
-known!(BiParabolic, Sinusoidal, Triangular, Sawtooth, Tabulated, StartingAt, Delayed, Scaled, Summed);
+known!(Stroke, BiParabolic, Sinusoidal, Triangular, Sawtooth, Tabulated, StartingAt, Delayed, Scaled, Summed);

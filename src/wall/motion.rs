@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::{Fixed, Violation, WallMotion, check_finite};
+use super::{Fixed, Stroke, Violation, WallMotion, check_finite};
 
 /// A motion whose type can be asked for: files hold the types of the crate.
 pub(crate) trait Owned: WallMotion + Any + Send + Sync {}
@@ -34,9 +34,13 @@ impl Motion {
     }
 
     /// Returns the motion as a value of unknown type.
-    #[cfg(feature = "serde")]
     pub(super) fn as_any(&self) -> &dyn Any {
         &*self.0
+    }
+
+    /// Returns the motion of a piston, if it is one.
+    pub(crate) fn stroke(&self) -> Option<&Stroke> {
+        self.as_any().downcast_ref()
     }
 
     /// Returns the phase at a time origin: the origin less whole periods.

@@ -9,6 +9,7 @@ mod files;
 mod fingerprints;
 mod names;
 mod obstacles;
+mod patches;
 mod periodic_parts;
 mod planted;
 mod touches;

@@ -183,10 +183,10 @@ fn a_rule_that_drives_may_say_so() {
 #[test]
 fn the_contact_that_is_shown_is_mild() {
     let everywhere = caught(pushing(|_| 2.5), Promises::new());
-    assert_eq!(everywhere.contact, Contact::new(1.0, 0.0, 0.5, 0.25));
+    assert_eq!(*everywhere.contact, Contact::new(1.0, 0.0, 0.5, 0.25));
     let grazing =
         caught(rubbing(|contact, _| -0.1 * contact.slip_speed()), Promises::new().with_opposed_slip());
-    assert_eq!(grazing.contact, Contact::new(1.0, 0.5, 0.5, 0.25));
+    assert_eq!(*grazing.contact, Contact::new(1.0, 0.5, 0.5, 0.25));
     let after_a_collision =
         pushing(|contact| if contact.time_since_last_collision() < 0.1 { 2.5 } else { 2.0 });
     let violation = caught(after_a_collision, Promises::new());

@@ -122,7 +122,7 @@ fn messages_carry_the_numbers() {
         violation.to_string(),
         format!("the impulse (0.5, -0.25) makes the slip faster: 4.0 {}", of_contact("2.0"))
     );
-    assert_eq!((violation.contact, violation.impulse), (slipping, Impulse::new(0.5, -0.25)));
+    assert_eq!((*violation.contact, violation.impulse), (slipping, Impulse::new(0.5, -0.25)));
 }
 
 /// Equality breaks no law: nothing happens to surfaces at rest.

@@ -1,7 +1,6 @@
 //! Every public constructor over every kind of number: refused with an error that names the value, or fit to
 //! run.
 
-use granular_edmd::analysis::{StateCriteria, distinct_clusters, thermal_noise};
 use granular_edmd::boundary::{Container, Region, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
@@ -151,20 +150,6 @@ fn watching() -> Vec<Case> {
             |value| (0.0..=1e30).contains(&value),
         ),
         ("standard error", |value| told(MonteCarlo::new(1).with_standard_error(value)), positive),
-        ("", |value| told(thermal_noise(value, 1.0, 10)), not_negative),
-        ("noise", |value| told(distinct_clusters(&[DVec2::ZERO], value, 1)), not_negative),
-        (
-            "multiple of the noise",
-            |value| told(StateCriteria::default().with_noise_multiple(value)),
-            not_negative,
-        ),
-        ("ratio of two rolls", |value| told(StateCriteria::default().with_two_rolls(value)), positive),
-        ("packing fraction", |value| told(StateCriteria::default().with_collapse(value, 0.1)), not_negative),
-        (
-            "least weight",
-            |value| told(StateCriteria::default().with_least_weight(value)),
-            |value| (0.0..=0.5).contains(&value),
-        ),
     ]
 }
 
@@ -275,28 +260,5 @@ fn more_disks_than_memory_holds_are_refused_at_once() {
         assert!(refused.contains("number of disks"), "{refused}");
         let refused = initial::random(&open, count, 0.5, 1e9, 1).unwrap_err().to_string();
         assert!(refused.contains("number of disks"), "{refused}");
-    }
-}
-
-/// Whatever a plan varies is taken or refused at once, and its text is read as what it is.
-#[test]
-#[cfg(feature = "serde")]
-fn plans_of_any_numbers_are_taken_or_refused() {
-    use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-    use granular_edmd::study::{Axis, Plan, Protocol};
-    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 3.0 };
-    let names =
-        ["friction", "dynamic_friction", "inelasticity", "tangential_inelasticity", "gravity", "amplitude"];
-    let more = ["angular_frequency", "temperature", "contact_duration", "width", "height"];
-    for (name, value) in names.into_iter().chain(more).flat_map(|name| NUMBERS.map(|value| (name, value))) {
-        let plan = Plan::new(VibratedBox::new(2, 9.0, base), Protocol::new(1, 1, 1).unwrap(), 1).unwrap();
-        let Ok(plan) = Axis::new(name, [value]).and_then(|axis| plan.with_axis(axis)) else { continue };
-        assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan, "{name} {value}");
-    }
-    for [settle, samples, every] in
-        [[0, 0, 0], [1, 1, 0], [0, 1, 1], [u64::MAX; 3], [1, u64::MAX, 1], [0, 1, u64::MAX]]
-    {
-        let protocol = Protocol::new(settle, samples, every);
-        assert_eq!(protocol.is_ok(), (settle, samples, every) == (0, 1, 1), "{protocol:?}");
     }
 }

@@ -1,16 +1,10 @@
 //! Files of any contents: an error or a value, never a panic, and never a file read as what it is not.
 
-use std::fs;
-
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
-use granular_edmd::study::vibrated_box::VibratedBox;
-use granular_edmd::study::{Plan, Study, StudyError};
 use proptest::prelude::*;
 
 use crate::cases::config;
-use crate::edits::{edit, edited};
-use crate::mixture::Mixture;
-use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, own_plan, plan, sealed};
+use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, sealed};
 
 #[test]
 fn a_sealed_file_is_resealed_as_the_library_does() {
@@ -36,32 +30,6 @@ fn each_flipped_bit_and_each_cut_of_a_checkpoint_is_noticed() {
     }
 }
 
-fn damaged_records(name: &str, stride: usize) {
-    let (scratch, study) = done_study(name, &plan());
-    let path = scratch.0.join("ramps/0000/0000.record");
-    let sound = fs::read(&path).unwrap();
-    for (case, bytes) in damaged(&sound, stride).enumerate() {
-        fs::write(&path, bytes).unwrap();
-        let error = study.record(0, 0).unwrap_err();
-        assert!(
-            matches!(&error, StudyError::Damaged { path: named, .. } if *named == path),
-            "{case}: {error}"
-        );
-    }
-}
-
-/// The test flips a bit of nearly each byte, in turn.
-#[test]
-fn flipped_bits_and_cuts_of_a_record_are_noticed() {
-    damaged_records("flips", 9);
-}
-
-#[test]
-#[ignore = "some seconds: all bits"]
-fn each_flipped_bit_and_each_cut_of_a_record_is_noticed() {
-    damaged_records("all-flips", 1);
-}
-
 #[test]
 fn another_version_is_named() {
     let mut bytes = checkpoint().to_bytes().unwrap();
@@ -82,10 +50,6 @@ fn files_that_cannot_be_read_are_errors() {
     }
     let error = checkpoint().write(scratch.0.join("none/file")).unwrap_err();
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
-    fs::write(scratch.0.join("plan.toml"), [0xff, 0xfe, 0]).unwrap();
-    fs::write(scratch.0.join("lock"), "").unwrap();
-    let error = Study::<VibratedBox>::open(&scratch.0).unwrap_err().to_string();
-    assert!(error.contains("plan.toml"), "{error}");
 }
 
 proptest! {
@@ -101,17 +65,5 @@ proptest! {
     fn any_sealed_bytes_are_decoded_or_refused(contents in prop::collection::vec(any::<u8>(), 0..400)) {
         let header = checkpoint().to_bytes().unwrap();
         let _ = Checkpoint::from_bytes(&sealed(&header, &contents));
-    }
-
-    #[test]
-    fn any_plan_is_read_or_refused(edits in prop::collection::vec(edit(), 1..6)) {
-        let text = edited(&plan().to_toml().unwrap(), &edits);
-        if let Ok(plan) = Plan::<VibratedBox>::from_toml(&text) {
-            prop_assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
-        }
-        let text = edited(&own_plan().to_toml().unwrap(), &edits);
-        if let Ok(plan) = Plan::<Mixture>::from_toml(&text) {
-            prop_assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
-        }
     }
 }

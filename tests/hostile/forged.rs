@@ -1,14 +1,8 @@
-//! Files whose checksum is right and whose contents are wrong. Each is refused, or is a state that runs on.
+//! Checkpoints whose checksum is right and whose contents are wrong. Each is refused, or is a state that runs
+//! on.
 //!
 //! The system limits what a forged state may cost: this test runs itself in a process with little memory and
 //! time.
-
-use std::collections::BTreeMap;
-use std::fs;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, Once};
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -17,116 +11,18 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
-use granular_edmd::study::vibrated_box::Sample;
-use granular_edmd::study::{Control, Experiment, Plan, Record, Study};
 use granular_edmd::{Disk, Simulation};
 
 use crate::forged_systems::{Run, SYSTEMS, System};
+use crate::forging::{LITTLE, STRIDE, forged, none_panics, patterns, stride};
 use crate::limits::{Limits, in_child};
-use crate::specimens::{
-    CONTENTS_AT, checkpoint, done_study, own_plan, plan, resume, run_steps, sealed, stopped_study,
-};
-
-/// Returns the bytes that are written over the contents at each place: floats, and lengths and indices in
-/// their encoding.
-fn patterns() -> Vec<Vec<u8>> {
-    let floats = [
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        -1.0,
-        -0.0,
-        0.5,
-        1e300,
-        f64::MAX,
-        f64::MIN_POSITIVE,
-        5e-324,
-        1e-30,
-        1e60,
-    ];
-    let floats = floats.iter().map(|float| float.to_le_bytes().to_vec());
-    let varints = [u64::MAX, 1 << 32, u64::from(u32::MAX), 1000].map(varint);
-    let bytes = [0, 1, 2, 3, 4, 5, 0x7f, 0x80, 0xff].map(|byte| vec![byte]);
-    floats.chain(varints).chain(bytes).collect()
-}
-
-fn varint(mut value: u64) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    while value >= 0x80 {
-        bytes.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    bytes.push(value as u8);
-    bytes
-}
-
-/// The file with each pattern at each `stride`-th place of its contents, under a right checksum.
-fn forged(file: &[u8], stride: usize) -> impl Iterator<Item = (usize, Vec<u8>)> {
-    let contents = &file[CONTENTS_AT..];
-    let places = (0..contents.len()).flat_map(|place| patterns().into_iter().map(move |with| (place, with)));
-    let files = places.flat_map(|(place, with)| {
-        // The pattern replaces as many bytes, or a single one, as a longer length would.
-        [place + with.len(), place + 1].map(|end| {
-            let rest = &contents[end.min(contents.len())..];
-            (place, sealed(file, &[&contents[..place], &with, rest].concat()))
-        })
-    });
-    files.step_by(stride)
-}
-
-static CASE: AtomicUsize = AtomicUsize::new(0);
-
-/// The file that is tried.
-static TRIED: Mutex<Vec<u8>> = Mutex::new(Vec::new());
-
-/// Ends the process with a message if one case takes too long, and leaves the file.
-fn watch() {
-    static STARTED: Once = Once::new();
-    let watch = || {
-        loop {
-            let case = CASE.load(Ordering::Relaxed);
-            std::thread::sleep(std::time::Duration::from_secs(20));
-            if CASE.load(Ordering::Relaxed) == case {
-                let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hanging-file");
-                let _ = fs::write(&path, &*TRIED.lock().unwrap());
-                eprintln!("case {case} hangs: {}", path.display());
-                std::process::abort();
-            }
-        }
-    };
-    STARTED.call_once(|| drop(std::thread::spawn(watch)));
-}
-
-/// Does all cases, and names each panic once.
-fn none_panics(cases: impl Iterator<Item = (usize, Vec<u8>)>, mut check: impl FnMut(&[u8])) {
-    watch();
-    let mut panics = BTreeMap::new();
-    for (place, bytes) in cases {
-        CASE.fetch_add(1, Ordering::Relaxed);
-        TRIED.lock().unwrap().clone_from(&bytes);
-        if let Err(panic) = catch_unwind(AssertUnwindSafe(|| check(&bytes))) {
-            let said = panic.downcast_ref::<String>().cloned();
-            let said = said.or_else(|| panic.downcast_ref::<&str>().map(|&said| said.to_owned()));
-            panics.entry(said.unwrap_or_default()).or_insert(place);
-        }
-    }
-    assert!(panics.is_empty(), "panics, with the first place of each: {panics:#?}");
-}
-
-/// Variable with the stride: one of this many forged files is tried.
-const STRIDE: &str = "GRANULAR_EDMD_HOSTILE_STRIDE";
+use crate::specimens::{CONTENTS_AT, checkpoint, sealed};
 
 /// Variable with the number of events for which each run goes on.
 const EVENTS: &str = "GRANULAR_EDMD_HOSTILE_EVENTS";
 
 /// Variable with the only system that is forged.
 const ONLY: &str = "GRANULAR_EDMD_HOSTILE_ONLY";
-
-fn stride() -> usize {
-    std::env::var(STRIDE).map_or(1, |stride| stride.parse().unwrap())
-}
-
-const LITTLE: Limits = Limits { memory_kib: 1 << 20, seconds: 600, file_kib: None };
 
 #[test]
 fn bytes_behind_a_checkpoint_are_refused() {
@@ -233,69 +129,6 @@ fn forged_checkpoints() {
 }
 
 #[test]
-#[ignore = "started by the test of forged records"]
-fn forged_records() {
-    forge_records("forged", &plan(), |record| {
-        let quantity = |sample: &Sample| sample.height;
-        let _ = (record.mean(quantity), record.energy_change(), record.thermal_noise(), record.order());
-        let _ = (
-            record.densest_layer(),
-            record.profile().count(),
-            record.checkpoint().map(granular_edmd::simulation::Checkpoint::time),
-        );
-        let _ = record.checkpoint().map(resume);
-    });
-    forge_records("forged-own", &own_plan(), |record| {
-        let _ = (record.mean(|sample| sample.angular_momentum), record.estimate("risen"), record.observer());
-    });
-}
-
-/// Reads all forgeries of a record; what is accepted is looked at, and takes part in the study.
-fn forge_records<E: Experiment>(name: &str, plan: &Plan<E>, look: impl Fn(&Record<E>)) {
-    let (scratch, study) = done_study(name, plan);
-    let path = scratch.0.join("ramps/0000/0001.record");
-    let file = fs::read(&path).unwrap();
-    none_panics(forged(&file, stride()), |bytes| {
-        fs::write(&path, bytes).unwrap();
-        let Ok(Some(record)) = study.record(0, 1) else { return };
-        look(&record);
-        // All values have records, so this call reads them and writes tables.
-        let _ = Study::<E>::open(&scratch.0).unwrap().run(&Control::default().with_verification());
-    });
-}
-
-#[test]
-#[ignore = "started by the test of forged values half done"]
-fn forged_partials() {
-    forge_partials("forged-partials", &plan());
-    forge_partials("forged-own-partials", &own_plan());
-}
-
-fn forge_partials<E: Experiment>(name: &str, plan: &Plan<E>) {
-    let (scratch, study) = stopped_study(name, plan, 8);
-    let path = scratch.0.join("ramps/0000/0001.partial");
-    let file = fs::read(&path).unwrap();
-    none_panics(forged(&file, stride()), |bytes| {
-        fs::write(&path, bytes).unwrap();
-        match run_steps(&study, 8) {
-            Ok(summary) => assert!(summary.redone.iter().all(|redone| *redone == path)),
-            Err(error) => assert!(error.to_string().contains("0001.partial"), "{error}"),
-        }
-    });
-}
-
-#[test]
-fn forged_values_half_done_are_started_again_or_go_on() {
-    in_child("forged::forged_partials", &LITTLE, &[(STRIDE, "101")]).assert_success();
-}
-
-#[test]
-#[ignore = "minutes: many more of them"]
-fn all_forged_values_half_done_are_started_again_or_go_on() {
-    in_child("forged::forged_partials", &LITTLE, &[(STRIDE, "3")]).assert_success();
-}
-
-#[test]
 fn forged_checkpoints_are_refused_or_run() {
     in_child("forged::forged_checkpoints", &LITTLE, &[(STRIDE, "997"), (EVENTS, "300")]).assert_success();
 }
@@ -305,15 +138,4 @@ fn forged_checkpoints_are_refused_or_run() {
 fn all_forged_checkpoints_are_refused_or_run() {
     let limits = Limits { seconds: 20_000, ..LITTLE };
     in_child("forged::forged_checkpoints", &limits, &[]).assert_success();
-}
-
-#[test]
-fn forged_records_are_refused_or_read() {
-    in_child("forged::forged_records", &LITTLE, &[(STRIDE, "401")]).assert_success();
-}
-
-#[test]
-#[ignore = "minutes: many more of them"]
-fn all_forged_records_are_refused_or_read() {
-    in_child("forged::forged_records", &LITTLE, &[(STRIDE, "5")]).assert_success();
 }

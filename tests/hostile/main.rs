@@ -1,5 +1,5 @@
 //! Bad input and hostile runs: random simulations under every law that must hold, files of any contents,
-//! constructors over every kind of number, and faults of the machine.
+//! constructors over every kind of number.
 //!
 //! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, and `PROPTEST_RNG_SEED` sets another seed.
 //! With them, these tests become runs of hours (docs/validation.md, “Hostile runs”).
@@ -8,8 +8,6 @@
 mod cases;
 mod constructors;
 mod edits;
-#[cfg(all(feature = "serde", unix))]
-mod faults;
 mod few;
 #[cfg(feature = "serde")]
 mod files;
@@ -17,21 +15,17 @@ mod files;
 mod forged;
 #[cfg(all(feature = "serde", unix))]
 mod forged_systems;
+#[cfg(all(feature = "serde", unix))]
+mod forging;
+#[cfg(feature = "serde")]
+mod intruders;
 mod invariants;
 mod laws;
 #[cfg(all(feature = "serde", unix))]
 mod limits;
 mod log;
-#[cfg(feature = "serde")]
-#[path = "../support/mixture.rs"]
-mod mixture;
 mod random_runs;
-#[cfg(feature = "serde")]
-mod records;
 mod regressions;
-#[cfg(feature = "serde")]
-#[path = "../support/report.rs"]
-mod report;
 #[path = "../support/schedulers.rs"]
 mod schedulers;
 mod script;

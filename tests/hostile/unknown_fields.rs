@@ -1,8 +1,5 @@
 //! Every kind of value that is read from files, with one field too many. Each is refused by name.
 
-use std::fmt::Debug;
-
-use granular_edmd::analysis::Transition;
 use granular_edmd::boundary::{Boundary, Brick, Container, Part, Thermal, Vessel, Wall};
 use granular_edmd::collision::{
     ContactDuration, ElasticBelow, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
@@ -17,65 +14,14 @@ use granular_edmd::observable::{
 };
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::BlockedMean;
-use granular_edmd::study::vibrated_box::{Base, Measurement, Sample, VibratedBox};
-use granular_edmd::study::{Axis, Course, Outcome, Plan, Protocol, Ramp};
 use granular_edmd::wall::{
     BiParabolic, Delayed, Sawtooth, Scaled, Sinusoidal, Summed, Tabulated, Triangular,
 };
 use granular_edmd::{Disk, initial};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::specimens::{checkpoint, container, done_study, plan, resume};
-
-/// Adds a superfluous field to each object of a value, in turn.
-fn with_intruders(value: &Value) -> Vec<Value> {
-    match value {
-        Value::Object(fields) => {
-            let mut all = vec![value.clone()];
-            all[0]["intruder"] = json!(1);
-            for (name, field) in fields {
-                all.extend(with_intruders(field).into_iter().map(|changed| {
-                    let mut whole = value.clone();
-                    whole[name] = changed;
-                    whole
-                }));
-            }
-            all
-        }
-        Value::Array(items) => {
-            let changed = |(at, item)| {
-                with_intruders(item).into_iter().map(move |changed| {
-                    let mut whole = value.clone();
-                    whole[at] = changed;
-                    whole
-                })
-            };
-            items.iter().enumerate().take(2).flat_map(changed).collect()
-        }
-        _ => Vec::new(),
-    }
-}
-
-fn refuses<T: Serialize + DeserializeOwned + PartialEq + Debug>(sound: &T) {
-    let value = serde_json::to_value(sound).unwrap();
-    assert_eq!(&serde_json::from_value::<T>(value.clone()).unwrap(), sound);
-    refuses_intruders::<T>(&value);
-}
-
-fn refuses_intruders<T: DeserializeOwned>(value: &Value) {
-    let intruders = with_intruders(value);
-    assert!(!intruders.is_empty(), "{value}");
-    for changed in intruders {
-        let error = serde_json::from_value::<T>(changed.clone()).err().map(|error| error.to_string());
-        let error = error.unwrap_or_else(|| panic!("{changed}"));
-        // A field beside the name of a choice is a second choice. A field beside the numbers of walls is not
-        // a number.
-        let reasons = ["intruder", "single key", "key to be a number"];
-        assert!(reasons.iter().any(|reason| error.contains(reason)), "{error}: {changed}");
-    }
-}
+use crate::intruders::{refuses, refuses_intruders};
+use crate::specimens::{checkpoint, container, resume};
 
 #[test]
 fn parameters_with_a_field_too_many_are_refused() {
@@ -140,8 +86,6 @@ fn what_was_measured_with_a_field_too_many_is_refused() {
     let fields =
         Sampled::new(Fields::new(Grid::new(region, 1, 1).unwrap()), SampleTimes::every(1.0).unwrap());
     refuses(&fields.cell(0, 0).unwrap());
-    let transition = json!({ "line": "ZeroOne", "value": 0.1, "error": 0.01, "rising": true });
-    refuses(&serde_json::from_value::<Transition>(transition).unwrap());
 }
 
 #[test]
@@ -199,59 +143,17 @@ fn measurements_with_a_field_too_many_are_refused() {
     refuses(&blocked.estimate());
 }
 
+/// A checkpoint is bytes in any format, so that nothing gets past its version and checksum.
 #[test]
-fn plans_and_records_with_a_field_too_many_are_refused() {
-    refuses(&plan());
-    refuses(&Ramp::new("friction", [0.1], Course::Down).unwrap());
-    refuses(&Axis::new("friction", [0.1]).unwrap());
-    for base in [
-        Base::BiParabolic { amplitude: 0.1, angular_frequency: 1.0 },
-        Base::Sinusoidal { amplitude: 0.1, angular_frequency: 1.0 },
-        Base::Thermal { temperature: 1.0, slip: true },
-    ] {
-        let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
-        refuses(&Plan::new(experiment, Protocol::new(2, 3, 1).unwrap(), 5).unwrap());
-    }
-    let (_scratch, study) = done_study("intruder", &plan());
-    let record = study.record(0, 1).unwrap().unwrap();
-    refuses::<Sample>(&record.samples()[0]);
-    let mut measurement = serde_json::to_value(record.observer()).unwrap();
-    measurement["intruder"] = json!(1);
-    assert!(serde_json::from_value::<Measurement>(measurement).unwrap_err().to_string().contains("intruder"));
-    refuses(&Outcome::Stopped { time: 1.0 });
-    // A checkpoint is bytes in any format, so that nothing gets past its version and checksum.
+fn a_checkpoint_with_a_byte_too_many_is_refused() {
     let mut state = serde_json::to_value(checkpoint()).unwrap();
     state.as_array_mut().unwrap().push(json!(1));
     let error = serde_json::from_value::<Checkpoint>(state).unwrap_err();
     assert!(error.to_string().contains("damaged"), "{error}");
 }
 
-/// The same holds in TOML, at each place of a plan.
 #[test]
-fn a_plan_in_toml_with_a_field_too_many_is_refused() {
-    let text = plan().to_toml().unwrap();
-    let lines: Vec<&str> = text.lines().collect();
-    for at in 0..=lines.len() {
-        let changed = [&lines[..at], &["intruder = 1"], &lines[at..]].concat().join("\n");
-        let error = Plan::<VibratedBox>::from_toml(&changed).unwrap_err().to_string();
-        assert!(error.contains("intruder"), "{error}");
-    }
-}
-
-/// Deeply nested values are refused at once, and so is a plan that is too large.
-#[test]
-fn plans_that_are_too_deep_or_too_long_are_refused_at_once() {
-    let text = plan().to_toml().unwrap();
-    let deep = [text.as_str(), "\nsweep = ", &"[".repeat(100_000)].concat();
-    assert!(Plan::<VibratedBox>::from_toml(&deep).is_err());
-    let count = 1_000_001;
-    let values: Vec<f64> = (0..count).map(f64::from).collect();
-    let ramp = Ramp::new("gravity", values, Course::Up).unwrap();
-    let error = plan().with_ramp(ramp).unwrap_err().to_string();
-    assert!(error.contains("1000001"), "{error}");
-    let values: Vec<f64> = (0..200_000).map(f64::from).collect();
-    let ramp = Ramp::new("gravity", values, Course::UpAndDown).unwrap();
-    assert_eq!(plan().with_ramp(ramp).unwrap().value_count(), 399_999, "in time that grows with it only");
+fn too_many_disks_are_refused_at_once() {
     let crowd = initial::lattice(&container(), usize::MAX, 0.5).unwrap_err().to_string();
     assert!(crowd.contains("number of disks"), "{crowd}");
 }

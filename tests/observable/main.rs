@@ -2,6 +2,7 @@
 //! files.
 
 mod chance;
+mod crossings;
 #[cfg(feature = "serde")]
 mod measurements;
 mod measures;

@@ -24,6 +24,7 @@ mod oracle;
 mod order;
 mod parting;
 mod periodic;
+mod pistons;
 mod population;
 mod replays;
 mod rest;
@@ -41,4 +42,5 @@ mod stopping;
 mod thermal;
 mod traffic;
 #[cfg(feature = "serde")]
+mod warned;
 mod whole_files;

@@ -24,8 +24,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::study::Study;
-use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd_study::Study;
+use granular_edmd_study::vibrated_box::VibratedBox;
 
 use gallery::results::Results;
 use picture::{Crossing, Diagram, State};

@@ -3,8 +3,8 @@
 //! It takes plain data, so that other programs can draw theirs.
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{ConvectiveRegime, TransitionLine};
 use granular_edmd::kinetic::{IsoLine, Maxwellian, Piece};
+use granular_edmd_study::analysis::{ConvectiveRegime, TransitionLine};
 use kuva::prelude::{Layout, Plot, TickFormat};
 
 use gallery::look::{BLUE, INK, Look, Mark, PURPLE, QUIET, VERMILION};

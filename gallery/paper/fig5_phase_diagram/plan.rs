@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 use granular_edmd::ParameterError;
-use granular_edmd::study::vibrated_box::VibratedBox;
-use granular_edmd::study::{Axis, Course, Plan, PlanError, Protocol, Ramp};
+use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Axis, Course, Plan, PlanError, Protocol, Ramp};
 
 /// The size of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,8 +1,8 @@
 //! The changes of state in the plane of friction and inelasticity.
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{ConvectiveRegime, Transition, TransitionLine, transitions};
 use granular_edmd::quantity::positive;
+use granular_edmd_study::analysis::{ConvectiveRegime, Transition, TransitionLine, transitions};
 
 /// A point of a transition line in the plane of friction and inelasticity; made by [`plane_transitions`].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::path::Path;
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
-use granular_edmd::study::vibrated_box::VibratedBox;
-use granular_edmd::study::{Leg, Record, Study};
+use granular_edmd_study::analysis::{ConvectiveRegime, StateCriteria};
+use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Leg, Record, Study};
 
 use crate::picture::{Crossing, State};
 use crate::plane::{PlaneTransition, plane_transitions};

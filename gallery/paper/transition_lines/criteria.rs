@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::error::Error;
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::StateCriteria;
 use granular_edmd::observable::ConvectionOrder;
+use granular_edmd_study::analysis::StateCriteria;
 
 use crate::numbers::{Number, average};
 use crate::ramps::Ramp;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use granular_edmd::analysis::ConvectiveRegime::TwoRolls;
-use granular_edmd::analysis::TransitionLine;
 use granular_edmd::statistics::RunningMean;
+use granular_edmd_study::analysis::ConvectiveRegime::TwoRolls;
+use granular_edmd_study::analysis::TransitionLine;
 
 use crate::ramps::Ramp;
 use gallery::results::Results;

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use granular_edmd::observable::{EnergyChangeProfile, SampleTimes, Sampled};
-use granular_edmd::study::Experiment;
+use granular_edmd_study::Experiment;
 
 use crate::ramps::{Crossing, Local, Ramp};
 

@@ -30,7 +30,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::{Parser, ValueEnum};
-use granular_edmd::analysis::TransitionLine;
+use granular_edmd_study::analysis::TransitionLine;
 use rayon::prelude::*;
 
 use gallery::command_line::{self, Failure};

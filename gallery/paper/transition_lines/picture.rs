@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::TransitionLine;
+use granular_edmd_study::analysis::TransitionLine;
 use kuva::prelude::Plot;
 
 use crate::numbers::{Number, average};

@@ -4,11 +4,11 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::analysis::{ConvectiveRegime, Transition, TransitionLine, transitions};
 use granular_edmd::observable::DenseLayer;
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::Plan;
-use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd_study::Plan;
+use granular_edmd_study::analysis::{ConvectiveRegime, Transition, TransitionLine, transitions};
+use granular_edmd_study::vibrated_box::VibratedBox;
 
 use crate::phase_diagram;
 

@@ -3,10 +3,10 @@
 use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::analysis::{StateCriteria, thermal_noise};
 use granular_edmd::observable::{ConvectionOrder, DenseLayer, HeightProfile};
 use granular_edmd::prelude::*;
 use granular_edmd::statistics::BlockedMean;
+use granular_edmd_study::analysis::{StateCriteria, thermal_noise};
 
 use crate::arguments::{Arguments, Base};
 use gallery::command_line::Failure;

@@ -53,7 +53,8 @@ impl Boundary for Vessel {
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
-        self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until))
+        let first = self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until));
+        if self.has_patches { first.map(|touch| self.on_patch(touch, flight)) } else { first }
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {

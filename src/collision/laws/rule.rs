@@ -76,6 +76,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
     for (contact, impulse) in answers.into_iter().rev() {
         let later = rule.impulse(&contact);
         if !same(impulse, later) {
+            let contact = Box::new(contact);
             return Err(Violation { fault: Fault::NotRepeatable { later }, contact, impulse });
         }
     }

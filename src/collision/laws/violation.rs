@@ -5,14 +5,14 @@ use thiserror::Error;
 use crate::collision::{Contact, Impulse, Regime};
 
 /// A law that a rule breaks, with the contact and the impulse that show it.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[error("the impulse {impulse} {fault} ({contact})")]
 #[non_exhaustive]
 pub struct Violation {
     /// The fault of the impulse.
     pub fault: Fault,
     /// The contact.
-    pub contact: Contact,
+    pub contact: Box<Contact>,
     /// The impulse that was given.
     pub impulse: Impulse,
 }
@@ -58,8 +58,9 @@ pub enum Fault {
 
 /// Tells whether two impulses are the same to the bit.
 pub(super) fn same(left: Impulse, right: Impulse) -> bool {
-    let bits = |impulse: Impulse| -> (u64, u64, Regime) {
-        (impulse.normal().to_bits(), impulse.tangential().to_bits(), impulse.regime())
+    let bits = |impulse: Impulse| -> ([u64; 3], Regime) {
+        let numbers = [impulse.normal(), impulse.tangential(), impulse.couple()];
+        (numbers.map(f64::to_bits), impulse.regime())
     };
     bits(left) == bits(right)
 }

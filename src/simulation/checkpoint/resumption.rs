@@ -134,6 +134,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
             inlets: saved.inlets.clone(),
+            ledger: saved.ledger,
             // The observers that are read with it have lost the mark of the run that was saved.
             marks: [Mark::default(), Mark::new()],
         }

@@ -9,7 +9,7 @@ use super::{Checkpoint, CheckpointError, contents, decoded, failed, opened, read
 use crate::file::{Seal, write_whole};
 
 /// The mark of such a file, and the version of its format.
-const SEAL: Seal = Seal { magic: *b"GRANWITH", version: 1 };
+const SEAL: Seal = Seal::new(*b"GRANWITH", 1);
 
 impl Checkpoint {
     /// Writes the checkpoint and the observers of its run to one file, whole or not at all.

@@ -231,7 +231,7 @@ pub(super) fn settings() -> Vec<Setting> {
             walls_move: true,
             ..Setting::new("moving walls", moving)
         },
-        Setting::new("tilted gravity", || gas(closed()?, Gravity::tilted(0.2, PI / 5.0))),
+        Setting::new("tilted gravity", || gas(closed()?, Gravity::tilted(0.2, PI / 5.0)?)),
         Setting::new("sizes and masses", mixed),
         Setting::new("kinds", of_two_kinds),
         Setting::new("inlet and sink", coming_and_going),

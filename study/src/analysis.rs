@@ -1,0 +1,39 @@
+//! Analysis: states, transitions and Table I from measured series.
+//!
+//! | question | answer | source |
+//! |---|---|---|
+//! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
+//! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
+//! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
+//!
+//! Errors of means over correlated series come from [`statistics`](granular_edmd::statistics).
+//!
+//! Everything is deterministic: the same numbers and seeds give the same bits.
+//!
+//! ```
+//! use granular_edmd_study::analysis::{ConvectiveState, StateCriteria, thermal_noise};
+//! use granular_edmd::observable::ConvectionOrder;
+//!
+//! // A roll that turns clockwise for most of the time, and the other way for a while.
+//! let order = |one_roll| ConvectionOrder::new(one_roll, 0.04);
+//! let samples = [[0.12; 3].as_slice(), &[-0.12; 2], &[0.12; 3]].concat().into_iter().map(order);
+//! let noise = thermal_noise(0.3, 1.0, 1000)?;
+//! let found = StateCriteria::default().classify(&samples.collect::<Vec<_>>(), noise, None)?;
+//! assert_eq!(found.state(), ConvectiveState::ClockwiseRoll);
+//! assert_eq!(found.weight(ConvectiveState::CounterclockwiseRoll), 0.25);
+//! # Ok::<(), granular_edmd::ParameterError>(())
+//! ```
+
+mod classification;
+mod clusters;
+mod distinct;
+mod k_means;
+mod state;
+mod transitions;
+
+pub use classification::{Classification, StateCriteria, thermal_noise};
+pub use clusters::{Cluster, Clusters};
+pub use distinct::distinct_clusters;
+pub use k_means::KMeans;
+pub use state::{ConvectiveRegime, ConvectiveState};
+pub use transitions::{Transition, TransitionLine, transitions};

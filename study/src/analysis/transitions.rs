@@ -1,0 +1,161 @@
+//! The changes of state along a ramp.
+
+use granular_edmd::ParameterError;
+use granular_edmd::quantity::finite;
+
+use super::state::ConvectiveRegime;
+
+/// The lines of the paper's Fig. 5 and the rows of its Table I.
+///
+/// ```
+/// use granular_edmd_study::analysis::TransitionLine;
+/// assert_eq!(TransitionLine::ALL.map(|line| line.to_string()), ["0-1", "1-2(a)", "1-2(b)", "2-collapse"]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+pub enum TransitionLine {
+    /// Line "0-1": the first roll appears.
+    ZeroOne,
+    /// Line "1-2(a)": the coexistence of one roll and two rolls begins.
+    OneTwoBeginning,
+    /// Line "1-2(b)": the coexistence ends.
+    OneTwoEnd,
+    /// Line "2-collapse".
+    TwoCollapse,
+}
+
+impl TransitionLine {
+    /// All lines, in the order of growing energy loss.
+    pub const ALL: [Self; 4] = [Self::ZeroOne, Self::OneTwoBeginning, Self::OneTwoEnd, Self::TwoCollapse];
+
+    /// Returns the first regime beyond the line.
+    const fn beyond(self) -> ConvectiveRegime {
+        match self {
+            Self::ZeroOne => ConvectiveRegime::OneRoll,
+            Self::OneTwoBeginning => ConvectiveRegime::Coexistence,
+            Self::OneTwoEnd => ConvectiveRegime::TwoRolls,
+            Self::TwoCollapse => ConvectiveRegime::Collapsed,
+        }
+    }
+
+    /// Returns true beyond the line and false before it, for a control value at which these regimes were
+    /// seen. The result is `None` if they lie on both sides.
+    fn side(self, seen: Seen) -> Option<bool> {
+        let (least, most) = (seen.least >= self.beyond(), seen.most >= self.beyond());
+        match self {
+            Self::OneTwoBeginning => Some(most),
+            Self::OneTwoEnd => Some(least),
+            Self::ZeroOne | Self::TwoCollapse => (least == most).then_some(least),
+        }
+    }
+}
+
+impl std::fmt::Display for TransitionLine {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.pad(match self {
+            Self::ZeroOne => "0-1",
+            Self::OneTwoBeginning => "1-2(a)",
+            Self::OneTwoEnd => "1-2(b)",
+            Self::TwoCollapse => "2-collapse",
+        })
+    }
+}
+
+/// A point of a transition line; made by [`transitions`].
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Transition {
+    /// The line that is crossed.
+    pub line: TransitionLine,
+    /// Middle between the neighboring control values on the two sides of the line.
+    pub value: f64,
+    /// Half the distance of these control values. The transition lies between `value - error` and
+    /// `value + error`.
+    pub error: f64,
+    /// True if the regime goes up with a growing control value. It goes down where the paper finds
+    /// re-entrance.
+    pub rising: bool,
+}
+
+/// The regimes seen at one control value.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    value: f64,
+    least: ConvectiveRegime,
+    most: ConvectiveRegime,
+}
+
+/// Finds the transitions along one control parameter.
+///
+/// The observations are the regimes seen at all values of the parameter, in any order: on a ramp up, on a
+/// ramp down, with other seeds. The result is in ascending order of the values, and at equal values in the
+/// order of the lines.
+///
+/// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
+/// the first value where a run shows two rolls, or both numbers of rolls in turn, and ends (b) at the last
+/// value where a run shows anything but two rolls. The other lines have no hysteresis in the paper. Where
+/// runs disagree about them, the transition lies somewhere between the values at which the runs agree, and
+/// its error covers that range. The observations of a single ramp give the points of that ramp.
+///
+/// # Errors
+/// If a control value is not finite.
+///
+/// ```
+/// use granular_edmd_study::analysis::ConvectiveRegime::{OneRoll, TwoRolls};
+/// use granular_edmd_study::analysis::{TransitionLine, transitions};
+/// let up = [(0.050, OneRoll), (0.055, OneRoll), (0.060, OneRoll), (0.065, TwoRolls)];
+/// let down = [(0.065, TwoRolls), (0.060, TwoRolls), (0.055, TwoRolls), (0.050, OneRoll)];
+/// let found = transitions(up.into_iter().chain(down))?;
+/// assert_eq!(found.len(), 2);
+/// assert_eq!(found[0].line, TransitionLine::OneTwoBeginning);
+/// assert!((found[0].value - 0.0525).abs() < 1e-12 && (found[1].value - 0.0625).abs() < 1e-12);
+/// assert!((found[0].error - 0.0025).abs() < 1e-12);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn transitions(
+    observations: impl IntoIterator<Item = (f64, ConvectiveRegime)>,
+) -> Result<Vec<Transition>, ParameterError> {
+    let seen = merge(observations)?;
+    let mut found: Vec<Transition> =
+        TransitionLine::ALL.into_iter().flat_map(|line| crossings(line, &seen)).collect();
+    found.sort_by(|a, b| a.value.total_cmp(&b.value).then(a.line.cmp(&b.line)));
+    Ok(found)
+}
+
+/// Merges the observations into one entry for each control value, in ascending order.
+fn merge(
+    observations: impl IntoIterator<Item = (f64, ConvectiveRegime)>,
+) -> Result<Vec<Seen>, ParameterError> {
+    let check =
+        |(value, regime)| Ok(Seen { value: finite("control value", value)?, least: regime, most: regime });
+    let mut all = observations.into_iter().map(check).collect::<Result<Vec<_>, ParameterError>>()?;
+    all.sort_by(|a, b| a.value.total_cmp(&b.value));
+    // By hysteresis, runs at one value may end in different regimes. Its entry keeps the lowest and the
+    // highest, and a line between these two does not count as crossed there.
+    all.dedup_by(|next, kept| {
+        let same = next.value == kept.value;
+        if same {
+            kept.least = kept.least.min(next.least);
+            kept.most = kept.most.max(next.most);
+        }
+        same
+    });
+    Ok(all)
+}
+
+/// Returns the crossings of a line. A crossing lies between neighbors on different sides of the line, among
+/// the values whose side is certain.
+fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
+    let certain: Vec<(f64, bool)> =
+        seen.iter().filter_map(|&seen| Some((seen.value, line.side(seen)?))).collect();
+    let across = certain.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+    across
+        .map(|pair| Transition {
+            line,
+            // Halved before they are added, since the sum of two large values may overflow.
+            value: 0.5 * pair[0].0 + 0.5 * pair[1].0,
+            error: 0.5 * pair[1].0 - 0.5 * pair[0].0,
+            rising: pair[1].1,
+        })
+        .collect()
+}

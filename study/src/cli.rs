@@ -1,0 +1,284 @@
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `replay`, `diff`,
+//! `accept` and `bench`, for any experiment.
+//!
+//! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
+//! the paper's box.
+//!
+//! ```no_run
+//! use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+//! use granular_edmd_study::{Plan, Protocol, cli};
+//!
+//! fn main() -> std::process::ExitCode {
+//!     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+//!     cli::main(|| Plan::new(VibratedBox::new(100, 20.0, base), Protocol::new(100, 100, 10)?, 1))
+//! }
+//! ```
+//!
+//! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
+//! and waiting, ramp and value of those values that stalled or failed, whether there are tables of all, and
+//! about how many seconds of one processor the finished values took and the others will take.
+//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units of all
+//! columns.
+//!
+//! | exit code | meaning |
+//! |---|---|
+//! | 0 | all that was asked for is done |
+//! | 1 | the command failed; standard error says why |
+//! | 2 | the command line or the plan cannot be used |
+//! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
+//! | 4 | from `status`: all ramps are done, but there are no tables of them |
+//! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
+//! | 6 | from `diff`: the two runs differ |
+//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
+//!
+//! `replay` and `diff` have nothing to save: stopped, they leave no file.
+
+mod arguments;
+mod bench;
+mod collision_rows;
+mod diff;
+mod replay;
+mod source;
+mod template;
+mod trajectory;
+mod watch;
+
+use std::error::Error;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use super::errors::{PlanError, StudyError, chain};
+use super::json::Object;
+use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
+use arguments::{Arguments, Command, Manner};
+use watch::Watch;
+
+/// Largest number of failed values that `status` prints; its JSON has all.
+const LISTED: usize = 8;
+
+/// The way in which a command ended, with its exit code.
+#[derive(Clone, Copy)]
+enum End {
+    Done = 0,
+    /// Other processes do the rest.
+    Elsewhere = 3,
+    /// All is done but the tables.
+    NoTables = 4,
+    /// A standard state is slower than in an earlier table, beyond the noise.
+    Slower = 5,
+    /// Two runs differ.
+    Different = 6,
+    Interrupted = 130,
+}
+
+/// The reason why a command failed.
+type Failure = Box<dyn Error>;
+
+/// Runs the command line of a program, with plans of this experiment.
+///
+/// The command `new` writes the plan that `example` returns. `diff` copies runs, so rule and boundary must be
+/// `Clone`.
+pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
+    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
+) -> ExitCode {
+    let ended = match Arguments::parse().command {
+        Command::New { file } => new(example, file.as_deref()),
+        Command::Check { plan } => check::<E>(&plan),
+        Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
+        Command::Status { folder, json } => status::<E>(&folder, json),
+        Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
+        Command::Trajectory { plan, out, ramp, cycles } => trajectory::write::<E>(&plan, ramp, cycles, &out),
+        Command::Replay(wishes) => replay::replay::<E>(&wishes),
+        Command::Diff(wishes) => diff::diff::<E>(&wishes),
+        Command::Accept { folder } => accept::<E>(&folder),
+        Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
+        Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
+    };
+    match ended {
+        Ok(end) => ExitCode::from(end as u8),
+        Err(error) => report(error.as_ref()),
+    }
+}
+
+/// Tells an error, and returns its exit code: 2 for a plan that cannot be used.
+fn report(error: &(dyn Error + 'static)) -> ExitCode {
+    let _ = writeln!(io::stderr(), "error: {}", chain(error));
+    let of_study = error.downcast_ref::<StudyError>();
+    let is_of_plan = matches!(of_study, Some(StudyError::Plan(_) | StudyError::Unreadable { .. }));
+    ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
+}
+
+/// Prints a line.
+fn say(line: &str) -> Result<(), Failure> {
+    let mut out = io::stdout();
+    told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
+}
+
+/// Judges an attempt to write. A closed pipe is no error, since its reader has seen enough: the result is
+/// then false. A full disk is one.
+fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
+        written => Ok(written.map(|()| true).map_err(StudyError::io("write", path))?),
+    }
+}
+
+fn new<E: Experiment>(
+    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
+    file: Option<&Path>,
+) -> Result<End, Failure> {
+    let text = template::commented(&example()?)?;
+    let Some(path) = file else {
+        say(text.trim_end())?;
+        return Ok(End::Done);
+    };
+    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(StudyError::io("write", path))?;
+    Ok(End::Done)
+}
+
+/// Reads a file, or standard input for the name `-`.
+fn read(path: &Path) -> Result<String, Failure> {
+    let text =
+        if path == Path::new("-") { io::read_to_string(io::stdin()) } else { fs::read_to_string(path) };
+    Ok(text.map_err(StudyError::io("read", path))?)
+}
+
+/// Returns the error of a plan in a file, which names the file.
+fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
+    move |source| StudyError::Unreadable { path: path.to_owned(), source }
+}
+
+/// Opens or creates the study of a plan in a folder.
+fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
+    let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
+    Ok(Study::open_or_put(folder, plan, Plan::check_experiments).map_err(|error| match error {
+        StudyError::Plan(source) => refused(path)(source),
+        error => error,
+    })?)
+}
+
+fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
+    let repeats = match plan.repeats() {
+        1 => String::new(),
+        repeats => format!(", {repeats} repeats among them"),
+    };
+    say(&format!("{ramps} ramps of {values} values of {cycles} cycles{repeats}"))?;
+    Ok(End::Done)
+}
+
+fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {
+    let study = study::<E>(path, out)?;
+    if manner.retry {
+        for [failed, _] in study.failed()? {
+            if ramp.is_none_or(|ramp| ramp == failed) {
+                study.forget_failed(failed)?;
+            }
+        }
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build()?;
+    watch::listen()?;
+    let watch = Watch::new();
+    let show = |progress: &Progress| watch.show(progress);
+    let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()));
+    let summary = pool.install(|| match ramp {
+        Some(ramp) => study.run_ramp(ramp, &control),
+        None => study.run(&control),
+    })?;
+    watch.end();
+    for file in &summary.redone {
+        say(&format!("{} was damaged and has been done again", file.display()))?;
+    }
+    say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()))?;
+    let logs = out.join("ramps/*/log.jsonl");
+    for (count, told, of) in [
+        (summary.failed, "stalled or failed; status lists them,", "why"),
+        (summary.warned, "have warnings;", "of what"),
+    ] {
+        if count > 0 {
+            say(&format!("{count} of them {told} {} say {of}", logs.display()))?;
+        }
+    }
+    Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
+        (true, _) => End::Done,
+        (false, false) if !watch::is_stopped() => End::Elsewhere,
+        _ => End::Interrupted,
+    })
+}
+
+fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
+    let study = Study::<E>::open(folder)?;
+    let (all, has_tables) = (study.all_status()?, study.has_tables());
+    let ramps = all.len();
+    let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
+    let found = [
+        ("done", of(RampStatus::Done)),
+        ("running", of(RampStatus::Running)),
+        ("begun", of(RampStatus::Begun)),
+        ("waiting", of(RampStatus::Waiting)),
+    ];
+    let failed = study.failed()?;
+    let (spent, left) = study.seconds(&all);
+    if json {
+        let object = Object::default().with("ramps", ramps);
+        let object =
+            found.iter().fold(object, |object, (name, of)| object.with(name, format_args!("{of:?}")));
+        let object = object.with("failed", format_args!("{failed:?}")).with("tables", has_tables);
+        // JSON has no NaN.
+        let told = |seconds: f64| if seconds.is_finite() { seconds.to_string() } else { "null".to_owned() };
+        say(&object.with("seconds", told(spent)).with("seconds_left", told(left)).line())?;
+    } else {
+        let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
+        let tables = if has_tables { "tables of all" } else { "no tables of all" };
+        say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
+        if left.is_finite() {
+            say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
+        }
+        if !failed.is_empty() {
+            let first: Vec<String> =
+                failed.iter().take(LISTED).map(|[r, v]| format!("{r:04}/{v:04}")).collect();
+            let more = if failed.len() > LISTED { " …" } else { "" };
+            say(&format!("{} values stalled or failed: {}{more}", failed.len(), first.join(" ")))?;
+        }
+    }
+    Ok(match (found[0].1.len() == ramps, has_tables) {
+        (true, true) => End::Done,
+        (true, false) => End::NoTables,
+        (false, _) => End::Elsewhere,
+    })
+}
+
+fn tables<E: Experiment>(folder: &Path, out: Option<&Path>) -> Result<End, Failure> {
+    let study = Study::<E>::open(folder)?;
+    let finished = out.map_or_else(|| study.write_tables(), |out| study.write_tables_to(out))?;
+    say(&format!("tables of {finished} values are in {}", out.unwrap_or(folder).display()))?;
+    Ok(End::Done)
+}
+
+fn accept<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+    let differences = Study::<E>::accept_changes(folder)?;
+    for difference in &differences {
+        say(&difference.to_string())?;
+    }
+    say(if differences.is_empty() {
+        "the study is of this code: there is nothing to accept"
+    } else {
+        "from here on, records are of this code: the column made_by of values.csv tells them from those before"
+    })?;
+    Ok(End::Done)
+}
+
+/// Returns a time on one core as text.
+fn core_time(seconds: f64) -> String {
+    if seconds < 100.0 {
+        format!("{seconds:.2} core seconds")
+    } else {
+        format!("{:.3} core hours", seconds / 3600.0)
+    }
+}

@@ -1,0 +1,146 @@
+//! The arguments of the command line: the commands, and the manner of a run.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+use crate::Control;
+
+/// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
+const MOST_THREADS: i64 = 4096;
+
+/// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
+///
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 5
+/// slower than before, 6 the runs differ, 130 stopped with all saved.
+#[derive(Debug, Parser)]
+#[command(version)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Writes a commented plan to begin with.
+    New {
+        /// File to write; standard output if not given. An existing file is not overwritten.
+        file: Option<PathBuf>,
+    },
+    /// Checks a plan, and prints how many ramps and values it has.
+    Check {
+        /// The plan, in TOML; `-` for standard input.
+        plan: PathBuf,
+    },
+    /// Runs the unfinished values of a plan, alone or beside other processes.
+    Run {
+        /// The plan, in TOML; `-` for standard input.
+        plan: PathBuf,
+        /// Folder of the study: empty, or one with this plan.
+        #[arg(long)]
+        out: PathBuf,
+        /// Index of the only ramp to do, counted from 0.
+        #[arg(long)]
+        ramp: Option<usize>,
+        #[command(flatten)]
+        manner: Manner,
+    },
+    /// Prints the progress of a study.
+    Status {
+        /// Folder of the study.
+        folder: PathBuf,
+        /// Prints JSON, with the indices of the ramps.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Writes the tables of all finished values.
+    Tables {
+        /// Folder of the study.
+        folder: PathBuf,
+        /// Folder for the tables; that of the study if not given. Existing tables there are not overwritten.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Writes the disks after each cycle of the first value of a ramp, for OVITO. Frames of a `.gsd` are
+    /// binary; others are extended XYZ.
+    Trajectory {
+        /// The plan, in TOML; `-` for standard input.
+        plan: PathBuf,
+        /// File to write. An existing file is not overwritten.
+        #[arg(long)]
+        out: PathBuf,
+        /// Index of the ramp, counted from 0.
+        #[arg(long, default_value_t = 0)]
+        ramp: usize,
+        /// Number of cycles.
+        #[arg(long, default_value_t = 100)]
+        cycles: u32,
+    },
+    /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the
+    /// state before one of them.
+    ///
+    /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
+    /// the wall, place of the disk, speeds of closing and of slip before, impulse on the disk, change of
+    /// energy.
+    Replay(super::replay::Wishes),
+    /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
+    /// from its place in the other run than a tolerance.
+    Diff(super::diff::Wishes),
+    /// Lets this program continue a study that other code began. Records keep the mark of the code that made
+    /// them.
+    Accept {
+        /// Folder of the study.
+        folder: PathBuf,
+    },
+    /// Measures the standard states, in some ten seconds; for a plan, the core hours that it will take.
+    Bench {
+        /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
+        plan: Option<PathBuf>,
+        /// Prints JSON, for `--against`.
+        #[arg(long)]
+        json: bool,
+        /// Measures for a second only, by shorter stretches, whose times are some percent longer.
+        #[arg(long)]
+        quick: bool,
+        /// File with the JSON of an earlier table, to which the present one is compared. A state is called
+        /// slower or faster if its quartiles lie more than 5 % beyond those of then. Other events mean that
+        /// a change of the code altered the trajectories.
+        #[arg(long, conflicts_with_all = ["plan", "json"])]
+        against: Option<PathBuf>,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags are independent of each other")]
+pub(super) struct Manner {
+    /// Number of threads; one for each processor if not given.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub(super) threads: Option<u16>,
+    /// Folder of an earlier study, to take over what it has done of this plan: with fewer values on the axes
+    /// or at the end of the ramp, fewer repeats, or fewer samples. Can be given several times.
+    #[arg(long)]
+    from: Vec<PathBuf>,
+    /// Runs values that stalled or failed again, with those after them in their ramps. The same code fails
+    /// again.
+    #[arg(long)]
+    pub(super) retry: bool,
+    /// Ends as soon as other processes do all that is left.
+    #[arg(long)]
+    no_wait: bool,
+    /// Writes no tables when all ramps are done; `tables` does so later.
+    #[arg(long)]
+    no_tables: bool,
+    /// Also reads the records of finished ramps, and runs damaged or lost ones again.
+    #[arg(long)]
+    verify: bool,
+}
+
+impl Manner {
+    /// Returns a control with these wishes.
+    pub(super) fn of<'a>(&'a self, control: Control<'a>) -> Control<'a> {
+        let control = control.with_earlier_studies(&self.from);
+        let control = if self.no_wait { control.without_waiting() } else { control };
+        let control = if self.no_tables { control.without_tables() } else { control };
+        if self.verify { control.with_verification() } else { control }
+    }
+}

@@ -1,0 +1,108 @@
+//! The command `diff`: the first differences of two runs.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+
+use granular_edmd::Disk;
+use granular_edmd::quantity::non_negative;
+use granular_edmd::replay::{Differences, Replay};
+
+use super::collision_rows::{HEADINGS, row};
+use super::source::{Place, Source, tell, tell_end};
+use super::watch::end_at_once;
+use super::{End, Failure, PlanError, say};
+use crate::{Experiment, Run};
+
+/// Number of parts of a stretch of the runs, after each of which the progress is shown.
+const PARTS: u32 = 32;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Wishes {
+    /// A plan, in TOML (`-` for standard input), or the folder of a study.
+    first: PathBuf,
+    /// The other plan or folder; the first one again if not given.
+    second: Option<PathBuf>,
+    #[command(flatten)]
+    place: Place,
+    /// File from which the second run starts; `--start` is that of the first.
+    #[arg(long)]
+    other_start: Option<PathBuf>,
+    /// Distance beyond which a disk is away from its place in the other run.
+    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
+    tolerance: f64,
+}
+
+/// Compares two runs, for longer and longer times until both differences are found.
+pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Wishes) -> Result<End, Failure> {
+    let tolerance = non_negative("tolerance", wishes.tolerance).map_err(PlanError::from)?;
+    let second = wishes.second.as_ref().unwrap_or(&wishes.first);
+    let mut one = Source::<E>::open(&wishes.first, &wishes.place, wishes.place.start.as_deref())?;
+    let mut two = Source::<E>::open(second, &wishes.place, wishes.other_start.as_deref())?;
+    check_disks(&one.run.disks(), &two.run.disks())?;
+    end_at_once()?;
+    let (begin, end, cycle) = (one.run.time().max(two.run.time()), one.end.min(two.end), one.cycle);
+    let show = one.clock();
+    // A start file may be of a later time.
+    one.advance(begin, u64::MAX, &show)?;
+    two.advance(begin, u64::MAX, &show)?;
+    let mut replays = [Replay::new(one.run, cycle)?, Replay::new(two.run, cycle)?];
+    let (mut length, mut is_over) = (cycle, false);
+    let found = loop {
+        length *= 2.0;
+        let until = end.min(begin + length);
+        for replay in &mut replays {
+            let before = replay.present().time();
+            let ended = (1..=PARTS).try_for_each(|part| {
+                let time = before + (until - before) * f64::from(part) / f64::from(PARTS);
+                show(time);
+                replay.run_until(time)
+            });
+            if let Err(error) = ended {
+                tell_end(replay.present(), &error);
+                is_over = true;
+            }
+        }
+        let found = replays[0].differences(&replays[1], tolerance)?;
+        let found = found.ok_or("the runs have no time in common")?;
+        if is_over || until >= end || (found.partners.is_some() && found.apart.is_some()) {
+            break found;
+        }
+    };
+    say_found::<E>(&found, replays.each_ref().map(Replay::present), tolerance)?;
+    let are_same = found.partners.is_none() && found.apart.is_none();
+    Ok(if are_same { End::Done } else { End::Different })
+}
+
+/// Refuses runs that have no disk in common, and tells about disks of one run alone.
+fn check_disks(one: &[Disk], two: &[Disk]) -> Result<(), Failure> {
+    let ids: HashSet<u64> = one.iter().map(Disk::id).collect();
+    let common = two.iter().filter(|disk| ids.contains(&disk.id())).count();
+    if common == 0 {
+        return Err("the runs have no disk in common: no id of one is in the other".into());
+    }
+    let alone = one.len() + two.len() - 2 * common;
+    if alone > 0 {
+        tell(&format!("the number of disks in one of the runs alone, which are not compared, is {alone}"));
+    }
+    Ok(())
+}
+
+/// Prints the differences.
+fn say_found<E: Experiment>(found: &Differences, runs: [&Run<E>; 2], tolerance: f64) -> Result<(), Failure> {
+    let until = runs[0].time().min(runs[1].time());
+    match &found.partners {
+        None => say(&format!("until {until}, all disks meet the same partners"))?,
+        Some(other) => {
+            let of = |run: usize| row(&other.collisions[run], runs[run].boundary(), false);
+            let [one, two] = [of(0), of(1)];
+            say(&format!("disk {} meets other partners:\n{HEADINGS}\n{one}\n{two}", other.id))?;
+        }
+    }
+    let apart = match &found.apart {
+        None => format!("until {until}, no disk is farther than {tolerance} from its place in the other run"),
+        Some(it) => {
+            format!("disk {} is {} away from its place in the other run at {}", it.id, it.distance, it.time)
+        }
+    };
+    say(&apart)
+}

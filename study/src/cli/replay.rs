@@ -1,0 +1,169 @@
+//! The command `replay`: the collisions of a value once more, or the state before one of them.
+
+use std::collections::VecDeque;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use granular_edmd::replay::{Replayed, Steps};
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, State};
+
+use super::collision_rows::{HEADINGS, row};
+use super::source::{Place, Source, ending, tell_end};
+use super::watch::{self, is_stopped};
+use super::{End, Failure, PlanError, StudyError, told};
+use crate::{Experiment, Run};
+
+/// Number of collisions that are written, unless the command line says more.
+const FEW: usize = 10;
+
+/// Number of collisions between two looks at the signals.
+const BATCH: usize = 1024;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Wishes {
+    /// The plan, in TOML (`-` for standard input), or the folder of a study.
+    plan: PathBuf,
+    #[command(flatten)]
+    place: Place,
+    /// Absolute time after which all collisions are written.
+    #[arg(long, allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Id of a disk, to write only its collisions.
+    #[arg(long)]
+    disk: Option<u64>,
+    /// Number of collisions to write, the last ones; 10 if there is no `--from`.
+    #[arg(long)]
+    last: Option<usize>,
+    /// Number of a collision, to write the state before it instead: as a checkpoint for `--start`, or as
+    /// disks if the file ends in .xyz (with the time), .csv or .data.
+    #[arg(long, conflicts_with_all = ["from", "disk", "last", "json"])]
+    before: Option<u64>,
+    /// File to write; standard output if not given. An existing file is not overwritten.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Writes a JSON object for each collision instead of CSV.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs a value again, and writes what is wanted. A file that does not become whole is removed.
+pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
+    let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
+    wishes.check(&source)?;
+    let mut out: Box<dyn Write> = match &wishes.out {
+        Some(path) => Box::new(fs::File::create_new(path).map_err(StudyError::io("write", path))?),
+        None => Box::new(io::stdout()),
+    };
+    let mut write = |bytes: &[u8]| {
+        let written = out.write_all(bytes).and_then(|()| out.flush());
+        told(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
+    };
+    watch::listen()?;
+    let written = match wishes.before {
+        Some(number) => state_before(number, source, wishes.out.as_deref(), &mut write),
+        None => rows(wishes, source, &mut write),
+    };
+    if let (Some(path), Err(_) | Ok(End::Interrupted)) = (&wishes.out, &written) {
+        let _ = fs::remove_file(path);
+    }
+    written
+}
+
+impl Wishes {
+    /// Refuses what the run cannot have.
+    fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<E>) -> Result<(), PlanError> {
+        let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
+        match (self.from, self.disk.filter(|id| !is_there(id))) {
+            (Some(from), _) if from.is_nan() || from >= *end => {
+                Err(PlanError::Toml(format!("no time is after {from} and until {end}")))
+            }
+            (_, Some(id)) => {
+                Err(PlanError::Toml(format!("there is no disk {id} among the {} of the run", run.len())))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Writes collisions as they come, or the last ones at the end.
+fn rows<E: Experiment>(
+    wishes: &Wishes,
+    mut source: Source<E>,
+    write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
+) -> Result<End, Failure> {
+    let (end, show) = (source.end, source.clock());
+    let from = wishes.from.unwrap_or(f64::NEG_INFINITY);
+    if from > source.run.time() && !source.advance(from, u64::MAX, &show)? {
+        return Ok(End::Interrupted);
+    }
+    let last = wishes.last.unwrap_or(if wishes.from.is_some() { usize::MAX } else { FEW });
+    let is_own = |it: &Replayed| wishes.disk.is_none_or(|id| it.id == id || it.partner_id == Some(id));
+    let (mut steps, mut kept, mut is_over) = (Steps::new(source.run), VecDeque::new(), false);
+    let mut text = if wishes.json { String::new() } else { HEADINGS.to_owned() + "\n" };
+    while !is_over {
+        for _ in 0..BATCH {
+            // The collisions up to an error are no less wanted.
+            let next = steps.next(end).unwrap_or_else(|error| {
+                tell_end(steps.run(), &error);
+                None
+            });
+            is_over = next.is_none();
+            kept.extend(next.filter(is_own));
+            kept.drain(..kept.len().saturating_sub(last));
+            if is_over {
+                break;
+            }
+        }
+        if is_stopped() {
+            return Ok(End::Interrupted);
+        }
+        show(steps.run().time());
+        if is_over || last == usize::MAX {
+            let rows = kept.drain(..).map(|it| row(&it, steps.run().boundary(), wishes.json) + "\n");
+            text.extend(rows);
+            is_over |= !write(text.as_bytes())?;
+            text.clear();
+        }
+    }
+    Ok(End::Done)
+}
+
+/// Writes the state before a collision, also before one that ended the run with an error.
+fn state_before<E: Experiment>(
+    number: u64,
+    mut source: Source<E>,
+    path: Option<&Path>,
+    write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
+) -> Result<End, Failure> {
+    let (first, end, show) = (source.run.counters().collisions() + 1, source.end, source.clock());
+    if number < first {
+        let message = format!("the first collision of this run has the number {first}, not {number}");
+        return Err(PlanError::Toml(message).into());
+    }
+    let ended = source.advance(end, number - 1, show);
+    let found = source.run.counters().collisions();
+    match ended {
+        Ok(false) => return Ok(End::Interrupted),
+        Err(error) if found + 1 < number => return Err(error.into()),
+        _ => {}
+    }
+    let state = contents::<E>(&mut source.run, path)?;
+    // The run need not have one more collision.
+    if found + 1 < number || matches!(Steps::new(source.run).next(end), Ok(None)) {
+        return Err(format!("there is no collision {number} until {end}: the last one is {found}").into());
+    }
+    write(&state).map(|_| End::Done)
+}
+
+/// Returns the contents of a file with the present state, by the ending of its name.
+fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
+    let mut contents = Vec::new();
+    match path.map_or("csv", ending) {
+        "xyz" => ExtendedXyz.write_frame(&Frame::new(0, &run.snapshot()), &mut contents)?,
+        "csv" => State::of(&run.snapshot()).write_csv(&mut contents)?,
+        "data" => State::of(&run.snapshot()).write_lammps_data(&mut contents)?,
+        _ => contents = run.checkpoint().to_bytes()?,
+    }
+    Ok(contents)
+}

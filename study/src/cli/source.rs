@@ -1,0 +1,138 @@
+//! The runs of `replay` and `diff`: a value of a plan or of a study, from its start or from a file.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use granular_edmd::Simulation;
+use granular_edmd::boundary::Boundary;
+use granular_edmd::collision::CollisionRule;
+use granular_edmd::simulation::{Checkpoint, Limits, RunEnd, RunError};
+use granular_edmd::trajectory::{self, State};
+
+use super::watch::{Watch, is_stopped};
+use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
+use crate::seed::derived_seed;
+use crate::{Experiment, ExperimentError, Progress, Run, Study};
+
+/// Wall-clock time between two looks at the signals.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// The value of a plan or a study, and the time until which it runs.
+#[derive(Debug, clap::Args)]
+pub(super) struct Place {
+    /// Index of the ramp, counted from 0.
+    #[arg(long, default_value_t = 0)]
+    ramp: usize,
+    /// Index of the value in the ramp, counted from 0. A value after the first one starts where an earlier
+    /// one ended, which only the folder of a study knows.
+    #[arg(long, default_value_t = 0)]
+    value: usize,
+    /// File from which the run starts instead: a checkpoint, or disks in a file that ends in .xyz (with their
+    /// time), .csv or .data (of LAMMPS).
+    #[arg(long)]
+    pub(super) start: Option<PathBuf>,
+    /// Absolute time at which the run ends; the end of the value if not given.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) until: Option<f64>,
+}
+
+/// A run at its start.
+pub(super) struct Source<E: Experiment> {
+    pub(super) run: Run<E>,
+    pub(super) cycle: f64,
+    /// Time at which the run ends.
+    pub(super) end: f64,
+}
+
+impl<E: Experiment> Source<E> {
+    /// Opens a value of a plan, or of the study in a folder.
+    pub(super) fn open(path: &Path, place: &Place, start: Option<&Path>) -> Result<Self, Failure> {
+        let Place { ramp, value, until, .. } = *place;
+        let (run, cycle, end) = if path.is_dir() && start.is_none() {
+            let (experiment, run, end) = Study::<E>::open(path)?.start_of(ramp, value)?;
+            (run, experiment.cycle(), end)
+        } else {
+            let path = if path.is_dir() { &path.join("plan.toml") } else { path };
+            let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+            let (experiment, seed) = (plan.experiment(ramp, value)?, plan.ramp_seed(ramp));
+            let run = match start {
+                Some(file) => begun(&experiment, file, seed),
+                None if value == 0 => experiment.build(seed),
+                None => Err("it starts where another one ended: `run` the plan, and give the folder".into()),
+            };
+            let run = run.map_err(|source| StudyError::Build { ramp, value, source })?;
+            let end = run.time() + plan.protocol().cycles() as f64 * experiment.cycle();
+            (run, experiment.cycle(), end)
+        };
+        let (start, until) = (run.time(), until.unwrap_or(end));
+        if until > start && until <= end {
+            return Ok(Self { run, cycle, end: until });
+        }
+        let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
+        Err(PlanError::Toml(message).into())
+    }
+
+    /// Returns a display of the simulated time, in cycles.
+    pub(super) fn clock(&self) -> impl Fn(f64) + use<E> {
+        let (watch, start, end, cycle) = (Watch::new(), self.run.time(), self.end, self.cycle);
+        move |time| {
+            let [done, total] = [time, end].map(|time| ((time - start) / cycle) as u64);
+            watch.show(&Progress { ramp: 0, value: 0, done, total });
+        }
+    }
+
+    /// Runs until a time or a number of all collisions, whichever is first. Returns false if a signal came.
+    pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<bool, RunError> {
+        while !is_stopped() {
+            let left = number.saturating_sub(self.run.counters().collisions());
+            let limits = Limits::until(until).with_most_collisions(left).with_wall_clock(LOOK);
+            if self.run.run(&limits, &mut ())? != RunEnd::WallClock {
+                return Ok(true);
+            }
+            show(self.run.time());
+        }
+        Ok(false)
+    }
+}
+
+/// Starts from a file: a checkpoint, or disks.
+fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>, ExperimentError> {
+    let (rule, boundary) = (experiment.rule()?, experiment.boundary()?);
+    let state = match ending(path) {
+        "xyz" => trajectory::read(path, State::from_xyz)?,
+        "csv" => trajectory::read(path, State::from_csv)?,
+        "data" => trajectory::read(path, State::from_lammps_data)?,
+        _ => {
+            let run = Simulation::resume(&Checkpoint::read(path)?, rule, boundary).build()?;
+            let is_same = run.gravity() == experiment.gravity();
+            return if is_same { Ok(run) } else { Err("the checkpoint has another gravity".into()) };
+        }
+    };
+    if state.domain().is_some_and(|domain| domain != boundary.domain()) {
+        tell(&format!("{} is of another box", path.display()));
+    }
+    let builder = Simulation::builder(rule, boundary).gravity(experiment.gravity());
+    let builder = builder.start_time(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
+    Ok(builder.disks(state.into_disks()).build()?)
+}
+
+/// Returns the ending of a file's name.
+pub(super) fn ending(path: &Path) -> &str {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default()
+}
+
+/// Tells what the reader of a result should know, on standard error.
+pub(super) fn tell(note: &str) {
+    let _ = writeln!(io::stderr(), "note: {note}");
+}
+
+/// Tells the error with which a run ended. Errors know disks by their indices, and tables by their ids.
+pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
+    let id = match error {
+        RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. } => run.disk(*disk),
+        _ => None,
+    };
+    let id = id.map_or_else(String::new, |disk| format!("; that disk has the id {}", disk.id()));
+    tell(&format!("the run ended: {}{id}", chain(error)));
+}

@@ -1,0 +1,291 @@
+//! The errors of a study, its plan and its files.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use granular_edmd::ParameterError;
+use thiserror::Error;
+
+/// A reason why an experiment cannot be built or changed: any error of its parts.
+pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
+
+/// An error in a plan: it cannot be run.
+///
+/// A message does not repeat its [source](std::error::Error::source): report the whole chain.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// A number of the protocol, or the seed, is out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The text is not a plan, or the plan cannot be a text.
+    #[error("{0}")]
+    Toml(String),
+    /// The experiment refuses the parameters of a value.
+    #[error("the experiment cannot be{place}")]
+    Experiment {
+        /// The parameters that vary, with their values; empty if the plan varies none.
+        place: String,
+        /// The reason.
+        source: ExperimentError,
+    },
+    /// There is no parameter of this name.
+    #[error("there is no parameter `{parameter}` ({reason}); there are {}", known.join(", "))]
+    UnknownParameter {
+        /// The name.
+        parameter: String,
+        /// The names of the parameters that have a value.
+        known: Vec<String>,
+        /// The reason why it is not a parameter.
+        reason: String,
+    },
+    /// A short name stands for several parameters.
+    #[error("`{parameter}` may be any of {}", known.join(", "))]
+    Ambiguous {
+        /// The name.
+        parameter: String,
+        /// The parameters that the name may stand for.
+        known: Vec<String>,
+    },
+    /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order,
+    /// it varies twice, or it is ramped and cannot change with the disks in place.
+    #[error("{parameter} {reason}")]
+    Varied {
+        /// The parameter.
+        parameter: String,
+        /// The reason.
+        reason: String,
+    },
+    /// There are more ramps or values than can be numbered.
+    #[error("{count} ramps and values are too many: at most {most} are possible")]
+    TooMany {
+        /// The number of ramps and values.
+        count: u128,
+        /// The largest possible number.
+        most: usize,
+    },
+    /// A column, a table or a varied parameter has a name that is taken or not valid.
+    #[error("{name:?} cannot be the name of a {what}: {reason}")]
+    Name {
+        /// The name.
+        name: String,
+        /// The thing that has it: `column`, `table` or `varied parameter`.
+        what: &'static str,
+        /// The reason.
+        reason: String,
+    },
+}
+
+/// An error in creating, opening, running or reading a study.
+///
+/// A message does not repeat its [source](std::error::Error::source): report the whole chain.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// The plan cannot be carried out.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A file cannot be used as a plan of this experiment.
+    #[error("{} cannot be used as a plan of this experiment", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: PlanError,
+    },
+    /// The path of the folder is empty.
+    #[error("the path of a study's folder is empty; take `.` for this folder")]
+    NoPath,
+    /// The folder holds other files, and no plan. A study does not mix its files with others.
+    #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
+    Occupied {
+        /// The folder.
+        path: PathBuf,
+        /// One of the files.
+        name: String,
+    },
+    /// The study has no such ramp.
+    #[error("there is no ramp {ramp}: the study has {ramps}, counted from 0")]
+    NoSuchRamp {
+        /// The index that was asked for.
+        ramp: usize,
+        /// The number of ramps.
+        ramps: usize,
+    },
+    /// The grid of the study has no such point.
+    #[error("there is no point {point}: the study has {points}, counted from 0")]
+    NoSuchPoint {
+        /// The index that was asked for.
+        point: usize,
+        /// The number of points.
+        points: usize,
+    },
+    /// A file or folder cannot be read or written.
+    #[error("cannot {action} {}", path.display())]
+    Io {
+        /// The action that failed: `read`, `write`, `create` or `remove`.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// The answer of the system.
+        source: io::Error,
+    },
+    /// A file cannot be locked: some file systems of networks have no locks.
+    #[error(
+        "cannot lock {}; run the study on a file system with locks, such as a disk of each node, and join the parts",
+        path.display()
+    )]
+    NoLock {
+        /// The file.
+        path: PathBuf,
+        /// The answer of the system.
+        source: io::Error,
+    },
+    /// A table would take the place of another file.
+    #[error("{} exists already; choose another folder for tables", path.display())]
+    Taken {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The folder holds a study already.
+    #[error("{} holds a study already", path.display())]
+    Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder holds no study.
+    #[error("{} holds no study", path.display())]
+    Missing {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder holds a study with another plan.
+    #[error("{} holds a study with another plan; choose another folder: {}", path.display(), told(differences))]
+    Different {
+        /// The folder.
+        path: PathBuf,
+        /// The fields in which the plans differ.
+        differences: Vec<Difference>,
+    },
+    /// A file was cut or changed, or belongs elsewhere.
+    #[error("{} is damaged: {reason}; run the study with a check of its records to redo it", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// The damage.
+        reason: String,
+    },
+    /// A record belongs to another plan, so somebody has changed the record or the plan.
+    #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A record was made with another rule, other walls or another revision than those of the experiment now:
+    /// its code changed.
+    #[error(
+        "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
+        path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The part that differs.
+        part: &'static str,
+    },
+    /// The study was begun by code with other results, or with another revision of the experiment.
+    #[error(
+        "{} holds a study of other code: {}; take a new folder, or accept the change if its values can be compared",
+        path.display(), told(differences)
+    )]
+    Code {
+        /// The folder.
+        path: PathBuf,
+        /// The numbers that differ: `results` of this crate, `revision` of the experiment, `columns`.
+        differences: Vec<Difference>,
+    },
+    /// A value cannot be started, or the state from which it starts cannot be resumed.
+    #[error("value {value} of ramp {ramp} cannot start")]
+    Build {
+        /// Index of the ramp.
+        ramp: usize,
+        /// Index of the value in it.
+        value: usize,
+        /// The reason.
+        source: ExperimentError,
+    },
+    /// The contents of a file cannot be encoded.
+    #[error("the contents of {} cannot be encoded", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// The reason, whose type is not part of the public API.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+/// Returns an error with its sources, in one line.
+pub(super) fn chain(error: &dyn std::error::Error) -> String {
+    let sources = std::iter::successors(error.source(), |&source| source.source()).map(ToString::to_string);
+    std::iter::once(error.to_string()).chain(sources).collect::<Vec<_>>().join(": ")
+}
+
+impl PlanError {
+    /// Returns the error of a parameter that cannot vary in this way.
+    pub(super) fn varied(parameter: &str, reason: impl Into<String>) -> Self {
+        Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
+    }
+
+    /// Returns the error of a text that is no TOML, or no plan.
+    pub(super) fn toml(error: &impl fmt::Display) -> Self {
+        Self::Toml(shortened(&error.to_string()))
+    }
+}
+
+/// Returns a message with its lines cut short, since it repeats a line of the text, which may be long.
+pub(super) fn shortened(message: &str) -> String {
+    const LONGEST: usize = 160;
+    let short = |line: &str| match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} …", &line[..end]),
+        None => line.to_owned(),
+    };
+    message.trim().lines().map(short).collect::<Vec<_>>().join("\n")
+}
+
+impl StudyError {
+    /// Returns a function that turns an error of the system into one that names the action and the file.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io { action, path: path.to_owned(), source }
+    }
+}
+
+/// A field in which two plans differ.
+///
+/// The value of an absent field is `None`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Difference {
+    /// The name of the field, after the names of the groups that contain it.
+    pub field: String,
+    /// The value in the plan of the folder.
+    pub old: Option<String>,
+    /// The value in the plan that was given.
+    pub new: Option<String>,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
+        write!(formatter, "{} is {} there and {} here", self.field, told(&self.old), told(&self.new))
+    }
+}
+
+/// Returns the first differences as text.
+fn told(differences: &[Difference]) -> String {
+    const FIRST: usize = 5;
+    let told: Vec<String> = differences.iter().take(FIRST).map(ToString::to_string).collect();
+    let more = differences.len().saturating_sub(FIRST);
+    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+    format!("{}{more}", told.join(", "))
+}

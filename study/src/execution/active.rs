@@ -1,0 +1,262 @@
+//! One value of a ramp, from its start to its record: a pure function of the plan, the index and the record
+//! from which it starts.
+
+use std::time::Duration;
+
+use granular_edmd::Simulation;
+use granular_edmd::simulation::{Checkpoint, Counters, RunEnd, RunError};
+
+use super::sliced;
+use crate::errors::{ExperimentError, StudyError, chain};
+use crate::experiment::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
+#[cfg(feature = "cli")]
+use crate::opening::Study;
+use crate::plan::refinement::Step;
+use crate::{Experiment, Plan, Protocol, Run};
+
+/// A value to be run.
+pub(super) struct Value<'a, E: Experiment> {
+    pub(super) plan: &'a Plan<E>,
+    pub(super) origin: Origin,
+    pub(super) experiment: E,
+    pub(super) step: Step,
+    /// The record from which the value starts, if there is one.
+    pub(super) before: Option<&'a Record<E>>,
+}
+
+/// An unfinished value as data: its place, the work so far, and its state.
+pub(super) type Partial<E> =
+    (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint);
+
+/// The finished work of a value.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Work<S, O> {
+    /// The start of the value.
+    start: Cycles,
+    steps: u64,
+    /// True if the observer has seen the start of a run, and not its end.
+    is_under_way: bool,
+    /// Counters at the start of the value.
+    counters: Counters,
+    measured: Measured<S, O>,
+}
+
+/// A value that is being run.
+pub(super) struct Active<'a, E: Experiment> {
+    value: &'a Value<'a, E>,
+    work: Work<E::Sample, E::Observer>,
+    run: Run<E>,
+}
+
+impl<'a, E: Experiment> Value<'a, E> {
+    /// Starts the value, or goes on from the record of a study with fewer samples, if that keeps its state.
+    pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
+        let run = self.first_state()?;
+        let (start, counters) = (self.start(), *run.counters());
+        if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), .. }) =
+            shorter.map(|record| record.contents)
+        {
+            let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
+            let steps = self.plan.protocol().steps() - missing;
+            let work = Work { start, steps, is_under_way: false, counters, measured };
+            if let Ok(active) = self.go_on((self.origin.clone(), work, state)) {
+                return Ok(active);
+            }
+        }
+        let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
+        let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
+        let work = Work { start, steps: 0, is_under_way: false, counters, measured };
+        Ok(Active { value: self, work, run })
+    }
+
+    /// Returns whether a record of the same ramp in another study has all that the record of this value
+    /// needs.
+    pub(super) fn is_finished_by(&self, Record { contents, .. }: &Record<E>) -> bool {
+        let (samples, all) = (contents.measured.samples.len() as u64, self.plan.protocol().samples());
+        let is_whole = if contents.outcome == Outcome::Completed { samples == all } else { samples < all };
+        is_whole && (contents.state.is_some() || !self.plan.keeps_state(self.origin.value))
+    }
+
+    /// Returns the record of this value from that of the same value in another study.
+    pub(super) fn taken_over(&self, Record { contents, .. }: Record<E>) -> Record<E> {
+        let origin = Origin { maker: contents.origin.maker, ..self.origin.clone() };
+        let state = contents.state.filter(|_| self.plan.keeps_state(self.origin.value));
+        Record { experiment: self.experiment.clone(), contents: Contents { origin, state, ..contents } }
+    }
+
+    /// Continues the value where it was saved, or returns the reason why it cannot.
+    pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, String> {
+        let protocol = self.plan.protocol();
+        work.check(protocol)?;
+        check(work.start == self.start(), "it starts elsewhere")?;
+        let [from, to] = [work.steps, protocol.steps().min(work.steps + 1)]
+            .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
+        check_state(&state, from..=to)?;
+        work.measured.check(&self.experiment, Some(&state))?;
+        let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
+        check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
+        Ok(Active { value: self, work, run })
+    }
+
+    /// Returns the time at which the value starts, in whole cycles if the length of a cycle has not changed.
+    fn start(&self) -> Cycles {
+        let Some(before) = self.before else { return Cycles::START };
+        let (end, cycle) = (before.contents.end, before.experiment.cycle());
+        if cycle == self.experiment.cycle() { end } else { Cycles { since: end.time(0.0, cycle), count: 0 } }
+    }
+
+    /// Returns the simulation at the start of the value.
+    fn first_state(&self) -> Result<Run<E>, StudyError> {
+        let Some(before) = self.before else {
+            return self.experiment.build(self.origin.seed).map_err(|source| self.cannot_start(source));
+        };
+        let state =
+            before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
+        let mut run = Self::resume(state, &before.experiment).map_err(|source| self.cannot_start(source))?;
+        self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
+        Ok(run)
+    }
+
+    /// Resumes a saved state with the rule and the walls of the experiment that saved it.
+    fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, ExperimentError> {
+        Ok(Simulation::resume(state, saved.rule()?, saved.boundary()?).build()?)
+    }
+
+    fn cannot_start(&self, source: ExperimentError) -> StudyError {
+        StudyError::Build { ramp: self.origin.ramp, value: self.origin.value, source }
+    }
+}
+
+#[cfg(feature = "cli")]
+impl<E: Experiment> Study<E> {
+    /// Returns the experiment of a value, the simulation at its start, and the time of its end.
+    pub(crate) fn start_of(&self, ramp: usize, value: usize) -> Result<(E, Run<E>, f64), StudyError> {
+        let before = self.ramp_records(ramp).take(value).map(|record| Ok(self.plan.seen(&record?)));
+        let seen: Vec<_> = before.collect::<Result<_, StudyError>>()?;
+        let next = self.plan.next(&seen);
+        let reason = if next.is_some() { "values before it are finished" } else { "values are in the ramp" };
+        let absent = || format!("only {} {reason}", seen.len()).into();
+        let step = next.filter(|_| seen.len() == value);
+        let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
+        // Other code would not do the same.
+        if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
+            return Err(StudyError::Changed { path: self.folder.record(ramp, value), part: "revision" });
+        }
+        let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
+        let experiment = self.plan.experiment_at(ramp, step.at)?;
+        let (plan, origin, before) = (&self.plan, self.origin(ramp, value), before.as_ref());
+        let value = Value { plan, origin, experiment, step, before };
+        let (run, end) = (value.first_state()?, plan.protocol().cycles() as f64);
+        let end = value.start().time(end, value.experiment.cycle());
+        Ok((value.experiment, run, end))
+    }
+}
+
+impl<E: Experiment> Active<'_, E> {
+    /// Returns the number of steps that are done.
+    pub(super) const fn steps(&self) -> u64 {
+        self.work.steps
+    }
+
+    pub(super) fn is_done(&self) -> bool {
+        self.work.steps >= self.value.plan.protocol().steps()
+    }
+
+    /// Runs the next step, which settles or takes a sample, for this wall-clock time at most. The observer
+    /// may end the value during the step. The next call continues a step that takes longer, with the same
+    /// bits.
+    pub(super) fn step(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
+        let protocol = self.value.plan.protocol();
+        let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
+        let end = protocol.end_of(step) as f64;
+        let at = |cycles: f64| self.work.start.time(cycles, cycle);
+        let (sample, end) = (at(end - protocol.lead()), at(end));
+        let ended = if protocol.is_sampled(step) {
+            self.sample(sample, end, slice)?
+        } else {
+            sliced::run(&mut self.run, end, slice, &mut (), &mut self.work.is_under_way)?
+        };
+        if ended == RunEnd::Time {
+            self.work.steps += 1;
+        }
+        Ok(ended)
+    }
+
+    fn sample(&mut self, time: f64, end: f64, slice: Duration) -> Result<RunEnd, RunError> {
+        let Work { measured, is_under_way, steps, .. } = &mut self.work;
+        let Measured { times, samples, observer } = measured;
+        // A slice may have ended between the sample and the end of the step.
+        if samples.len() as u64 == self.value.plan.protocol().samples_of(*steps) {
+            let ended = sliced::run(&mut self.run, time, slice, observer, is_under_way)?;
+            if ended != RunEnd::Time {
+                return Ok(ended);
+            }
+            let snapshot = self.run.snapshot();
+            times.push(snapshot.time());
+            samples.push(self.value.experiment.sample(&snapshot, observer));
+        }
+        sliced::run(&mut self.run, end, slice, observer, is_under_way)
+    }
+
+    /// Returns the unfinished value as data, to go on with it later.
+    pub(super) fn partial(&self) -> (&Origin, &Work<E::Sample, E::Observer>, Checkpoint) {
+        (&self.value.origin, &self.work, self.run.checkpoint())
+    }
+
+    /// Returns the record of a finished value.
+    pub(super) fn record(self) -> Record<E> {
+        let mut end = self.work.start;
+        end.count += self.value.plan.protocol().cycles();
+        let state = self.run.checkpoint();
+        self.into_record(Outcome::Completed, end, state)
+    }
+
+    /// Returns the record of a value that its observer has ended.
+    pub(super) fn stopped(self) -> Record<E> {
+        let (time, state) = (self.run.time(), self.run.checkpoint());
+        self.into_record(Outcome::Stopped { time }, Cycles { since: time, count: 0 }, state)
+    }
+
+    /// Returns the record of a value that the engine could not finish. The next value starts from the state
+    /// in which this one started.
+    pub(super) fn failed(self, error: &RunError) -> Result<Record<E>, StudyError> {
+        let (time, reason) = (self.run.time(), chain(error));
+        let outcome = match error {
+            RunError::Stalled { .. } => Outcome::Stalled { time, reason },
+            _ => Outcome::Failed { time, reason },
+        };
+        let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
+        Ok(self.into_record(outcome, start, state))
+    }
+
+    fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Record<E> {
+        let Self { value, work, run } = self;
+        let parts = [state.rule(), state.boundary()];
+        let state = value.plan.keeps_state(value.origin.value).then_some(state);
+        let contents = Contents {
+            origin: value.origin.clone(),
+            leg: value.step.leg,
+            at: value.step.at,
+            outcome,
+            end,
+            measured: work.measured,
+            counters: run.counters().since(&work.counters),
+            parts,
+            state,
+        };
+        Record { experiment: value.experiment.clone(), contents }
+    }
+}
+
+impl<S, O> Work<S, O> {
+    /// Checks that the work so far fits the protocol.
+    fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
+        check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
+        let (samples, next) = (protocol.samples_of(self.steps), protocol.samples_of(self.steps + 1));
+        let found = self.measured.samples.len() as u64;
+        // The sample of a step that is under way may be taken.
+        let is_taken = found == next && self.steps < protocol.steps();
+        check(found == samples || is_taken, "its samples are not as many as its steps")
+    }
+}

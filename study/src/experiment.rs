@@ -1,0 +1,258 @@
+//! The trait of experiments, systems that can be studied, and the types that its methods name: the records of
+//! an experiment, and the columns of its tables.
+
+pub(super) mod columns;
+pub(super) mod record;
+
+use granular_edmd::boundary::Boundary;
+use granular_edmd::collision::CollisionRule;
+use granular_edmd::observable::{Observer, Snapshot};
+use granular_edmd::quantity::positive;
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::{Disk, Fingerprint, Gravity, Simulation};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::ExperimentError;
+use super::seed::derived_seed;
+use columns::{Column, Table};
+use record::Record;
+
+/// The simulation of an experiment.
+pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;
+
+/// A system under study, given by its parameters: its simulation, its measurements, and the columns of its
+/// tables.
+///
+/// An experiment is a serializable type of your own. Its fields are the parameters, which a
+/// [`Plan`](super::Plan) sets by name (`"friction"`, `"base.amplitude"`), and its methods say what the
+/// parameters mean. With `#[serde(deny_unknown_fields)]`, any misspelled name in a plan is an error. Without
+/// it, only the misspelled name of a parameter that varies is an error.
+/// [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
+///
+/// # Contract
+/// 1. All methods are functions of the parameters and their arguments: they use no clock and no other random
+///    numbers. So the files of a study have the same bytes, however often it is interrupted.
+/// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
+///    that [`build`](Self::build) makes, since a run is resumed with them.
+/// 3. Samples and observer read back as they were written, in a binary format without names of fields. So
+///    their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study that
+///    cannot read them back ends with an error.
+///
+/// A *value* is the run at one value of the parameters. A study guarantees that it calls `sample` at the
+/// times of the protocol, in order, and that the observer has seen everything since the value has settled.
+/// When a run is interrupted, the study writes the observer and reads it back.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Smooth;
+/// use granular_edmd::observable::{CollisionCounts, Snapshot};
+/// use granular_edmd_study::{Axis, Column, Control, Experiment, ExperimentError, Plan, Protocol, Study};
+/// use granular_edmd::{Disk, Fingerprint, initial};
+/// use serde::{Deserialize, Serialize};
+///
+/// /// A gas that cools, in a closed box.
+/// #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// #[serde(deny_unknown_fields)]
+/// struct Cooling {
+///     disks: usize,
+///     loss: f64,
+/// }
+///
+/// impl Experiment for Cooling {
+///     type Rule = Smooth;
+///     type Boundary = Container;
+///     type Observer = ();
+///     type Sample = f64;
+///
+///     fn revision() -> Fingerprint {
+///         Fingerprint::of("Cooling 1")
+///     }
+///     fn rule(&self) -> Result<Smooth, ExperimentError> {
+///         Ok(Smooth::from_inelasticity(self.loss)?)
+///     }
+///     fn boundary(&self) -> Result<Container, ExperimentError> {
+///         Ok(Container::closed(20.0, 20.0)?)
+///     }
+///     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
+///         let disks = initial::lattice(&self.boundary()?, self.disks, 0.5)?;
+///         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
+///     }
+///     fn observer(&self) -> Result<(), ExperimentError> {
+///         Ok(())
+///     }
+///     fn sample(&self, snapshot: &Snapshot<'_>, _: &mut ()) -> f64 {
+///         snapshot.mean(|disk| 0.5 * disk.velocity().length_squared())
+///     }
+///     fn columns() -> Vec<Column<Self>> {
+///         vec![Column::sampled("energy", "energy", |energy| *energy)]
+///     }
+/// }
+///
+/// let plan = Plan::new(Cooling { disks: 50, loss: 0.0 }, Protocol::new(0, 5, 1)?, 1)?;
+/// let plan = plan.with_axis(Axis::new("loss", [0.0, 0.1])?)?;
+/// # let folder = std::env::temp_dir().join(format!("granular-edmd-experiment-{}", std::process::id()));
+/// let study = Study::open_or_create(&folder, &plan)?;
+/// study.run(&Control::default())?;
+/// let last = |ramp| Ok::<_, ExperimentError>(study.record(ramp, 0)?.ok_or("not done")?.samples()[4]);
+/// assert!(last(1)? < last(0)?);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not an experiment",
+    label = "an `Experiment` is expected here",
+    note = "implement `Experiment` for the type whose fields are your parameters"
+)]
+pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
+    /// Type of the collision rule.
+    type Rule: CollisionRule;
+    /// Type of the walls.
+    type Boundary: Boundary;
+    /// Type of the observer; `()` for none.
+    type Observer: Observer + Serialize + DeserializeOwned;
+    /// Type of the data that a sample keeps: numbers, lists, anything that can be serialized.
+    type Sample: Serialize + DeserializeOwned;
+
+    /// Returns the revision of the code of this type, which a study keeps and compares.
+    ///
+    /// Values of different code must not be mixed, so a study with another revision is refused.
+    /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment, changes
+    /// by itself with every edit of that file, also of a comment. `Fingerprint::of("Cooling 2")` changes when
+    /// you raise the number: do so whenever rule, walls, disks, observer or sample give other numbers than
+    /// before. Code in other files, and in other crates, is covered only if you add it with
+    /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the
+    /// [`RESULTS`](granular_edmd::RESULTS) of this crate.
+    fn revision() -> Fingerprint;
+
+    /// Returns the collision rule of these parameters.
+    ///
+    /// # Errors
+    /// If the parameters do not give a rule.
+    fn rule(&self) -> Result<Self::Rule, ExperimentError>;
+
+    /// Returns the walls of these parameters.
+    ///
+    /// # Errors
+    /// If the parameters do not give walls.
+    fn boundary(&self) -> Result<Self::Boundary, ExperimentError>;
+
+    /// Returns the disks at the start.
+    ///
+    /// A plan can ask for any number of them. So refuse one that no memory holds before you make a vector of
+    /// that length.
+    ///
+    /// # Errors
+    /// If they do not fit.
+    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError>;
+
+    /// Returns gravity; a number turns into it by `into`, and points down.
+    fn gravity(&self) -> Gravity {
+        Gravity::NONE
+    }
+
+    /// Returns the duration of a cycle, the unit of time of a [`Protocol`](super::Protocol), such as the
+    /// period of a vibrating base.
+    fn cycle(&self) -> f64 {
+        1.0
+    }
+
+    /// Returns the observer at the start of a value.
+    ///
+    /// # Errors
+    /// If these parameters do not give one.
+    fn observer(&self) -> Result<Self::Observer, ExperimentError>;
+
+    /// Returns the sample of this moment.
+    ///
+    /// It may read the observer, and empty it for the interval until the next sample, or let it add up over
+    /// all samples.
+    fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
+
+    /// Returns the columns of the tables, each with its name, unit and value.
+    fn columns() -> Vec<Column<Self>>;
+
+    /// Returns further tables besides those of values and samples, of profiles for example.
+    fn tables() -> Vec<Table<Self>> {
+        Vec::new()
+    }
+
+    /// Builds the simulation with which a ramp begins.
+    ///
+    /// # Errors
+    /// If the rule, the walls, the disks or the simulation cannot be made.
+    fn build(&self, seed: u64) -> Result<Run<Self>, ExperimentError> {
+        Ok(Simulation::builder(self.rule()?, self.boundary()?)
+            .disks(self.disks(derived_seed(seed, 0))?)
+            .gravity(self.gravity())
+            .seed(derived_seed(seed, 1))
+            .build()?)
+    }
+
+    /// Changes a simulation from the parameters of the previous value to these.
+    ///
+    /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
+    /// fingerprint stay as they are.
+    ///
+    /// # Errors
+    /// If the disks do not fit into the walls.
+    fn change(&self, simulation: &mut Run<Self>) -> Result<(), ExperimentError> {
+        simulation.set_rule(self.rule()?);
+        let boundary = self.boundary()?;
+        let is_same =
+            boundary.fingerprint().is_some_and(|new| Some(new) == simulation.boundary().fingerprint());
+        if !is_same {
+            simulation.set_boundary(boundary)?;
+        }
+        if self.gravity() != simulation.gravity() {
+            simulation.set_gravity(self.gravity())?;
+        }
+        Ok(())
+    }
+
+    /// Checks that the parameters are valid.
+    ///
+    /// A plan calls this before anything runs, for all values, or for a spread of 1024 if there are more.
+    /// A run calls it for each value that it begins.
+    ///
+    /// # Errors
+    /// If they are not.
+    fn check(&self) -> Result<(), ExperimentError> {
+        self.rule()?;
+        self.boundary()?;
+        self.observer()?;
+        self.gravity().checked()?;
+        positive("cycle", self.cycle())?;
+        Ok(())
+    }
+
+    /// Returns whether this parameter (by its full name, such as `base.amplitude`) may change while the disks
+    /// stay in place.
+    fn can_be_ramped(parameter: &str) -> bool {
+        let _ = parameter;
+        true
+    }
+
+    /// Checks that the contents of a file can belong to these parameters.
+    ///
+    /// The study has checked the checksum, the place and the time before. Many records keep no state.
+    ///
+    /// # Errors
+    /// The reason why they cannot, if there is one.
+    fn check_measured(
+        &self,
+        samples: &[Self::Sample],
+        observer: &Self::Observer,
+        state: Option<&Checkpoint>,
+    ) -> Result<(), ExperimentError> {
+        let _ = (samples, observer, state);
+        Ok(())
+    }
+
+    /// Returns the name of the state in a record, for a refined ramp
+    /// ([`Ramp::with_refinement`](super::Ramp::with_refinement)); `None` if the record shows no state.
+    fn state(record: &Record<Self>) -> Option<String> {
+        let _ = record;
+        None
+    }
+}

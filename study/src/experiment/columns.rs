@@ -1,0 +1,235 @@
+//! Columns of tables, each defined once by its name, unit and value.
+
+use std::fmt;
+
+use granular_edmd::observable::Heading;
+use granular_edmd::statistics::Estimate;
+
+use crate::{Experiment, PlanError, Record, Scalar};
+
+type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
+type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
+
+/// A column of the tables of a study: its name, its unit, and its value as a function of a sample or of a
+/// record.
+///
+/// ```
+/// use granular_edmd_study::{Column, vibrated_box::{Sample, VibratedBox}};
+/// // A row for each sample, and a mean with its error for each value.
+/// let height: Column<VibratedBox> = Column::sampled("height", "diameter", |sample: &Sample| sample.height);
+/// // A number for each value.
+/// let overlap: Column<VibratedBox> =
+///     Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap);
+/// assert_eq!((height.name(), overlap.unit()), ("height", "diameter"));
+/// ```
+pub struct Column<E: Experiment> {
+    pub(crate) heading: Heading,
+    pub(crate) kind: Kind<E>,
+    pub(crate) in_samples: bool,
+    pub(crate) in_values: bool,
+}
+
+pub(crate) enum Kind<E: Experiment> {
+    Sample(OfSample<E>),
+    Record(OfRecord<E, Scalar>),
+    Estimate(OfRecord<E, Estimate>),
+}
+
+impl<E: Experiment> Column<E> {
+    /// Creates a column from a quantity of each sample.
+    ///
+    /// The table of samples has its values. The table of values has its mean, with the error and the number
+    /// of independent samples. [`Self::of_sample`] and [`Self::averaged`] are for one of these tables alone.
+    pub fn sampled<T: Into<Scalar>>(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
+    ) -> Self {
+        let kind = Kind::Sample(Box::new(move |sample| value(sample).into()));
+        Self { heading: Heading::new(name, unit), kind, in_samples: true, in_values: true }
+    }
+
+    /// Creates a column of the table of samples from a quantity of each sample.
+    pub fn of_sample<T: Into<Scalar>>(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self { in_values: false, ..Self::sampled(name, unit, value) }
+    }
+
+    /// Creates a column of the table of values from the mean of a quantity of each sample, with its error.
+    pub fn averaged<T: Into<Scalar>>(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self { in_samples: false, ..Self::sampled(name, unit, value) }
+    }
+
+    /// Creates a column of the table of values from a quantity of each record.
+    pub fn of_record<T: Into<Scalar>>(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&Record<E>) -> T + Send + Sync + 'static,
+    ) -> Self {
+        let kind = Kind::Record(Box::new(move |record| value(record).into()));
+        Self { heading: Heading::new(name, unit), kind, in_samples: false, in_values: true }
+    }
+
+    /// Creates a column of the table of values from a quantity of each record that has an error.
+    pub fn estimated(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&Record<E>) -> Estimate + Send + Sync + 'static,
+    ) -> Self {
+        let (heading, kind) = (Heading::new(name, unit), Kind::Estimate(Box::new(value)));
+        Self { heading, kind, in_samples: false, in_values: true }
+    }
+
+    /// Returns the name of the column.
+    pub fn name(&self) -> &str {
+        self.heading.name()
+    }
+
+    /// Returns the unit of the column.
+    pub fn unit(&self) -> &str {
+        self.heading.unit()
+    }
+
+    /// Returns whether the values of the column have an error.
+    pub(crate) const fn has_error(&self) -> bool {
+        !matches!(self.kind, Kind::Record(_))
+    }
+
+    /// Returns the estimate for a record; `None` for a column that has no error.
+    pub(crate) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
+        match &self.kind {
+            Kind::Sample(value) => Some(record.mean(|sample| value(sample).number().unwrap_or(f64::NAN))),
+            Kind::Estimate(value) => Some(value(record)),
+            Kind::Record(_) => None,
+        }
+    }
+}
+
+impl<E: Experiment> fmt::Debug for Column<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Column");
+        debug.field("name", &self.name()).field("unit", &self.unit()).finish_non_exhaustive()
+    }
+}
+
+/// A table besides those of values and samples, with some rows for each record.
+///
+/// ```
+/// use granular_edmd_study::{Table, vibrated_box::VibratedBox};
+/// let profiles: Table<VibratedBox> =
+///     Table::new("profiles", [("height", "diameter"), ("packing_fraction", "1")], |record| {
+///         record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
+///     });
+/// assert_eq!(profiles.name(), "profiles");
+/// ```
+pub struct Table<E: Experiment> {
+    name: String,
+    columns: Vec<Heading>,
+    rows: OfRecord<E, Vec<Vec<f64>>>,
+}
+
+impl<E: Experiment> Table<E> {
+    /// Creates a table from its name, the names and units of its columns, and a function that returns the
+    /// rows of each record.
+    ///
+    /// A row has a number for each column: missing numbers are NaN, and surplus numbers are left out.
+    pub fn new(
+        name: impl Into<String>,
+        columns: impl IntoIterator<Item: Into<Heading>>,
+        rows: impl Fn(&Record<E>) -> Vec<Vec<f64>> + Send + Sync + 'static,
+    ) -> Self {
+        let columns = columns.into_iter().map(Into::into).collect();
+        Self { name: name.into(), columns, rows: Box::new(rows) }
+    }
+
+    /// Returns the name of the table, which is that of its file without the ending.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns the headings of the columns.
+    pub fn columns(&self) -> &[Heading] {
+        &self.columns
+    }
+
+    pub(crate) fn rows(&self, record: &Record<E>) -> Vec<Vec<f64>> {
+        (self.rows)(record)
+    }
+}
+
+impl<E: Experiment> fmt::Debug for Table<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Table");
+        debug.field("name", &self.name).field("columns", &self.columns).finish_non_exhaustive()
+    }
+}
+
+/// Names that are taken: those of the tables of every study, and those of the columns of every table.
+const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
+const PLACE: [&str; 12] = [
+    "ramp",
+    "point",
+    "value",
+    "leg",
+    "repeat",
+    "repeats",
+    "failed",
+    "seed",
+    "made_by",
+    "outcome",
+    "samples",
+    "not_converged",
+];
+
+/// Returns the names of the two columns that follow a column of means: the error, and the number of
+/// independent samples.
+pub(crate) fn error_names(name: &str) -> [String; 2] {
+    ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
+}
+
+/// Checks that the names of an experiment's columns and tables are valid, and that they, those of the varied
+/// parameters and those of every table are all different.
+pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
+    let (columns, tables) = (E::columns(), E::tables());
+    let taken = [PLACE.as_slice(), varied].concat();
+    let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
+        columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
+    };
+    check("column", &of(|column| column.in_samples), &[taken.as_slice(), &["time"]].concat())?;
+    let with_errors = columns.iter().filter(|column| column.in_values && column.has_error());
+    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
+    let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
+    check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
+    let all = [PLACE.as_slice(), &["time"], &errors].concat();
+    if let Some(name) = varied.iter().find(|name| all.contains(name)) {
+        return Err(refused("varied parameter", name, "a column of the tables has it"));
+    }
+    for table in &tables {
+        check("column", &table.columns.iter().map(Heading::name).collect::<Vec<_>>(), &taken)?;
+    }
+    check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
+}
+
+fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
+    for (index, name) in names.iter().enumerate() {
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        if name.is_empty() || !name.chars().all(is_plain) {
+            return Err(refused(what, name, "it must be of letters, digits and underscores"));
+        }
+        if taken.contains(name) || names[..index].contains(name) {
+            return Err(refused(what, name, "another one has it"));
+        }
+    }
+    Ok(())
+}
+
+fn refused(what: &'static str, name: &str, reason: &str) -> PlanError {
+    PlanError::Name { name: name.to_owned(), what, reason: reason.to_owned() }
+}

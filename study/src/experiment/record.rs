@@ -1,0 +1,277 @@
+//! Records of finished values.
+
+use std::fmt;
+
+use granular_edmd::Fingerprint;
+use granular_edmd::boundary::Boundary;
+use granular_edmd::collision::CollisionRule;
+use granular_edmd::simulation::{Checkpoint, Counters};
+use granular_edmd::statistics::{BlockedMean, Estimate};
+
+use crate::maker::Maker;
+use crate::parameters;
+use crate::{Experiment, Leg, Scalar};
+
+/// Relative rounding of the time at which a run ended.
+const TIME_ROUNDING: f64 = 1e-12;
+
+/// The outcome of a value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// All samples were taken.
+    Completed,
+    /// The observer ended the value.
+    ///
+    /// The record has only the samples until then. The next value of the ramp starts from the state at that
+    /// time.
+    Stopped {
+        /// Time since the start of the ramp.
+        time: f64,
+    },
+    /// Time hardly advanced, as in an inelastic collapse.
+    ///
+    /// The record has only the samples until then. The next value of the ramp starts from the state in which
+    /// this one started.
+    Stalled {
+        /// Time since the start of the ramp.
+        time: f64,
+        /// Message of the engine.
+        reason: String,
+    },
+    /// The engine gave up for another reason.
+    ///
+    /// The samples and the next value are as for a stalled value.
+    Failed {
+        /// Time since the start of the ramp.
+        time: f64,
+        /// Message of the engine.
+        reason: String,
+    },
+}
+
+impl Outcome {
+    /// Returns the outcome in one word.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::Stopped { .. } => "stopped",
+            Self::Stalled { .. } => "stalled",
+            Self::Failed { .. } => "failed",
+        }
+    }
+
+    /// Returns the message of the engine, if it could not finish the value: the outcome is stalled or failed.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Stalled { reason, .. } | Self::Failed { reason, .. } => Some(reason),
+            Self::Completed | Self::Stopped { .. } => None,
+        }
+    }
+}
+
+/// A finished value: its parameters, samples, counts, and its last state if that is kept.
+///
+/// Samples, observer and times are those of the measured part, after the value has settled.
+#[doc(alias("checkpoint", "restart"))]
+#[derive(Clone, PartialEq)]
+pub struct Record<E: Experiment> {
+    pub(crate) experiment: E,
+    pub(crate) contents: Contents<E::Sample, E::Observer>,
+}
+
+/// A record as it is in its file, without the experiment, which follows from the plan.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Contents<S, O> {
+    pub(crate) origin: Origin,
+    pub(crate) leg: Option<Leg>,
+    /// Value of the ramped parameter.
+    pub(crate) at: Option<f64>,
+    pub(crate) outcome: Outcome,
+    pub(crate) end: Cycles,
+    pub(crate) measured: Measured<S, O>,
+    pub(crate) counters: Counters,
+    /// Fingerprints of the rule and the walls that made the value.
+    pub(crate) parts: [Option<Fingerprint>; 2],
+    /// State at the end, if it is kept.
+    pub(crate) state: Option<Checkpoint>,
+}
+
+/// The measurements of a value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Measured<S, O> {
+    pub(crate) times: Vec<f64>,
+    pub(crate) samples: Vec<S>,
+    pub(crate) observer: O,
+}
+
+/// The study and the place in it that a file belongs to.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Origin {
+    /// Hash of the plan.
+    pub(crate) study: [u8; 32],
+    pub(crate) maker: Maker,
+    pub(crate) ramp: usize,
+    pub(crate) value: usize,
+    pub(crate) seed: u64,
+}
+
+/// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
+/// does not drift as a sum of cycles does.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Cycles {
+    /// Absolute time from which cycles are counted.
+    pub(crate) since: f64,
+    pub(crate) count: u64,
+}
+
+impl Cycles {
+    pub(crate) const START: Self = Self { since: 0.0, count: 0 };
+
+    /// Returns the absolute time after this many more cycles of this length.
+    pub(crate) fn time(&self, more: f64, cycle: f64) -> f64 {
+        self.since + (self.count as f64 + more) * cycle
+    }
+}
+
+impl<E: Experiment> Record<E> {
+    /// Returns the index of the ramp.
+    pub const fn ramp_index(&self) -> usize {
+        self.contents.origin.ramp
+    }
+
+    /// Returns the index of the value in the ramp.
+    pub const fn value_index(&self) -> usize {
+        self.contents.origin.value
+    }
+
+    /// Returns the seed of the ramp.
+    pub const fn seed(&self) -> u64 {
+        self.contents.origin.seed
+    }
+
+    /// Returns the version of this crate that made the record.
+    pub fn version(&self) -> &str {
+        &self.contents.origin.maker.version
+    }
+
+    /// Returns the direction from which the ramp came to the value; `None` without a ramp.
+    pub const fn leg(&self) -> Option<Leg> {
+        self.contents.leg
+    }
+
+    /// Returns the value of the ramped parameter; `None` without a ramp.
+    pub const fn ramped_value(&self) -> Option<f64> {
+        self.contents.at
+    }
+
+    /// Returns the experiment, with the parameters of this value.
+    pub const fn experiment(&self) -> &E {
+        &self.experiment
+    }
+
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`](crate::Plan); `None` if
+    /// there is no parameter of this name.
+    pub fn parameter(&self, name: &str) -> Option<Scalar> {
+        let tree = parameters::tree(&self.experiment).ok()?;
+        let name = parameters::whole_name(&tree, name).ok()?;
+        parameters::get(&tree, &name).and_then(Scalar::of_toml)
+    }
+
+    /// Returns the outcome of the value.
+    pub const fn outcome(&self) -> &Outcome {
+        &self.contents.outcome
+    }
+
+    /// Returns the samples.
+    pub fn samples(&self) -> &[E::Sample] {
+        &self.contents.measured.samples
+    }
+
+    /// Returns the times of the samples, since the start of the ramp.
+    pub fn times(&self) -> &[f64] {
+        &self.contents.measured.times
+    }
+
+    /// Returns the observer as it was at the end.
+    pub const fn observer(&self) -> &E::Observer {
+        &self.contents.measured.observer
+    }
+
+    /// Returns the counters of the value, settling included.
+    ///
+    /// The largest overlap is that since the start of the ramp.
+    pub const fn counters(&self) -> &Counters {
+        &self.contents.counters
+    }
+
+    /// Returns the state at the end of the value; `None` if the record does not keep it
+    /// ([`Plan::with_end_states`](crate::Plan::with_end_states)).
+    pub const fn checkpoint(&self) -> Option<&Checkpoint> {
+        self.contents.state.as_ref()
+    }
+
+    /// Returns the name of the rule or the walls if they are not those with which the value was run. Rules
+    /// and walls without fingerprints cannot be told apart.
+    pub(crate) fn changed_part(&self) -> Option<&'static str> {
+        let [rule, boundary] = self.contents.parts;
+        if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
+            Some("rule")
+        } else if self.experiment.boundary().is_ok_and(|now| now.fingerprint() != boundary) {
+            Some("boundary")
+        } else {
+            None
+        }
+    }
+
+    /// Returns the mean of a quantity over the samples, with an error that accounts for their correlation.
+    ///
+    /// The mean is NaN without samples, and the error is NaN for fewer than two.
+    pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
+        self.samples().iter().map(quantity).collect::<BlockedMean>().estimate()
+    }
+
+    /// Returns the mean of the column of this name; `None` if there is no such column, or it has no error.
+    pub fn estimate(&self, column: &str) -> Option<Estimate> {
+        let columns = E::columns();
+        let mut named = columns.iter().filter(|known| known.name() == column);
+        named.find_map(|known| known.estimate(self))
+    }
+}
+
+impl<E: Experiment> fmt::Debug for Record<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Record");
+        debug.field("origin", &self.contents.origin).field("outcome", &self.contents.outcome);
+        debug.field("samples", &self.samples().len()).finish_non_exhaustive()
+    }
+}
+
+impl<S, O> Measured<S, O> {
+    /// Checks that the times, the samples and the observer are possible.
+    pub(crate) fn check<E>(&self, experiment: &E, state: Option<&Checkpoint>) -> Result<(), String>
+    where
+        E: Experiment<Sample = S, Observer = O>,
+    {
+        check(self.times.len() == self.samples.len(), "its times are not as many as its samples")?;
+        check(self.times.iter().all(|time| time.is_finite()), "a time is not finite")?;
+        check(self.times.is_sorted(), "its times are out of order")?;
+        experiment.check_measured(&self.samples, &self.observer, state).map_err(|reason| reason.to_string())
+    }
+}
+
+pub(crate) fn check(valid: bool, reason: &'static str) -> Result<(), &'static str> {
+    if valid { Ok(()) } else { Err(reason) }
+}
+
+/// Checks that a state is of a time in this range, up to rounding.
+pub(crate) fn check_state(
+    state: &Checkpoint,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<(), &'static str> {
+    let rounding = TIME_ROUNDING * range.end();
+    let is_in = state.time() >= range.start() - rounding && state.time() <= range.end() + rounding;
+    check(is_in, "its state is of another time")
+}

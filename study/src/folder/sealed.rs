@@ -1,0 +1,116 @@
+//! The files of a study, each whole or absent, and sealed if it holds a record.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use granular_edmd::file::{Damage, Seal, is_temporary, unique_name, write_unsynced, write_whole};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::StudyError;
+
+/// Mark of a record, and the version of the format that this crate writes and reads.
+const SEAL: Seal = Seal::new(*b"GRANSTUD", 4);
+
+/// Writes a file, whole or not at all.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+    write_whole(path, bytes).map_err(StudyError::io("write", path))
+}
+
+/// Writes a new file, whole or not at all. An existing file stays, and the function then returns false.
+///
+/// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
+/// file system.
+pub(crate) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
+    // Without this look, a process that comes late and is killed here would leave its draft in a study that
+    // is complete, where nobody looks for drafts any more.
+    if path.exists() {
+        return Ok(false);
+    }
+    let draft = path.with_file_name(unique_name());
+    write(&draft, bytes)?;
+    let published = match fs::hard_link(&draft, path) {
+        Ok(()) => Ok(true),
+        Err(_) if path.exists() => Ok(false),
+        // The file system has no links; the lock of the folder keeps other writers away.
+        Err(_) => write(path, bytes).map(|()| true),
+    };
+    remove(&draft)?;
+    published
+}
+
+/// Writes data with a magic number, a version and a checksum. The data must read back as they were written.
+/// Unless they are cheap, they outlast a loss of power.
+pub(crate) fn write_sealed<T: DeserializeOwned + Serialize>(
+    path: &Path,
+    data: &impl Serialize,
+    are_cheap: bool,
+) -> Result<(), StudyError> {
+    let cannot = |source| StudyError::Encode { path: path.to_owned(), source };
+    let contents = postcard::to_stdvec(data).map_err(|error| cannot(Box::new(error)))?;
+    let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
+    if again.is_ok_and(|again| again == contents) {
+        let write = if are_cheap { write_unsynced } else { write_whole };
+        return write(path, &SEAL.seal(&contents)).map_err(StudyError::io("write", path));
+    }
+    Err(cannot(
+        "a sample or observer does not read back as it is written: its type must not have `#[serde(untagged)]`, \
+         `flatten`, `skip` or `skip_serializing_if`"
+            .into(),
+    ))
+}
+
+/// Reads data that [`write_sealed`] has written; `None` if there is no such file.
+pub(crate) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
+    let Some(bytes) = if_there("read", path, fs::read(path))? else { return Ok(None) };
+    unseal(&bytes).map(Some).map_err(|reason| damaged(path, reason))
+}
+
+pub(crate) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
+    StudyError::Damaged { path: path.to_owned(), reason: reason.into() }
+}
+
+fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
+    let contents = SEAL.open(bytes).map_err(|broken| match broken {
+        Damage::Foreign => "it does not begin as a record",
+        Damage::Version(_) => "it has another version of the format",
+        Damage::Cut => "it was cut",
+        _ => "its checksum does not match",
+    })?;
+    match postcard::take_from_bytes(contents) {
+        Ok((data, [])) => Ok(data),
+        Ok(_) => Err("there is more in it than there should be"),
+        Err(_) => Err("its contents make no sense"),
+    }
+}
+
+/// Removes a file, if it is there.
+pub(crate) fn remove(path: &Path) -> Result<(), StudyError> {
+    if_there("remove", path, fs::remove_file(path)).map(drop)
+}
+
+/// Returns what the system answers about a file or folder; `None` if there is none of this name.
+pub(crate) fn if_there<T>(
+    action: &'static str,
+    path: &Path,
+    answer: io::Result<T>,
+) -> Result<Option<T>, StudyError> {
+    match answer {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        answer => answer.map(Some).map_err(StudyError::io(action, path)),
+    }
+}
+
+/// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
+/// be locked.
+pub(crate) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
+    let cannot_read = || StudyError::io("read", folder);
+    for entry in fs::read_dir(folder).map_err(cannot_read())? {
+        let entry = entry.map_err(cannot_read())?;
+        if is_temporary(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,94 @@
+//! Studies: many runs, planned as data and kept in a folder, which you can watch, stop, resume and spread
+//! over processes.
+//!
+//! An [`Experiment`] is the system under study. It is a serializable type of your own: its fields are the
+//! parameters, and its methods define the simulation, the measurements, and the columns of the tables. A
+//! [`Plan`] says what to do with it: a [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
+//! down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of the grid may be
+//! repeated. A [`Study`] is a plan in a folder. [`Study::run`] runs the values that are missing, on all cores
+//! and in any number of processes. It writes each finished value at once, as a [`Record`].
+//!
+//! The paper's system is an experiment like any other: [`vibrated_box`]. With the feature `cli`, which is on
+//! unless it is turned off, the command `granular-edmd` runs studies of it, and [`cli`] makes such a command
+//! for an experiment of your own. The chapter [`guide::sweep_it`] has all that a study can do.
+//!
+//! # Promises
+//! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed: the
+//!    files of a complete study have the same bytes for any number of threads and processes, however often
+//!    these were interrupted or killed, and whether it was done at once or has grown
+//!    ([`Control::with_earlier_studies`]). Only the files `log.jsonl`, which hold wall-clock times, differ.
+//! 2. A file is whole or absent. A study names a damaged file and never reads it as data;
+//!    [`Control::with_verification`] does its value again.
+//! 3. Any number of processes can run a study at the same time, started at any time; each ramp is run by one
+//!    of them. They need a file system whose locks all of them see, such as a local one, or NFS from version
+//!    4 on.
+//! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
+//! 5. All records of a study come from one code. `provenance.json` keeps the
+//!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the experiment, and other code is refused by name
+//!    whatever it asks of the study ([`StudyError::Code`]), until [`Study::accept_changes`] lets it go on.
+//! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
+//!
+//! ```
+//! use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+//! use granular_edmd_study::{Control, Course, Plan, Protocol, Ramp, Study};
+//!
+//! let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+//! let experiment = VibratedBox::new(30, 10.0, base).with_height(30.0).with_contact_duration(1e-4);
+//! let experiment = experiment.with_gravity(0.0156);
+//! let ramp = Ramp::new("friction", [0.01, 0.02], Course::Up)?;
+//! let plan = Plan::new(experiment, Protocol::new(10, 4, 5)?, 1)?.with_ramp(ramp)?;
+//!
+//! # let folder = std::env::temp_dir().join(format!("granular-edmd-study-{}", std::process::id()));
+//! let study = Study::open_or_create(&folder, &plan)?;
+//! let summary = study.run(&Control::default())?;
+//! assert!(summary.is_complete());
+//! for record in study.records() {
+//!     let record = record?;
+//!     println!("{} {}", record.experiment().friction, record.mean(|sample| sample.height));
+//!     assert_eq!(record.samples().len(), 4);
+//! }
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
+pub mod analysis;
+#[cfg(feature = "cli")]
+pub mod cli;
+mod errors;
+mod execution;
+mod experiment;
+mod folder;
+mod gate;
+pub mod guide;
+mod json;
+mod leg;
+mod maker;
+mod opening;
+mod parameters;
+mod plan;
+mod point;
+mod provenance;
+mod reading;
+mod scalar;
+mod seed;
+mod tables;
+pub mod vibrated_box;
+
+pub use errors::{Difference, ExperimentError, PlanError, StudyError};
+pub use execution::control::{Control, Progress, Summary};
+pub use experiment::columns::{Column, Table};
+pub use experiment::record::{Outcome, Record};
+pub use experiment::{Experiment, Run};
+pub use leg::Leg;
+pub use opening::Study;
+pub use plan::Plan;
+pub use plan::axis::Axis;
+pub use plan::protocol::Protocol;
+pub use plan::ramp::{Course, Ramp, Width};
+pub use plan::refinement::Bracket;
+pub use plan::steps::Steps;
+pub use point::Point;
+pub use reading::RampStatus;
+pub use scalar::Scalar;

@@ -1,0 +1,46 @@
+//! The code that makes a record.
+
+use std::fmt;
+
+use granular_edmd::Fingerprint;
+
+/// The code that made a record.
+///
+/// Two makers with the same results number, revision and columns give the same results, whatever their
+/// versions are.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Maker {
+    /// Version of this crate.
+    pub(super) version: String,
+    /// The crate's [`RESULTS`](granular_edmd::RESULTS).
+    pub(super) results: u32,
+    /// The revision of the experiment.
+    pub(super) revision: Fingerprint,
+    /// Fingerprint of the names and units in all tables. An experiment need not declare a change of these.
+    pub(super) columns: Fingerprint,
+}
+
+impl Maker {
+    /// Returns the numbers that decide, in one word.
+    pub(super) fn key(&self) -> String {
+        format!("{}:{}:{}", self.results, self.revision, self.columns)
+    }
+
+    /// Returns the fields that decide, by name.
+    pub(super) fn deciding(&self) -> [(&'static str, String); 3] {
+        [
+            ("results", self.results.to_string()),
+            ("revision", self.revision.to_string()),
+            ("columns", self.columns.to_string()),
+        ]
+    }
+}
+
+/// Tells a record's maker in a cell of a table.
+impl fmt::Display for Maker {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { version, results, revision, .. } = self;
+        write!(formatter, "{version} results={results} revision={revision}")
+    }
+}

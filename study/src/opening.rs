@@ -1,0 +1,216 @@
+//! A study in its folder: how it is created and opened, and what is checked then.
+
+use std::path::Path;
+
+use super::experiment::record::Origin;
+use super::folder::{Folder, sealed};
+use super::maker::Maker;
+use super::parameters::{self, tree};
+use super::provenance::{self, Provenance};
+use super::{Difference, Experiment, Plan, PlanError, StudyError};
+
+/// A [`Plan`] in a folder, with the records of its finished values.
+///
+/// See [the module](crate) for an example and the promises.
+#[doc(alias("parameter scan", "ensemble", "campaign"))]
+#[derive(Debug, Clone)]
+pub struct Study<E> {
+    pub(super) folder: Folder,
+    pub(super) plan: Plan<E>,
+    /// The plan as it is in its file.
+    text: String,
+    /// Hash of the plan, which ties a record to its study.
+    hash: blake3::Hash,
+    /// The makers whose records the study takes.
+    provenance: Provenance,
+    /// The maker that this program is.
+    maker: Maker,
+}
+
+impl<E: Experiment> Study<E> {
+    /// Creates a new study in a folder, which must be empty if it exists.
+    ///
+    /// # Errors
+    /// If the folder holds a study or anything else, or cannot be written.
+    pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
+        let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
+        if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
+            return Err(StudyError::Exists { path: study.folder.root().to_owned() });
+        }
+        study.checked()
+    }
+
+    /// Opens the study in a folder.
+    ///
+    /// # Errors
+    /// If the folder holds no study, its plan is not one of this experiment or was changed, it was made by
+    /// other code ([`StudyError::Code`]), or it cannot be read.
+    pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
+        Self::found_in(folder.as_ref())?.checked()
+    }
+
+    /// Opens the study in a folder, or creates a new one.
+    ///
+    /// The same command thus starts a study and continues it, also in several processes at the same time.
+    ///
+    /// # Errors
+    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
+    /// and no study, or cannot be read or written.
+    pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
+        Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
+    }
+
+    /// Opens the study in a folder, or puts a plan there that passes a check.
+    ///
+    /// A plan that is there was checked then: the check takes seconds in large studies, and each of many
+    /// processes would repeat it.
+    pub(super) fn open_or_put(
+        folder: &Path,
+        plan: Plan<E>,
+        check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>,
+    ) -> Result<Self, StudyError> {
+        let study = Self::in_folder(Folder::new(folder)?, plan)?;
+        if !study.folder.holds_study() || !study.folder.provenance_file().exists() {
+            study.put_plan(check)?;
+        }
+        study.check_plan()?;
+        study.checked()
+    }
+
+    /// Lets this program continue a study that other code made, and returns the names of the differences;
+    /// none if it may continue anyway.
+    ///
+    /// Its finished values stay as they are. Each record keeps the mark of the code that made it, which the
+    /// column `made_by` of `values.csv` shows: values on both sides of the change can be told apart, and it
+    /// is yours to judge whether they can be compared.
+    ///
+    /// # Errors
+    /// If the folder holds no study, or cannot be read or written.
+    pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
+        let study = Self::found_in(folder.as_ref())?;
+        let before = study.read_provenance()?;
+        let differences = before.differences(&study.plan);
+        if !differences.is_empty() {
+            let now = Provenance::here(&study.plan, &study.hash, &before.keys());
+            study.folder.replace_provenance(&now)?;
+        }
+        Ok(differences)
+    }
+
+    fn found_in(folder: &Path) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder)?;
+        if !folder.holds_study() {
+            return Err(StudyError::Missing { path: folder.root().to_owned() });
+        }
+        let plan = Self::plan_in(&folder)?;
+        Self::in_folder(folder, plan)
+    }
+
+    /// Reads the plan in a folder. Its experiments were tried when it was put there.
+    fn plan_in(folder: &Folder) -> Result<Plan<E>, StudyError> {
+        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
+        Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)
+    }
+
+    fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
+        let text = plan.to_toml()?;
+        let hash = blake3::hash(text.as_bytes());
+        let (provenance, maker) = (Provenance::of_text(String::new()), provenance::maker::<E>());
+        Ok(Self { folder, plan, text, hash, provenance, maker })
+    }
+
+    /// Puts the plan into the folder, if it passes a check; returns false if there is one.
+    fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
+        let provenance = Provenance::here(&self.plan, &self.hash, "");
+        self.folder.create(&self.text, &provenance, || check(&self.plan))
+    }
+
+    /// Returns the study, if this program may go on with it.
+    fn checked(mut self) -> Result<Self, StudyError> {
+        self.provenance = self.check_code()?;
+        Ok(self)
+    }
+
+    /// Reads the provenance, which must be that of this plan, whole.
+    fn read_provenance(&self) -> Result<Provenance, StudyError> {
+        let provenance = self.folder.provenance()?;
+        if provenance.is_there() && !provenance.is_of(&self.hash) {
+            return Err(StudyError::Foreign { path: self.folder.provenance_file() });
+        }
+        Ok(provenance)
+    }
+
+    fn check_code(&self) -> Result<Provenance, StudyError> {
+        let provenance = self.read_provenance()?;
+        let differences = provenance.differences(&self.plan);
+        if differences.is_empty() {
+            return Ok(provenance);
+        }
+        Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
+    }
+
+    /// Checks that plan and code of the folder are still these, since they may have been changed.
+    pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
+        self.check_plan()?;
+        self.check_code().map(drop)
+    }
+
+    fn check_plan(&self) -> Result<(), StudyError> {
+        if self.folder.read_plan()? == self.text {
+            return Ok(());
+        }
+        // Written otherwise, it may be the same plan.
+        let found = Self::plan_in(&self.folder)?;
+        let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(StudyError::Different { path: self.folder.root().to_owned(), differences })
+    }
+
+    /// Returns the folder of the study.
+    pub fn folder(&self) -> &Path {
+        self.folder.root()
+    }
+
+    /// Returns the plan of the study.
+    pub const fn plan(&self) -> &Plan<E> {
+        &self.plan
+    }
+
+    /// Checks that there is a ramp of this index.
+    pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
+        let ramps = self.plan.ramp_count();
+        if ramp < ramps { Ok(()) } else { Err(StudyError::NoSuchRamp { ramp, ramps }) }
+    }
+
+    pub(super) fn origin(&self, ramp: usize, value: usize) -> Origin {
+        let seed = self.plan.ramp_seed(ramp);
+        Origin { study: *self.hash.as_bytes(), maker: self.maker.clone(), ramp, value, seed }
+    }
+
+    /// Checks that a file belongs to this study and this place in it, and that the study takes it.
+    pub(super) fn check_origin(
+        &self,
+        found: &Origin,
+        ramp: usize,
+        value: usize,
+        path: &Path,
+    ) -> Result<(), StudyError> {
+        if found.study != *self.hash.as_bytes() {
+            return Err(StudyError::Foreign { path: path.to_owned() });
+        }
+        if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
+            return Err(sealed::damaged(path, "it is of another value"));
+        }
+        if self.is_ours(found) || self.provenance.takes(&found.maker) {
+            return Ok(());
+        }
+        Err(StudyError::Changed { path: path.to_owned(), part: "revision" })
+    }
+
+    /// Returns whether code with the same results as this program made a file.
+    pub(super) fn is_ours(&self, found: &Origin) -> bool {
+        found.maker.key() == self.maker.key()
+    }
+}

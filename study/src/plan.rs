@@ -1,0 +1,288 @@
+//! Plans: studies as data.
+
+pub(super) mod axis;
+pub(super) mod protocol;
+pub(super) mod ramp;
+pub(super) mod refinement;
+pub(super) mod steps;
+mod text;
+mod validation;
+pub(super) mod values;
+
+use granular_edmd::quantity::accept;
+use serde::Serialize;
+use toml::Table;
+
+use super::parameters::{self, place};
+use super::seed::{derived_seed, seed_at};
+use super::{Experiment, ExperimentError, Leg, PlanError, Scalar};
+use axis::Axis;
+use protocol::Protocol;
+use ramp::Ramp;
+use refinement::{Seen, Step};
+
+/// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
+///
+/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a seed of its own and
+/// independent of all others. Each step of a ramp is a *value*. Without axes, the grid has one point. Without
+/// a ramp, each point has one value.
+///
+/// Axes and ramps vary parameters of the experiment by name. The whole name is that of the field, after the
+/// names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is enough
+/// if no other parameter has it.
+///
+/// A ramp is a function of its parameters, its repeat and the seed, not of the rest of the plan: a larger
+/// plan has the same ramps, and so do the parts of a sweep
+/// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight
+/// bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the
+/// same way from that of the plan, and the name and value of each parameter of the sweep. In the index of a
+/// ramp, the repeat counts fastest.
+///
+/// ```
+/// use granular_edmd_study::{Plan, Scalar, vibrated_box::VibratedBox};
+///
+/// let plan: Plan<VibratedBox> = Plan::from_toml(
+///     r#"
+///     seed = 1
+///     experiment = { disks = 100, width = 20.0, height = 50.0, base.thermal = { temperature = 1.0 } }
+///     protocol = { settle = 100, samples = 10, every = 10 }
+///     ramp = { parameter = "friction", values = [0.01, 0.02, 0.03], course = "up_and_down" }
+///     sweep = [{ parameter = "inelasticity", values = [0.0, 0.01] }]
+///     "#,
+/// )?;
+/// assert_eq!((plan.ramp_count(), plan.value_count()), (2, 5));
+/// assert_eq!(plan.experiment(1, 4)?.friction, 0.01);
+/// assert_eq!(plan.parameters(1, 4)[0], ("inelasticity", Scalar::Number(0.01)));
+/// assert_eq!(plan.parameters(1, 4)[1], ("friction", Scalar::Number(0.01)));
+/// assert_eq!(Plan::from_toml(&plan.to_toml()?)?, plan);
+///
+/// let error = Plan::<VibratedBox>::from_toml("seed = 1\nsede = 2").unwrap_err();
+/// assert!(error.to_string().contains("unknown field `sede`"));
+/// # Ok::<(), granular_edmd_study::PlanError>(())
+/// ```
+#[doc(alias("sweep", "TOML"))]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan<E> {
+    seed: u64,
+    #[serde(skip_serializing_if = "is_one")]
+    repeats: usize,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    end_states: bool,
+    pub(super) experiment: E,
+    protocol: Protocol,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ramp: Option<Ramp>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) sweep: Vec<Axis>,
+    /// The parameters of the experiment by name.
+    #[serde(skip)]
+    tree: Table,
+    /// The whole names of the parameters that vary: of the axes in their order, then of the ramp.
+    #[serde(skip)]
+    pub(super) varied: Vec<String>,
+    /// The first value of each parameter that varies, as the experiment reads it: it shows the kind of
+    /// number.
+    #[serde(skip)]
+    kinds: Vec<Scalar>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+const fn is_one(count: &usize) -> bool {
+    *count == 1
+}
+
+impl<E: Experiment> Plan<E> {
+    /// Returns the plan of one value before its checks.
+    fn bare(experiment: E, protocol: Protocol, seed: u64) -> Self {
+        let (ramp, sweep, tree) = (None, Vec::new(), Table::new());
+        let (varied, kinds) = (Vec::new(), Vec::new());
+        Self { seed, repeats: 1, end_states: false, experiment, protocol, ramp, sweep, tree, varied, kinds }
+    }
+
+    /// Creates the plan of one value.
+    ///
+    /// # Errors
+    /// If the experiment refuses its parameters, the protocol is out of range, or the seed is not below
+    /// $`2^{63}`$.
+    pub fn new(experiment: E, protocol: Protocol, seed: u64) -> Result<Self, PlanError> {
+        Self::bare(experiment, protocol, seed).checked()
+    }
+
+    /// Returns the same plan with a ramp at each point.
+    ///
+    /// # Errors
+    /// If the parameter cannot be ramped, is swept already, or does not belong to the experiment, or if its
+    /// values are refused or do not increase.
+    pub fn with_ramp(self, ramp: Ramp) -> Result<Self, PlanError> {
+        Self { ramp: Some(ramp), ..self }.checked()
+    }
+
+    /// Returns the same plan with one more axis.
+    ///
+    /// The value of the last axis changes fastest.
+    ///
+    /// # Errors
+    /// If the parameter varies already or does not belong to the experiment, or if a value is refused.
+    pub fn with_axis(mut self, axis: Axis) -> Result<Self, PlanError> {
+        self.sweep.push(axis);
+        self.checked()
+    }
+
+    /// Returns the same plan with `repeats` repeats of each point, each with another seed.
+    ///
+    /// # Errors
+    /// If the number is 0, or the plan then has too many values.
+    pub fn with_repeats(self, repeats: usize) -> Result<Self, PlanError> {
+        Self { repeats, ..self }.checked()
+    }
+
+    /// Returns the same plan, whose records all keep the state at their end
+    /// ([`Record::checkpoint`](super::Record::checkpoint)).
+    ///
+    /// Otherwise, a record keeps it only if another value starts from it, since states are most of a record's
+    /// bytes.
+    pub fn with_end_states(self) -> Self {
+        Self { end_states: true, ..self }
+    }
+
+    /// Returns whether the record of a value keeps the state at its end. Any value of a refined ramp may be
+    /// the start of a bisection.
+    pub(super) fn keeps_state(&self, value: usize) -> bool {
+        self.end_states || self.is_refined() || value + 1 < self.value_count()
+    }
+
+    /// Returns the protocol by which values are sampled.
+    pub const fn protocol(&self) -> &Protocol {
+        &self.protocol
+    }
+
+    /// Returns the seed from which all others follow.
+    pub const fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Returns the number of repeats of each point.
+    pub const fn repeats(&self) -> usize {
+        self.repeats
+    }
+
+    /// Returns the number of ramps, which is the number of points times the number of repeats.
+    pub fn ramp_count(&self) -> usize {
+        self.point_count() * self.repeats
+    }
+
+    /// Returns the number of points of the grid.
+    pub fn point_count(&self) -> usize {
+        self.sweep.iter().map(Axis::len).product()
+    }
+
+    /// Returns the number of values of each ramp, without those that a refinement adds.
+    pub fn value_count(&self) -> usize {
+        self.ramp.as_ref().map_or(1, Ramp::len)
+    }
+
+    /// Returns the names of the parameters that vary: of the axes in their order, then of the ramp.
+    pub fn varied(&self) -> impl Iterator<Item = &str> {
+        let ramped = self.ramp.iter().map(Ramp::parameter);
+        self.sweep.iter().map(Axis::parameter).chain(ramped)
+    }
+
+    /// Returns the seed of a ramp.
+    pub fn ramp_seed(&self, ramp: usize) -> u64 {
+        let parameters = self.parameters_at(ramp, None);
+        let mut swept: Vec<_> = self.varied.iter().zip(&parameters).collect();
+        // The order of the axes does not count.
+        swept.sort_by_key(|(name, _)| *name);
+        let point = swept.iter().fold(self.seed, |seed, (name, (_, value))| seed_at(seed, name, value));
+        derived_seed(point, (ramp % self.repeats) as u64)
+    }
+
+    /// Returns the direction from which a ramp comes to a value; `None` without a ramp.
+    pub fn leg(&self, value: usize) -> Option<Leg> {
+        self.step(value).map(|(leg, _)| leg)
+    }
+
+    /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
+    pub fn parameters(&self, ramp: usize, value: usize) -> Vec<(&str, Scalar)> {
+        if ramp >= self.ramp_count() || value >= self.value_count() {
+            return Vec::new();
+        }
+        self.parameters_at(ramp, self.step(value).map(|(_, at)| at))
+    }
+
+    /// Returns the parameters that vary, with the ramped parameter at `at`.
+    pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
+        let mut rest = ramp / self.repeats;
+        let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
+        for (axis, kind) in self.sweep.iter().zip(&self.kinds).rev() {
+            let value = axis.value(rest % axis.len());
+            found.extend(value.map(|value| (axis.parameter(), value.like(kind))));
+            rest /= axis.len();
+        }
+        found.reverse();
+        let ramped = self.ramp.as_ref().zip(at);
+        found.extend(ramped.map(|(ramp, at)| (ramp.parameter(), at.into())));
+        found
+    }
+
+    /// Returns the experiment of a value.
+    ///
+    /// # Errors
+    /// If there is no such ramp or value.
+    pub fn experiment(&self, ramp: usize, value: usize) -> Result<E, PlanError> {
+        accept(ramp < self.ramp_count(), "index of a ramp", "below the number of ramps", ramp as f64)?;
+        accept(value < self.value_count(), "index of a value", "below the number of values", value as f64)?;
+        self.experiment_of(&self.parameters(ramp, value))
+    }
+
+    /// Returns the experiment where the ramped parameter is `at`.
+    pub(super) fn experiment_at(&self, ramp: usize, at: Option<f64>) -> Result<E, PlanError> {
+        self.experiment_of(&self.parameters_at(ramp, at))
+    }
+
+    /// Returns the experiment with these parameters, if it takes them.
+    pub(super) fn sound_experiment(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
+        let experiment = self.experiment_of(varied)?;
+        experiment.check().map_err(|source| Self::refused(varied, source))?;
+        Ok(experiment)
+    }
+
+    /// Returns the ramp of each point, if there is one.
+    pub const fn ramp(&self) -> Option<&Ramp> {
+        self.ramp.as_ref()
+    }
+
+    /// Returns whether ramps bisect transitions, and so have more values than the plan names.
+    pub(super) fn is_refined(&self) -> bool {
+        self.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
+    }
+
+    /// Returns the next value of a ramp after the finished ones; `None` if there is none.
+    pub(super) fn next(&self, seen: &[Seen]) -> Option<Step> {
+        match &self.ramp {
+            Some(ramp) => ramp.next(seen),
+            None => seen.is_empty().then_some(Step { leg: None, at: None, before: None }),
+        }
+    }
+
+    fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
+        let mut tree = self.tree.clone();
+        for (name, (_, to)) in self.varied.iter().zip(varied) {
+            let known = parameters::get(&tree, name).and_then(Scalar::of_toml);
+            let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
+            // The names were checked when the plan was made, so this succeeds.
+            let _ = parameters::set(&mut tree, name, &to);
+        }
+        let refused = |reason: String| Self::refused(varied, reason.into());
+        parameters::experiment(tree).map_err(refused)
+    }
+
+    fn refused(varied: &[(&str, Scalar)], source: ExperimentError) -> PlanError {
+        let varied: Vec<(&str, &Scalar)> = varied.iter().map(|(name, value)| (*name, value)).collect();
+        PlanError::Experiment { place: place(&varied), source }
+    }
+
+    pub(super) fn step(&self, value: usize) -> Option<(Leg, f64)> {
+        self.ramp.as_ref().and_then(|ramp| ramp.at(value))
+    }
+}

@@ -1,0 +1,149 @@
+//! The length of each value of a study, and the times of its samples.
+
+use granular_edmd::ParameterError;
+use granular_edmd::quantity::accept;
+
+/// Greatest length of a value in cycles, and largest number of samples, for which products stay exact.
+const MOST: u64 = 1 << 40;
+
+/// The schedule of a value: settle, then sample at equal intervals, always at the same phase of the base.
+///
+/// All times are in cycles ([`Experiment::cycle`](super::Experiment::cycle)): periods of the base, or units
+/// of time if it does not oscillate.
+///
+/// ```
+/// use granular_edmd_study::Protocol;
+/// // The paper: 100 000 oscillations for each value, sampled every 100, the first 500 samples discarded.
+/// let protocol = Protocol::new(50_000, 500, 100)?;
+/// assert_eq!((protocol.every(), protocol.cycles()), (100, 100_000));
+/// assert!(Protocol::new(50_000, 0, 100).is_err());
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Protocol {
+    settle: u64,
+    samples: u64,
+    every: u64,
+    phase: f64,
+}
+
+crate::gate::from_file! {
+    Protocol {
+        settle: u64,
+        samples: u64,
+        every: u64,
+        #[serde(default = "end")]
+        phase: f64
+    } => Self::new(settle, samples, every)?.with_phase(phase), ParameterError
+}
+
+const fn end() -> f64 {
+    1.0
+}
+
+impl Protocol {
+    /// Creates the protocol that settles for `settle` cycles, then takes `samples` samples, one at the end of
+    /// each interval of `every` cycles.
+    ///
+    /// # Errors
+    /// If there are no samples, the interval is 0, or the whole lasts more than 2^40 cycles.
+    pub fn new(settle: u64, samples: u64, every: u64) -> Result<Self, ParameterError> {
+        let count = |range: std::ops::RangeInclusive<u64>, name, requirement, value: u64| {
+            accept(range.contains(&value), name, requirement, value as f64)
+        };
+        count(0..=MOST, "settling time in cycles", "at most 2^40", settle)?;
+        count(1..=MOST, "number of samples", "in 1..=2^40", samples)?;
+        count(1..=MOST, "sampling interval in cycles", "in 1..=2^40", every)?;
+        let total = u128::from(settle) + u128::from(samples) * u128::from(every);
+        accept(total <= u128::from(MOST), "length of a value in cycles", "at most 2^40", total as f64)?;
+        Ok(Self { settle, samples, every, phase: 1.0 })
+    }
+
+    /// Returns the same protocol with samples at this phase of their cycle, in `(0, 1]`; the default is 1,
+    /// the end of the cycle.
+    ///
+    /// # Errors
+    /// If the phase is not in this range.
+    pub fn with_phase(self, phase: f64) -> Result<Self, ParameterError> {
+        accept(phase > 0.0 && phase <= 1.0, "phase of the samples", "in (0, 1]", phase)?;
+        Ok(Self { phase, ..self })
+    }
+
+    /// Returns the number of cycles that a value settles before its samples.
+    pub const fn settle(&self) -> u64 {
+        self.settle
+    }
+
+    /// Returns the number of cycles from a sample to the next.
+    pub const fn every(&self) -> u64 {
+        self.every
+    }
+
+    /// Returns the phase of the samples in their cycle.
+    pub const fn phase(&self) -> f64 {
+        self.phase
+    }
+
+    /// Returns the number of samples of a value.
+    pub const fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Returns the number of cycles that a value lasts.
+    pub const fn cycles(&self) -> u64 {
+        self.settle.saturating_add(self.samples.saturating_mul(self.every))
+    }
+
+    /// Returns the number of steps of a value: some without a sample, to settle, then one for each sample.
+    pub(crate) const fn steps(&self) -> u64 {
+        self.settling_steps() + self.samples
+    }
+
+    const fn settling_steps(&self) -> u64 {
+        self.settle.div_ceil(self.every)
+    }
+
+    /// Returns the cycles from the start of a value to the end of this step; steps are counted from 0.
+    pub(crate) fn end_of(&self, step: u64) -> u64 {
+        let settling = self.settling_steps();
+        if step < settling {
+            ((step + 1) * self.every).min(self.settle)
+        } else {
+            self.settle + (step - settling + 1) * self.every
+        }
+    }
+
+    /// Returns the cycles that this many steps take.
+    pub(crate) fn cycles_of(&self, steps: u64) -> u64 {
+        steps.checked_sub(1).map_or(0, |last| self.end_of(last))
+    }
+
+    /// Returns the number of samples in this many steps.
+    pub(crate) const fn samples_of(&self, steps: u64) -> u64 {
+        steps.saturating_sub(self.settling_steps())
+    }
+
+    /// Returns whether a step ends with a sample.
+    pub(crate) const fn is_sampled(&self, step: u64) -> bool {
+        step >= self.settling_steps()
+    }
+
+    /// Returns the time from a sample to the end of its step, in cycles.
+    pub(crate) const fn lead(&self) -> f64 {
+        1.0 - self.phase
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_tile_a_value() {
+        let protocol = Protocol::new(25, 3, 10).unwrap();
+        let ends: Vec<u64> = (0..protocol.steps()).map(|step| protocol.end_of(step)).collect();
+        assert_eq!(ends, [10, 20, 25, 35, 45, 55]);
+        assert_eq!(ends.last(), Some(&protocol.cycles()));
+        assert_eq!((0..6).filter(|&step| protocol.is_sampled(step)).count(), 3);
+    }
+}

@@ -1,0 +1,79 @@
+//! Points: values with all their repeats.
+
+use granular_edmd::statistics::Estimate;
+
+use super::{Experiment, Leg, Record};
+
+/// A value at a point of the grid, with the records of its repeats, which have the same parameters and
+/// different seeds.
+///
+/// ```
+/// # use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+/// # use granular_edmd_study::{Control, Plan, Protocol, Study};
+/// # let base = Base::Thermal { temperature: 1.0, slip: false };
+/// # let plan = Plan::new(VibratedBox::new(10, 10.0, base).with_gravity(0.1), Protocol::new(10, 20, 1)?, 1)?;
+/// # let plan = plan.with_repeats(3)?;
+/// # let folder = std::env::temp_dir().join(format!("granular-edmd-point-{}", std::process::id()));
+/// # let study = Study::create(&folder, &plan)?;
+/// # study.run(&Control::default())?;
+/// for point in study.points() {
+///     let point = point?;
+///     let height = point.mean(|sample| sample.height);
+///     println!("{height}, as from {:.1} independent samples", height.independent_samples());
+///     assert_eq!((point.records().len(), height.samples()), (3, 60));
+/// }
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Point<E: Experiment> {
+    index: usize,
+    value: usize,
+    experiment: E,
+    records: Vec<Record<E>>,
+}
+
+impl<E: Experiment> Point<E> {
+    /// Creates a point from the records of its repeats; `None` if there are none.
+    pub(super) fn of(index: usize, value: usize, records: Vec<Record<E>>) -> Option<Self> {
+        let experiment = records.first()?.experiment().clone();
+        Some(Self { index, value, experiment, records })
+    }
+
+    /// Returns the index of the point in the grid.
+    pub const fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Returns the index of the value in the ramp.
+    pub const fn value_index(&self) -> usize {
+        self.value
+    }
+
+    /// Returns the direction from which the ramp came to the value; `None` without a ramp.
+    pub fn leg(&self) -> Option<Leg> {
+        self.records.first().and_then(Record::leg)
+    }
+
+    /// Returns the experiment, with the parameters of this value.
+    pub const fn experiment(&self) -> &E {
+        &self.experiment
+    }
+
+    /// Returns the records of the repeats that are finished.
+    pub fn records(&self) -> &[Record<E>] {
+        &self.records
+    }
+
+    /// Returns the mean of a quantity over the samples of all repeats, by [`Estimate::over_repeats`].
+    pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
+        Estimate::over_repeats(self.records.iter().map(|record| record.mean(&quantity)))
+    }
+
+    /// Returns the mean of the column of this name over all repeats; `None` if there is no such column, or it
+    /// has no error.
+    pub fn estimate(&self, column: &str) -> Option<Estimate> {
+        let columns = E::columns();
+        let column = columns.iter().find(|known| known.name() == column && known.has_error())?;
+        Some(Estimate::over_repeats(self.records.iter().filter_map(|record| column.estimate(record))))
+    }
+}

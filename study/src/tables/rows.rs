@@ -1,0 +1,74 @@
+//! Rows of cells, written to a file one after the other.
+
+use std::path::{Path, PathBuf};
+
+use granular_edmd::file::Draft;
+use granular_edmd::statistics::Estimate;
+
+use crate::{Scalar, StudyError};
+
+/// A table on its way to its file.
+pub(super) struct Rows {
+    path: PathBuf,
+    draft: Draft,
+}
+
+impl Rows {
+    /// Begins the table of this name in a folder.
+    pub(super) fn begin(folder: &Path, name: &str) -> Result<Self, StudyError> {
+        let path = super::file(folder, name);
+        let draft = Draft::of(&path).map_err(StudyError::io("write", &path))?;
+        Ok(Self { path, draft })
+    }
+
+    /// Adds a row.
+    pub(super) fn push(&mut self, Row(mut row): Row) -> Result<(), StudyError> {
+        row.push('\n');
+        self.draft.write_all(row.as_bytes()).map_err(StudyError::io("write", &self.path))
+    }
+
+    /// Puts the table in its place.
+    pub(super) fn finish(self) -> Result<(), StudyError> {
+        self.draft.finish().map_err(StudyError::io("write", &self.path))
+    }
+}
+
+/// A row as it grows.
+#[derive(Debug, Clone)]
+pub(super) struct Row(String);
+
+impl Row {
+    /// Begins a row with these cells.
+    pub(super) fn of(cells: impl IntoIterator<Item = impl Into<Scalar>>) -> Self {
+        let cells: Vec<String> = cells.into_iter().map(|cell| cell_of(&cell.into())).collect();
+        Self(cells.join(","))
+    }
+
+    /// Adds a cell.
+    pub(super) fn with(self, value: &Scalar) -> Self {
+        Self(self.0 + "," + &cell_of(value))
+    }
+
+    /// Adds a mean, its error, and its number of independent samples.
+    pub(super) fn with_estimate(self, estimate: &Estimate) -> Self {
+        let Self(row) = self;
+        let numbers = [estimate.mean(), estimate.standard_error(), estimate.independent_samples()];
+        numbers.into_iter().fold(Self(row), |row, number| row.with(&number.into()))
+    }
+}
+
+/// Returns the text of a cell. One without a number is empty, which every reader of tables takes for a
+/// missing value; the text `NaN` spoils the means of some.
+fn cell_of(value: &Scalar) -> String {
+    match value {
+        Scalar::Number(number) if number.is_nan() => String::new(),
+        value => value.to_string(),
+    }
+}
+
+/// Returns the names of the estimates whose error is only a lower bound, separated by spaces.
+pub(super) fn not_converged(estimates: &[(String, Estimate)]) -> String {
+    let names =
+        estimates.iter().filter(|(_, estimate)| !estimate.is_converged()).map(|(name, _)| name.as_str());
+    names.collect::<Vec<_>>().join(" ")
+}

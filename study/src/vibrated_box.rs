@@ -1,0 +1,290 @@
+//! The paper's system: equal disks in a box over a base that vibrates or is hot.
+//!
+//! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a type of your own would. [`Sample`]
+//! holds what is measured. Its [`Record`] has methods for the flow: order, densest layer, energy change and
+//! noise.
+
+mod base;
+mod convection;
+mod rule;
+mod sample;
+
+pub use base::{Base, Sides};
+pub use rule::BoxRule;
+use rule::Kind;
+pub use sample::{Measurement, Sample};
+
+use super::{Column, Experiment, ExperimentError, Record, Table};
+use crate::analysis::StateCriteria;
+use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::collision::{ContactDuration, Elastic, Frictional};
+use granular_edmd::observable::Snapshot;
+use granular_edmd::quantity::accept;
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
+
+/// Radius of the disks: their diameter and mass are the units.
+const RADIUS: f64 = 0.5;
+
+/// Most disks of a study.
+const MOST_DISKS: usize = 1 << 24;
+
+/// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
+/// disk are the units.
+///
+/// Disks start on a lattice with Maxwellian velocities. Values are checked where the box enters a
+/// [`Plan`](super::Plan).
+///
+/// ```
+/// use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+/// // The paper's vibrated box.
+/// let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+/// let experiment = VibratedBox::new(1000, 60.0, base)
+///     .with_height(150.0)
+///     .with_gravity(0.015625)
+///     .with_friction(0.0605)
+///     .with_contact_duration(1e-4);
+/// assert_eq!(experiment.friction, 0.0605);
+/// ```
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct VibratedBox {
+    /// Number of disks.
+    pub disks: usize,
+    /// Width $`L_x`$.
+    pub width: f64,
+    /// Height $`L_y`$; none without a lid.
+    pub height: Option<f64>,
+    /// Gravity $`g`$.
+    #[serde(default)]
+    pub gravity: f64,
+    /// Inelasticity $`q`$: normal, and tangential unless that is given separately.
+    #[serde(default)]
+    pub inelasticity: f64,
+    /// Tangential inelasticity $`q_t`$, if not $`q`$.
+    pub tangential_inelasticity: Option<f64>,
+    /// Friction $`\kappa`$: static, and dynamic unless that is given separately.
+    #[serde(default)]
+    pub friction: f64,
+    /// Dynamic friction $`\kappa_d`$, if not $`\kappa`$.
+    pub dynamic_friction: Option<f64>,
+    /// Inelasticity of the walls, normal and tangential, if not that of the disks.
+    pub wall_inelasticity: Option<f64>,
+    /// Inelasticity of the base alone, if not that of the walls.
+    pub base_inelasticity: Option<f64>,
+    /// Tangential inelasticity $`q_t`$ of the base alone, if not the normal one of the base.
+    pub base_tangential_inelasticity: Option<f64>,
+    /// Friction of the walls, static and dynamic, if not that of the disks.
+    pub wall_friction: Option<f64>,
+    /// Contact duration $`t_c`$; none without the model [`ContactDuration`].
+    pub contact_duration: Option<f64>,
+    /// Temperature of the velocities at the start.
+    #[serde(default = "one")]
+    pub initial_temperature: f64,
+    /// The sides.
+    #[serde(default)]
+    pub sides: Sides,
+    /// Source of the motion of the disks.
+    pub base: Base,
+}
+
+const fn one() -> f64 {
+    1.0
+}
+
+impl VibratedBox {
+    /// Makes smooth elastic disks in an open box without gravity, of initial temperature 1.
+    pub const fn new(disks: usize, width: f64, base: Base) -> Self {
+        Self {
+            disks,
+            width,
+            height: None,
+            gravity: 0.0,
+            inelasticity: 0.0,
+            tangential_inelasticity: None,
+            friction: 0.0,
+            dynamic_friction: None,
+            wall_inelasticity: None,
+            base_inelasticity: None,
+            base_tangential_inelasticity: None,
+            wall_friction: None,
+            contact_duration: None,
+            initial_temperature: 1.0,
+            sides: Sides::Hard,
+            base,
+        }
+    }
+
+    /// Returns the same box under a lid at this height.
+    pub const fn with_height(self, height: f64) -> Self {
+        Self { height: Some(height), ..self }
+    }
+
+    /// Returns the same box with this gravity.
+    pub const fn with_gravity(self, gravity: f64) -> Self {
+        Self { gravity, ..self }
+    }
+
+    /// Returns the same box with the inelasticity $`q = q_n = q_t`$.
+    pub const fn with_inelasticity(self, inelasticity: f64) -> Self {
+        Self { inelasticity, tangential_inelasticity: None, ..self }
+    }
+
+    /// Returns the same box with a tangential inelasticity $`q_t`$ of its own.
+    pub const fn with_tangential_inelasticity(self, tangential: f64) -> Self {
+        Self { tangential_inelasticity: Some(tangential), ..self }
+    }
+
+    /// Returns the same box with the friction $`\kappa = \kappa_s = \kappa_d`$.
+    pub const fn with_friction(self, friction: f64) -> Self {
+        Self { friction, dynamic_friction: None, ..self }
+    }
+
+    /// Returns the same box with a dynamic friction $`\kappa_d`$ of its own.
+    pub const fn with_dynamic_friction(self, dynamic: f64) -> Self {
+        Self { dynamic_friction: Some(dynamic), ..self }
+    }
+
+    /// Returns the same box with walls of an inelasticity of their own, normal and tangential.
+    pub const fn with_wall_inelasticity(self, inelasticity: f64) -> Self {
+        Self { wall_inelasticity: Some(inelasticity), ..self }
+    }
+
+    /// Returns the same box with a base of an inelasticity of its own, normal and tangential.
+    pub const fn with_base_inelasticity(self, inelasticity: f64) -> Self {
+        Self { base_inelasticity: Some(inelasticity), base_tangential_inelasticity: None, ..self }
+    }
+
+    /// Returns the same box with a base of these inelasticities, normal and tangential.
+    pub const fn with_base_inelasticities(self, normal: f64, tangential: f64) -> Self {
+        Self { base_tangential_inelasticity: Some(tangential), ..self.with_base_inelasticity(normal) }
+    }
+
+    /// Returns the same box under the contact-duration model, [`ContactDuration`].
+    pub const fn with_contact_duration(self, duration: f64) -> Self {
+        Self { contact_duration: Some(duration), ..self }
+    }
+
+    /// Returns the rule of walls of these inelasticities, if it is not that of the disks.
+    fn wall_rule(
+        &self,
+        normal: Option<f64>,
+        tangential: Option<f64>,
+    ) -> Result<Option<BoxRule>, ExperimentError> {
+        if normal.or(tangential).or(self.wall_friction).is_none() {
+            return Ok(None);
+        }
+        let walls = normal.into_iter().fold(self.clone(), Self::with_inelasticity);
+        let walls = tangential.into_iter().fold(walls, Self::with_tangential_inelasticity);
+        let walls = self.wall_friction.into_iter().fold(walls, Self::with_friction);
+        walls.rule().map(Some)
+    }
+}
+
+impl Experiment for VibratedBox {
+    type Rule = BoxRule;
+    type Boundary = Container;
+    type Observer = Measurement;
+    type Sample = Sample;
+
+    /// The box is part of this crate, and the crate's own number shows changed results.
+    fn revision() -> Fingerprint {
+        Fingerprint::of("VibratedBox")
+    }
+
+    fn rule(&self) -> Result<BoxRule, ExperimentError> {
+        let tangential = self.tangential_inelasticity.unwrap_or(self.inelasticity);
+        let dynamic = self.dynamic_friction.unwrap_or(self.friction);
+        let rule = Frictional::from_inelasticity(self.inelasticity, tangential, self.friction)?
+            .with_dynamic_friction(dynamic)?;
+        Ok(match self.contact_duration {
+            None => BoxRule(Kind::Plain(rule)),
+            Some(duration) => BoxRule(Kind::Lasting(ContactDuration::new(rule, duration)?)),
+        })
+    }
+
+    fn boundary(&self) -> Result<Container, ExperimentError> {
+        let mut container = match self.height {
+            Some(height) => Container::closed(self.width, height)?,
+            None => Container::open(self.width)?,
+        };
+        if let Some(rule) = self.wall_rule(self.wall_inelasticity, None)? {
+            for wall in [Wall::Left, Wall::Right].into_iter().chain(self.height.map(|_| Wall::Lid)) {
+                container = container.with_rule(wall, rule)?;
+            }
+        }
+        let base = self.base_inelasticity.or(self.wall_inelasticity);
+        if let Some(rule) = self.wall_rule(base, self.base_tangential_inelasticity)? {
+            container = container.with_rule(Wall::Floor, rule)?;
+        }
+        let container = match self.sides {
+            Sides::Hard => container,
+            Sides::Elastic => container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?,
+            Sides::Periodic => container.with_periodic_sides()?,
+        };
+        self.base.under(container)
+    }
+
+    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
+        if self.disks == 0 {
+            return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
+        }
+        // An open box has room for any number, so a mistyped number must not take all memory.
+        accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
+        let disks = initial::lattice(&self.boundary()?, self.disks, RADIUS)?;
+        Ok(initial::with_maxwellian_velocities(disks, self.initial_temperature, seed)?)
+    }
+
+    fn gravity(&self) -> Gravity {
+        self.gravity.into()
+    }
+
+    /// Returns a period of the base, or 1 if it does not oscillate.
+    fn cycle(&self) -> f64 {
+        self.base.period().unwrap_or(1.0)
+    }
+
+    fn observer(&self) -> Result<Measurement, ExperimentError> {
+        Ok(Measurement::default())
+    }
+
+    fn sample(&self, snapshot: &Snapshot<'_>, measurement: &mut Measurement) -> Sample {
+        measurement.sample(snapshot)
+    }
+
+    fn columns() -> Vec<Column<Self>> {
+        convection::columns()
+    }
+
+    fn tables() -> Vec<Table<Self>> {
+        convection::tables()
+    }
+
+    /// Returns the name of the convective regime; `None` without samples.
+    fn state(record: &Record<Self>) -> Option<String> {
+        let (noise, layer) = (record.thermal_noise(), record.densest_layer());
+        let found = StateCriteria::default().classify(&record.order(), noise, layer);
+        found.ok().map(|found| found.regime().to_string())
+    }
+
+    /// Returns false for the size of the box, which must hold its disks, and for a frequency, with which the
+    /// base would jump.
+    fn can_be_ramped(parameter: &str) -> bool {
+        let name = parameter.rsplit('.').next().unwrap_or(parameter);
+        let fixed = ["disks", "width", "height", "sides", "angular_frequency", "slip", "initial_temperature"];
+        !fixed.contains(&name)
+    }
+
+    fn check_measured(
+        &self,
+        samples: &[Sample],
+        measurement: &Measurement,
+        state: Option<&Checkpoint>,
+    ) -> Result<(), ExperimentError> {
+        if let Some(found) = state.map(Checkpoint::disk_count).filter(|found| *found != self.disks) {
+            return Err(format!("it has {found} disks instead of {}", self.disks).into());
+        }
+        Ok(sample::check(samples, measurement)?)
+    }
+}

@@ -1,0 +1,1 @@
+../../../tests/hostile/forging.rs

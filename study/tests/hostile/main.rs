@@ -1,0 +1,27 @@
+//! Bad input of studies: plans and files of any contents, and faults of the machine.
+//!
+//! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, and `PROPTEST_RNG_SEED` sets another seed.
+
+#[path = "../support/cases.rs"]
+mod cases;
+mod edits;
+#[cfg(unix)]
+mod faults;
+mod files;
+#[cfg(unix)]
+mod forged;
+#[cfg(unix)]
+mod forging;
+mod intruders;
+#[cfg(unix)]
+mod limits;
+#[path = "../support/mixture.rs"]
+mod mixture;
+mod numbers;
+mod records;
+#[path = "../support/report.rs"]
+mod report;
+#[allow(dead_code, reason = "shared with the tests of the core")]
+mod specimens;
+mod studies;
+mod unknown_fields;

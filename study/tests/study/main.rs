@@ -1,0 +1,23 @@
+//! Studies: the plan as data, the same bytes however they come about, and damage that is noticed.
+
+#[path = "../support/cases.rs"]
+mod cases;
+mod damage;
+mod folders;
+mod growth;
+mod identity;
+mod interruption;
+#[path = "../support/mixture.rs"]
+mod mixture;
+mod own;
+mod paths;
+mod plans;
+mod processes;
+mod random;
+mod refinement;
+#[path = "../support/report.rs"]
+mod report;
+mod support;
+mod tables;
+mod values;
+mod watched;

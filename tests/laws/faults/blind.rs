@@ -1,0 +1,33 @@
+//! Faults written from the documented contracts alone, without a look at the checks that shall find them.
+//!
+//! Each file has the faults of one trait as its `catalogue`, and the parts on which they are planted, without
+//! a fault, as `honest`: a check that refuses one of these is wrong itself.
+
+pub(crate) mod boundaries;
+pub(crate) mod drivings;
+pub(crate) mod fingerprints;
+pub(crate) mod formats;
+pub(crate) mod motions;
+pub(crate) mod observers;
+pub(crate) mod rules;
+pub(crate) mod schedulers;
+
+use super::Planted;
+
+/// Returns the names of all faults, each after the name of its trait.
+pub(crate) fn names() -> Vec<String> {
+    fn named<T>(part: &str, catalogue: &[Planted<T>]) -> Vec<String> {
+        catalogue.iter().map(|fault| format!("{part}: {}: {}", fault.family, fault.name)).collect()
+    }
+    [
+        named("rule", &rules::catalogue()),
+        named("motion", &motions::catalogue()),
+        named("boundary", &boundaries::catalogue()),
+        named("scheduler", &schedulers::catalogue()),
+        named("driving", &drivings::catalogue()),
+        named("observer", &observers::catalogue()),
+        named("format", &formats::catalogue()),
+        named("fingerprint", &fingerprints::catalogue()),
+    ]
+    .concat()
+}

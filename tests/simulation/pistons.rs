@@ -1,0 +1,138 @@
+//! Walls with a mass: exact balances, closed forms, thermodynamics of a gas under a lid.
+
+use std::f64::consts::PI;
+
+use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Partner, Snapshot, on_collision};
+use granular_edmd::simulation::Limits;
+use granular_edmd::wall::Piston;
+use granular_edmd::{Disk, Simulation, initial};
+
+type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
+
+/// Index of the lid of a closed container.
+const LID: usize = 3;
+
+/// Returns the displacement of the lid of a container of this height, and its velocity, along its normal.
+fn lid(snapshot: &Snapshot<'_>, height: f64) -> (f64, f64) {
+    let known = "the lid is known";
+    (height - snapshot.wall_point(LID).expect(known).y, -snapshot.wall_velocity(LID).expect(known).y)
+}
+
+fn energy(snapshot: &Snapshot<'_>, piston: &Piston, height: f64) -> f64 {
+    let disks: f64 = snapshot.disks().iter().map(Disk::translational_energy).sum();
+    let pull = snapshot.gravity().acceleration();
+    let fallen: f64 = snapshot.disks().iter().map(|disk| -disk.mass() * pull.dot(disk.position())).sum();
+    let (displacement, velocity) = lid(snapshot, height);
+    disks + fallen + piston.energy(displacement, velocity)
+}
+
+/// The digits of π: a piston of mass 100ⁿ pushes a disk against a wall; they collide ⌊π 10ⁿ⌋ times.
+#[test]
+fn collisions_count_the_digits_of_pi() -> Outcome {
+    for digits in 0..6 {
+        let piston = Piston::new(100_f64.powi(digits), -90.0, 9.6)?.starting_at(0.0, 1e-3)?;
+        let container = Container::closed(10.0, 4.0)?.with_piston(Wall::Right, piston)?;
+        let disk = Disk::new(DVec2::new(3.0, 2.0), 0.25)?.with_mass(1.0)?;
+        let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
+        // After the last collision, the piston goes away and stops where it began.
+        let limits = Limits::until(1e5).with_least_progress(0.0)?;
+        run.run(&limits, &mut ())?;
+        let count = (PI * 10_f64.powi(digits)).floor() as u64;
+        assert_eq!(run.counters().wall_collisions, count, "{digits}");
+    }
+    Ok(())
+}
+
+/// A piston on a spring over a fast gas: nothing is lost in a million blows.
+#[test]
+fn energy_is_kept_over_a_million_blows() -> Outcome {
+    let height = 6.0;
+    let piston =
+        Piston::new(7.0, -1.0, 4.0)?.with_force(2.0)?.with_spring(300.0, 1.0)?.starting_at(1.0, 0.5)?;
+    let container = Container::closed(4.0, height)?.with_piston(Wall::Lid, piston)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 3, 0.4)?, 100.0, 3)?;
+    let mut run = Simulation::builder(Elastic, container).disks(disks).gravity(0.1).build()?;
+    let before = energy(&run.snapshot(), &piston, height);
+    let mut blows = 0_u64;
+    let mut watch = on_collision(|collision| blows += u64::from(collision.partner == Partner::Wall(LID)));
+    run.run_until(4e5, &mut watch)?;
+    assert!(blows > 1_000_000, "{blows} blows");
+    let change = energy(&run.snapshot(), &piston, height) / before - 1.0;
+    println!("{blows} blows, change of the energy {change:e}");
+    assert!(change.abs() < 1e-12, "{change:e}");
+    Ok(())
+}
+
+/// The same bits from a checkpoint, and however the run is cut.
+#[cfg(feature = "serde")]
+#[test]
+fn a_resumed_piston_goes_on_with_the_same_bits() -> Outcome {
+    let piston = Piston::new(30.0, 0.0, 9.0)?.with_force(3.0)?.with_spring(0.5, 2.0)?;
+    let container = Container::closed(8.0, 12.0)?.with_piston(Wall::Lid, piston)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.4)?, 1.0, 3)?;
+    let mut whole = Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build()?;
+    let mut cut = whole.clone();
+    whole.run_until(500.0, &mut ())?;
+    for piece in 1..=50 {
+        cut.run_until(f64::from(piece) * 10.0, &mut ())?;
+        let kept = granular_edmd::simulation::Checkpoint::from_bytes(&cut.checkpoint().to_bytes()?)?;
+        cut = Simulation::resume(&kept, Elastic, container.clone()).build()?;
+    }
+    assert_eq!(whole.disks(), cut.disks());
+    assert_eq!(lid(&whole.snapshot(), 12.0), lid(&cut.snapshot(), 12.0));
+    Ok(())
+}
+
+/// A lid alone: it falls to its stop, rests there, and leaves it on a spring, as the closed forms say.
+#[test]
+fn a_lid_without_disks_follows_its_closed_forms() -> Outcome {
+    let at = |piston: Piston, time: f64| -> Outcome<(f64, f64)> {
+        let container = Container::closed(4.0, 10.0)?.with_piston(Wall::Lid, piston)?;
+        let mut run = Simulation::builder(Elastic, container).build()?;
+        // In pieces, so that the epoch moves.
+        for piece in 1..=10 {
+            run.run_until(time * f64::from(piece) / 10.0, &mut ())?;
+        }
+        Ok(lid(&run.snapshot(), 10.0))
+    };
+    let near = |(displacement, velocity): (f64, f64), expected: (f64, f64)| {
+        (displacement - expected.0).abs() < 1e-12 && (velocity - expected.1).abs() < 1e-12
+    };
+    let falling = Piston::new(2.0, 0.0, 8.0)?.with_force(1.0)?;
+    assert!(near(at(falling, 4.0)?, (4.0, 2.0)));
+    assert_eq!(at(falling, 100.0)?, (8.0, 0.0), "it rests at its stop");
+    // About displacement 5 with frequency 1/2: from rest at 4, it swings to 6 and back.
+    let swinging = Piston::new(4.0, 0.0, 8.0)?.with_spring(1.0, 5.0)?.starting_at(4.0, 0.0)?;
+    assert!(near(at(swinging, 2.0 * PI)?, (6.0, 0.0)));
+    assert!(near(at(swinging, PI)?, (5.0, 0.5)));
+    // From rest at 0, it comes to the stop at 8, stays there without velocity, and swings back to 2.
+    let stopped = swinging.starting_at(0.0, 0.0)?;
+    let first = (PI - (3.0_f64 / 5.0).acos()) / 0.5;
+    assert!(near(at(stopped, first + 2.0 * PI)?, (2.0, 0.0)));
+    Ok(())
+}
+
+/// A slow compression by a heavy piston is adiabatic: in two dimensions, the energy of a gas of points grows
+/// as the inverse of the volume.
+#[test]
+fn a_slow_compression_heats_as_the_inverse_volume() -> Outcome {
+    let piston = Piston::new(1e9, 0.0, 15.0)?.starting_at(0.0, 2e-3)?;
+    let container = Container::closed(20.0, 20.0)?.with_piston(Wall::Lid, piston)?;
+    // Small, so that the volume is the whole one; and not too small to mix both directions.
+    let disks = initial::random(&container, 200, 0.05, 20.0, 5)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 6)?;
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+    let kinetic = |snapshot: &Snapshot<'_>| snapshot.mean(Disk::translational_energy);
+    let before = kinetic(&run.snapshot());
+    run.run_until(5000.0, &mut ())?;
+    let volume = |height: f64| (height - 0.1) * 19.9;
+    let expected = volume(20.0) / volume(10.0);
+    let ratio = kinetic(&run.snapshot()) / before;
+    println!("heated by {ratio}, adiabatically by {expected}");
+    // The energy of 200 disks at one time is that of the adiabat within the pressure's noise of one crossing.
+    assert!((ratio / expected - 1.0).abs() < 0.02, "{ratio} {expected}");
+    Ok(())
+}
