@@ -269,7 +269,7 @@ pub trait Boundary {
     /// [points](Self::wall_point) of all walls stay where they are, they may keep the answer. It is `None`
     /// unless implemented.
     ///
-    /// Containers, vessels and obstacles know it to rounding (1e-12), whatever overlaps. The exceptions are
+    /// Containers, vessels and obstacles know it to 1e-10, whatever overlaps. The exceptions are
     /// obstacles that lie in a curved wall, and parts whose lines end inside the container with disks on one
     /// side only: there, pieces below a sixteenth of their surroundings may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
