@@ -168,8 +168,8 @@ const _: () = {
 /// Buffers that are used again and again.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
-    /// The neighbors of one disk.
-    found: Vec<u32>,
+    /// The neighbors of one disk, or of both that collide.
+    found: [Vec<u32>; 2],
     /// The times of all disks.
     due: Vec<f64>,
     /// Number of disks that the scheduler has room for.

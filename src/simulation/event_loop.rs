@@ -87,6 +87,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Outcome<Event> {
         let periods = self.cells.grid().periods();
+        // Neighbors are listed before the collision is known: the processor then has this work to do while
+        // it waits for the roots and quotients of the collision.
+        let counts = [self.neighbors(disk, 0), self.neighbors(partner, 1)];
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
         // A couple can make a spin impossible while the velocity stays. Without one, the comparison is known
         // when the rule is compiled.
@@ -107,9 +110,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.part(disk, partner, collision.normal, left);
         }
         observer.on_collision(&collision);
-        for disk in [disk, partner] {
-            self.find_next(disk);
-        }
+        self.find_next_of_both([disk, partner], counts);
         for disk in [disk, partner] {
             self.schedule(disk);
         }
@@ -293,7 +294,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let passed = self.cells.cross(disk, exit);
         self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        let count = self.cells.ahead(disk, exit, &mut self.scratch.found);
+        let count = self.cells.ahead(disk, exit, &mut self.scratch.found[0]);
         self.go_on(disk, count);
     }
 
@@ -317,7 +318,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let passed = self.cells.cross_large(disk, exit);
         self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found);
+        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found[0]);
         self.go_on(disk, count);
     }
 
@@ -325,7 +326,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn look_ahead(&mut self) {
         if self.bodies.len() >= LARGE_SYSTEM {
             self.make_room();
-            self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found);
+            self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found[0]);
         }
     }
 }
