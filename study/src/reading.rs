@@ -77,7 +77,8 @@ impl<E: Experiment> Study<E> {
     /// If there is no such ramp, the only item is an error.
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
         let missing = self.check_ramp(ramp).err();
-        missing.into_iter().map(Err).chain(self.records_of(ramp..ramp + 1))
+        let ramps = if missing.is_some() { 0..0 } else { ramp..ramp + 1 };
+        missing.into_iter().map(Err).chain(self.records_of(ramps))
     }
 
     fn records_of(
