@@ -61,7 +61,7 @@ impl<E: Experiment> Study<E> {
         check_record(&record, &self.plan).map_err(told)?;
         // Accepted code differs from this program on purpose.
         let is_ours = self.is_ours(&record.contents.origin);
-        match record.changed_part(self.plan.protocol()).filter(|_| is_ours) {
+        match record.changed_part(&self.plan.protocol().last_of(record.contents.steps)).filter(|_| is_ours) {
             Some(part) => Err(StudyError::Changed { path, part }),
             None => Ok(record),
         }
