@@ -61,7 +61,7 @@ impl<E: Experiment> Study<E> {
         check_record(&record, &self.plan).map_err(told)?;
         // Accepted code differs from this program on purpose.
         let is_ours = self.is_ours(&record.contents.origin);
-        match record.changed_part(self.plan.protocol()).filter(|_| is_ours) {
+        match record.changed_part(&self.plan.protocol().last_of(record.contents.steps)).filter(|_| is_ours) {
             Some(part) => Err(StudyError::Changed { path, part }),
             None => Ok(record),
         }
@@ -77,7 +77,8 @@ impl<E: Experiment> Study<E> {
     /// If there is no such ramp, the only item is an error.
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
         let missing = self.check_ramp(ramp).err();
-        missing.into_iter().map(Err).chain(self.records_of(ramp..ramp + 1))
+        let ramps = if missing.is_some() { 0..0 } else { ramp..ramp + 1 };
+        missing.into_iter().map(Err).chain(self.records_of(ramps))
     }
 
     fn records_of(

@@ -154,6 +154,11 @@ impl Protocol {
         step >= self.settling_steps()
     }
 
+    /// Returns the last step of a value of which these steps are done.
+    pub(crate) fn last_of(&self, steps: u64) -> Interval {
+        self.interval(self.steps().saturating_sub(1).min(steps))
+    }
+
     /// Returns the step of this index.
     pub(crate) fn interval(&self, index: u64) -> Interval {
         Interval { index, sample: index.checked_sub(self.settling_steps()) }
