@@ -53,7 +53,7 @@ mod warnings;
 pub use builder::SimulationBuilder;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
-pub use driving::{Driving, Rescaling, WhiteNoise};
+pub use driving::{Driving, Rescaling, WhiteNoise, laws};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use footprint::Footprint;
