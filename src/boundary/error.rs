@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::{ParameterError, Violation};
 use crate::error::Rounded;
+use crate::{ParameterError, Violation};
 
 /// An error: a vessel cannot be built or changed in this way.
 ///

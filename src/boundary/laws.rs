@@ -106,7 +106,12 @@ pub fn check<B: Boundary + ?Sized>(
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
     let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;
-    require!(is_rectangle, PART, "domain", "the domain {domain} is no rectangle with a finite bottom and sides");
+    require!(
+        is_rectangle,
+        PART,
+        "domain",
+        "the domain {domain} is no rectangle with a finite bottom and sides"
+    );
     let is_inside = domain.left <= interior.left
         && interior.right <= domain.right
         && domain.bottom <= interior.bottom
@@ -163,7 +168,11 @@ impl Random {
             .find(|&place| trial.depth(place, 0.0, time).is_none());
         let radius = trial.radius;
         place.ok_or_else(|| {
-            Violation::new(PART, "room", format!("there is no room for a disk of radius {radius:?} at {time:?}"))
+            Violation::new(
+                PART,
+                "room",
+                format!("there is no room for a disk of radius {radius:?} at {time:?}"),
+            )
         })
     }
 }

@@ -220,6 +220,9 @@ impl fmt::Display for Contact {
         if spin == 0.0 && response == 0.0 {
             return Ok(());
         }
-        write!(formatter, ", relative spin {spin:?} with the inertia {inertia:?} and the response {response:?}")
+        write!(
+            formatter,
+            ", relative spin {spin:?} with the inertia {inertia:?} and the response {response:?}"
+        )
     }
 }

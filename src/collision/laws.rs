@@ -153,9 +153,13 @@ fn check_rolling(contact: &Contact, impulse: Impulse, coefficient: f64) -> Resul
         + ROUNDING * (contact.spin_response() * impulse.tangential()).abs();
     let stops = (contact.spin_inertia() * spin).abs() * (1.0 + ROUNDING);
     let slows = opposes(couple, spin) && couple.abs() <= stops;
-    unless(slows || couple.abs() <= contact.spin_inertia() * least, "rolling friction", contact, impulse, || {
-        format!("does not slow the spin {spin:?} that friction leaves")
-    })
+    unless(
+        slows || couple.abs() <= contact.spin_inertia() * least,
+        "rolling friction",
+        contact,
+        impulse,
+        || format!("does not slow the spin {spin:?} that friction leaves"),
+    )
 }
 
 /// Returns whether an impulse is none, or acts against this speed.

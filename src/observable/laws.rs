@@ -100,7 +100,12 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         self.observer.on_start(&snapshot(self.now, &disks(0)));
         self.wanted = self.next_sample()?;
         let (start, next, rounding) = (self.now, self.wanted, ROUNDING * self.now.abs());
-        require!(next >= start - rounding, PART, "start", "the run starts at {start:?}, and asks for a sample at {next:?}");
+        require!(
+            next >= start - rounding,
+            PART,
+            "start",
+            "the run starts at {start:?}, and asks for a sample at {next:?}"
+        );
         let kept = kept.unwrap_or(next);
         let is_kept = next == kept || (next - kept).abs() <= rounding;
         require!(
@@ -146,7 +151,12 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         self.observer.on_sample(&snapshot(self.now, &disks(self.collisions)));
         let next = self.next_sample()?;
         let sample = self.now;
-        require!(next > sample, PART, "later", "after the sample at {sample:?} the next one is not later, at {next:?}");
+        require!(
+            next > sample,
+            PART,
+            "later",
+            "after the sample at {sample:?} the next one is not later, at {next:?}"
+        );
         self.wanted = next;
         self.goes_on()
     }
@@ -161,7 +171,12 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
     fn goes_on(&mut self) -> Result<bool, Violation> {
         let goes_on = self.observer.verdict().is_ok_and(|verdict| verdict.is_continue());
         let (before, next) = (self.wanted, self.next_sample()?);
-        require!(next == before, PART, "clock", "between two samples the next one moved from {before:?} to {next:?}");
+        require!(
+            next == before,
+            PART,
+            "clock",
+            "between two samples the next one moved from {before:?} to {next:?}"
+        );
         Ok(goes_on)
     }
 }

@@ -105,7 +105,9 @@ impl<S: EventScheduler> Performance<S> {
         let (name, after, right) = (script.name, after(), told(expected));
         let wrong = told(if given == expected { again } else { given });
         let sentence = "the earliest is";
-        let found = format!("script \"{name}\" of {disks} disks, step {step}, {after}: {sentence} {right}, not {wrong}");
+        let found = format!(
+            "script \"{name}\" of {disks} disks, step {step}, {after}: {sentence} {right}, not {wrong}"
+        );
         Err(Violation::new(PART, "earliest", found))
     }
 
@@ -117,7 +119,12 @@ impl<S: EventScheduler> Performance<S> {
         self.scheduler.upcoming(&mut named);
         let Self { script, disks, step, .. } = *self;
         let (name, sentence) = (script.name, "the look at upcoming disks changes others");
-        require!(named.starts_with(&kept), PART, "hint", "script \"{name}\" of {disks} disks, step {step}: {sentence}");
+        require!(
+            named.starts_with(&kept),
+            PART,
+            "hint",
+            "script \"{name}\" of {disks} disks, step {step}: {sentence}"
+        );
         self.compare(|| "after a look at upcoming disks".to_owned())
     }
 }

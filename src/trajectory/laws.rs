@@ -36,7 +36,12 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
     for _ in 1..TIMES {
         for (number, (once, again)) in frames.iter().zip(written(format, &snapshots)?).enumerate() {
             let bytes = again.len();
-            require!(*once == again, PART, "alike", "frame {number}, written again, has {bytes} bytes that differ");
+            require!(
+                *once == again,
+                PART,
+                "alike",
+                "frame {number}, written again, has {bytes} bytes that differ"
+            );
         }
     }
     let text = frames.concat();
@@ -51,7 +56,12 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
         let is_time = read.to_bits() == time.to_bits();
         require!(is_time, PART, "time", "frame {number} of time {time:?} is read as one of time {read:?}");
         let (written, skipped) = (frame.len(), before - rest.len());
-        require!(written == skipped, PART, "length", "frame {number} has {written} bytes, of which {skipped} are skipped");
+        require!(
+            written == skipped,
+            PART,
+            "length",
+            "frame {number} has {written} bytes, of which {skipped} are skipped"
+        );
         check_torn(format, number, frame)?;
     }
     Ok(())
@@ -65,7 +75,9 @@ fn failed(number: usize, error: &io::Error) -> Violation {
 fn written(format: &dyn Format, snapshots: &[Snapshot<'_>]) -> Result<Vec<Vec<u8>>, Violation> {
     let bytes = |(number, snapshot)| {
         let mut bytes = Vec::new();
-        format.write_frame(&Frame::new(number, snapshot), &mut bytes).map_err(|error| failed(number, &error))?;
+        format
+            .write_frame(&Frame::new(number, snapshot), &mut bytes)
+            .map_err(|error| failed(number, &error))?;
         Ok(bytes)
     };
     snapshots.iter().enumerate().map(bytes).collect()

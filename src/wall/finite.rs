@@ -77,7 +77,12 @@ pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> R
     // shorter pieces.
     let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
     let sentence = "pieces of its motion lead only from phase";
-    require!(phase > least, PART, "pieces", "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short");
+    require!(
+        phase > least,
+        PART,
+        "pieces",
+        "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short"
+    );
     Ok(())
 }
 
@@ -98,7 +103,12 @@ pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
     finite("upper bound of the acceleration", bounds.max, phase)?;
     let AccelerationBounds { until, min, max } = bounds;
     let sentence = "its lower bound of the acceleration";
-    require!(min <= max, PART, "bounds", "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}");
+    require!(
+        min <= max,
+        PART,
+        "bounds",
+        "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}"
+    );
     let sentence = "the piece of its motion from phase";
     require!(until > phase, PART, "pieces", "{sentence} {phase:?} on ends at {until:?}, which is not later");
     Ok(bounds)

@@ -289,9 +289,19 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = bounds.min.abs().max(bounds.max.abs()) * wait * wait
             + self.length_rounding(before, &bounds)
             + self.speed_rounding(before, &bounds) * wait;
-        require!(jump <= slack, PART, "jump", "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}");
+        require!(
+            jump <= slack,
+            PART,
+            "jump",
+            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}"
+        );
         let is_told = self.jumps || jump >= -slack - 1e-6 * (self.high - self.low);
-        require!(is_told, PART, "jump", "at phase {until:?} it jumps by {jump:?}, but says that it never jumps");
+        require!(
+            is_told,
+            PART,
+            "jump",
+            "at phase {until:?} it jumps by {jump:?}, but says that it never jumps"
+        );
         Ok(())
     }
 

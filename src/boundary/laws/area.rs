@@ -21,9 +21,7 @@ pub(super) fn check_areas<B: Boundary + ?Sized>(
     random: &mut Random,
 ) -> Result<(), Violation> {
     let (low, high) = trial.rectangle();
-    let any = |random: &mut Random| {
-        DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y))
-    };
+    let any = |random: &mut Random| DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));
     let (one, other) = (any(random), any(random));
     for region in [Region::new(low, high), Region::new(one.min(other), one.max(other))] {
         check_area(trial, &region, time, random)?;

@@ -74,7 +74,12 @@ fn check_flight<B: Boundary + ?Sized>(
     check_origin(trial, flight, until, meeting.as_ref())?;
     let again = trial.first_touch(flight, until)?;
     let is_same = again == found;
-    require!(is_same, PART, "repeatable", "the touch {found:?} is {again:?} when asked for again: {flight:?}");
+    require!(
+        is_same,
+        PART,
+        "repeatable",
+        "the touch {found:?} is {again:?} when asked for again: {flight:?}"
+    );
     if let Some(meeting) = &meeting {
         check_limits(trial, flight, meeting)?;
         trial.check_regions(meeting.touch, meeting.place)?;
@@ -123,9 +128,19 @@ fn check_touch<B: Boundary + ?Sized>(
     until: f64,
 ) -> Result<(), Violation> {
     let is_inside = time >= flight.time() && time <= until;
-    require!(is_inside, PART, "touch time", "a touch at {time:?} is not on the flight until {until:?}: {flight:?}");
+    require!(
+        is_inside,
+        PART,
+        "touch time",
+        "a touch at {time:?} is not on the flight until {until:?}: {flight:?}"
+    );
     let count = trial.wall_count;
-    require!(wall < count, PART, "touched wall", "wall {wall} is touched, but there are {count}, on {flight:?}");
+    require!(
+        wall < count,
+        PART,
+        "touched wall",
+        "wall {wall} is touched, but there are {count}, on {flight:?}"
+    );
     Ok(())
 }
 
@@ -149,7 +164,12 @@ fn check_way<B: Boundary + ?Sized>(
             return Err(Violation::new(PART, "no missed touch", sentence));
         }
         let is_inside = domain.contains(place, rounding);
-        require!(is_inside, PART, "inside the domain", "a disk is at {place:?} at time {time:?}, on {flight:?}");
+        require!(
+            is_inside,
+            PART,
+            "inside the domain",
+            "a disk is at {place:?} at time {time:?}, on {flight:?}"
+        );
     }
     Ok(())
 }
@@ -170,7 +190,12 @@ fn check_place<B: Boundary + ?Sized>(
     let rate = (velocity - surface.velocity).dot(surface.normal);
     let speed = velocity.length() + surface.velocity.length();
     let closes = rate <= GRAZING * speed;
-    require!(closes, PART, "approach", "wall {wall} is touched at {time:?}, but left at {rate:?}, on {flight:?}");
+    require!(
+        closes,
+        PART,
+        "approach",
+        "wall {wall} is touched at {time:?}, but left at {rate:?}, on {flight:?}"
+    );
     Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
 }
 
@@ -245,9 +270,11 @@ fn check_origin<B: Boundary + ?Sized>(
         "time origin",
         "an origin {shift:?} before {origin:?} moves a touch at {before:?} to {after:?}: {flight:?}"
     );
-    let are_close = seen.iter().flatten().zip(seen_again.iter().flatten()).all(|(&(one, scale), &(other, _))| {
-        one == other || (one - other).abs() <= 1e-9 * scale
-    });
+    let are_close = seen
+        .iter()
+        .flatten()
+        .zip(seen_again.iter().flatten())
+        .all(|(&(one, scale), &(other, _))| one == other || (one - other).abs() <= 1e-9 * scale);
     require!(
         are_close,
         PART,
@@ -264,7 +291,8 @@ fn numbers<B: Boundary + ?Sized>(trial: &Trial<'_, B>, meeting: &Meeting, shift:
     let surface = trial.boundary.surface(wall, meeting.place, time + shift);
     let Surface { normal, velocity, radius, mass, tangential_mass, kind, .. } = surface;
     // The rounding of late times is a place on a wall that moves, and its change of velocity is unknown.
-    let speed = velocity.length() + trial.speed * (1.0 + (time + trial.origin) * trial.speed / trial.length());
+    let speed =
+        velocity.length() + trial.speed * (1.0 + (time + trial.origin) * trial.speed / trial.length());
     [
         (normal.x, 1e2),
         (normal.y, 1e2),
@@ -287,7 +315,8 @@ fn turned_back<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight, meet
     let time = meeting.touch.time;
     let surface = trial.boundary.surface(meeting.touch.wall, meeting.place, time);
     let velocity = flight.velocity(time) - 2.0 * meeting.rate.min(0.0) * surface.normal;
-    Flight::new(time, meeting.place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
+    Flight::new(time, meeting.place, velocity, flight.acceleration(), flight.radius())
+        .with_kind(flight.kind())
 }
 
 /// Returns a flight that starts a little off the wall and closes onto it slowly, while it goes along.

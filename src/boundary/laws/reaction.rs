@@ -28,7 +28,12 @@ pub(super) fn check_reaction<B: Boundary + ?Sized>(
         check_blow(trial, touch, place, [0.0, 0.0, sign * share])?;
         check_state(trial, &state)?;
         let after = answers(trial, touch, place);
-        require!(before == after, PART, "state", "wall {wall} is {after:?} at {time:?} when its state is set, and was {before:?}");
+        require!(
+            before == after,
+            PART,
+            "state",
+            "wall {wall} is {after:?} at {time:?} when its state is set, and was {before:?}"
+        );
     }
     Ok(())
 }
@@ -59,7 +64,8 @@ fn check_blow<B: Boundary + ?Sized>(
     let arm = if radius.is_finite() { radius } else { trial.radius };
     let couple = couple * trial.speed * tangential * arm;
     let point = place - trial.radius * normal;
-    let depth = |trial: &Trial<'_, B>| trial.depth(place, trial.radius, time).map_or(0.0, |found| found.depth);
+    let depth =
+        |trial: &Trial<'_, B>| trial.depth(place, trial.radius, time).map_or(0.0, |found| found.depth);
     let depth_before = depth(trial);
     let reaction = trial.boundary.react(&Impact::new(wall, impulse, point, time).with_couple(couple));
     let gained = trial.boundary.surface(wall, place, time).velocity - velocity;
@@ -80,7 +86,12 @@ fn check_blow<B: Boundary + ?Sized>(
     let is_told = (reaction == Reaction::Moved) == (expected != DVec2::ZERO) || gained == DVec2::ZERO;
     require!(is_told, PART, "reaction", "wall {wall} answers {reaction:?} to a blow, and gains {gained:?}");
     let moved = depth(trial) - depth_before;
-    require!(moved.abs() <= trial.rounding(), PART, "reaction", "a blow moves wall {wall} by {moved:?} at once");
+    require!(
+        moved.abs() <= trial.rounding(),
+        PART,
+        "reaction",
+        "a blow moves wall {wall} by {moved:?} at once"
+    );
     Ok(())
 }
 
@@ -88,7 +99,14 @@ fn check_blow<B: Boundary + ?Sized>(
 fn check_state<B: Boundary + ?Sized>(trial: &mut Trial<'_, B>, state: &[f64]) -> Result<(), Violation> {
     let longer = [state, &[0.0]].concat();
     let is_refused = trial.boundary.set_state(&longer).is_err();
-    require!(is_refused, PART, "state", "a state of {} numbers is accepted, and there are {}", longer.len(), state.len());
+    require!(
+        is_refused,
+        PART,
+        "state",
+        "a state of {} numbers is accepted, and there are {}",
+        longer.len(),
+        state.len()
+    );
     let answer = trial.boundary.set_state(state);
     require!(answer.is_ok(), PART, "state", "the state {state:?} is refused: {answer:?}");
     Ok(())

@@ -32,15 +32,35 @@ pub(super) fn check_surface<B: Boundary + ?Sized>(
     let surface = trial.boundary.surface(wall, place, time);
     let (normal, velocity, radius) = (surface.normal, surface.velocity, surface.radius);
     let is_unit = normal.is_finite() && (normal.length_squared() - 1.0).abs() <= UNIT;
-    require!(is_unit, PART, "unit normal", "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}");
-    require!(velocity.is_finite(), PART, "finite velocity", "the velocity {velocity:?} of wall {wall} at {time:?}");
+    require!(
+        is_unit,
+        PART,
+        "unit normal",
+        "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}"
+    );
+    require!(
+        velocity.is_finite(),
+        PART,
+        "finite velocity",
+        "the velocity {velocity:?} of wall {wall} at {time:?}"
+    );
     let masses = [surface.mass, surface.tangential_mass];
     let are_possible = radius != 0.0 && !radius.is_nan() && masses.iter().all(|&mass| mass > 0.0);
-    require!(are_possible, PART, "surface", "wall {wall} has the radius {radius:?} and the masses {masses:?}");
+    require!(
+        are_possible,
+        PART,
+        "surface",
+        "wall {wall} has the radius {radius:?} and the masses {masses:?}"
+    );
     let around = Around { trial, wall, place, time };
     let step = FAR * trial.radius;
     let goes_in = around.at(-step * normal, 0.0).0 - around.at(DVec2::ZERO, 0.0).0 >= (1.0 - SLOPE) * step;
-    require!(goes_in, PART, "normal", "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}");
+    require!(
+        goes_in,
+        PART,
+        "normal",
+        "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}"
+    );
     let is_named = around.at(DVec2::ZERO, 0.0).1;
     if is_named {
         around.check_normal(normal)?;

@@ -98,7 +98,12 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         let (before, now, walls) = (self.domain, self.boundary.domain(), self.boundary.wall_count());
         require!(now == before, PART, "constant domain", "the domain was {before} and is now {now}");
         let count = self.wall_count;
-        require!(walls == count, PART, "constant walls", "there were {count} walls, and now there are {walls}");
+        require!(
+            walls == count,
+            PART,
+            "constant walls",
+            "there were {count} walls, and now there are {walls}"
+        );
         Ok(())
     }
 
@@ -107,7 +112,12 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn check_names(&self) -> Result<(), Violation> {
         let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
         let wall = unnamed.unwrap_or_default();
-        require!(unnamed.is_none(), PART, "overlapped wall", "disks touch wall {wall}, but overlap others there");
+        require!(
+            unnamed.is_none(),
+            PART,
+            "overlapped wall",
+            "disks touch wall {wall}, but overlap others there"
+        );
         Ok(())
     }
 
@@ -129,9 +139,19 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     fn check_region(&self, Touch { time, wall, .. }: Touch, region: Region) -> Result<(), Violation> {
         for radius in [self.radius, 1.5 * self.radius] {
             let may = self.boundary.may_touch(&region, radius);
-            require!(may, PART, "may_touch", "a disk of radius {radius:?} touches in {region:?}, where it is denied");
+            require!(
+                may,
+                PART,
+                "may_touch",
+                "a disk of radius {radius:?} touches in {region:?}, where it is denied"
+            );
             let may = self.boundary.may_meet(wall, &region, radius, time);
-            require!(may, PART, "may_meet", "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied");
+            require!(
+                may,
+                PART,
+                "may_meet",
+                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied"
+            );
         }
         Ok(())
     }

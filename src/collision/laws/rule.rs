@@ -163,7 +163,9 @@ impl Promises {
     fn contacts(&self) -> impl Iterator<Item = Contact> + '_ {
         let named = |kind: Kind| match kind {
             Kind::WALL => kind,
-            _ => self.kinds.get(usize::from(kind.number()) % self.kinds.len().max(1)).copied().unwrap_or(kind),
+            _ => {
+                self.kinds.get(usize::from(kind.number()) % self.kinds.len().max(1)).copied().unwrap_or(kind)
+            }
         };
         let hostile = hostile_contacts().map(move |contact| contact.with_kinds(contact.kinds().map(named)));
         hostile.chain(random_contacts(self.seed, self.kinds))

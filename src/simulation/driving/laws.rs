@@ -88,7 +88,12 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
             cut.times().start_at(last);
         }
         let (time, other) = (upcoming(&mut whole, last)?, upcoming(&mut cut, last)?);
-        require!(time == other, PART, "clock", "kick {number} is at {time:?}, and at {other:?} if the run is cut");
+        require!(
+            time == other,
+            PART,
+            "clock",
+            "kick {number} is at {time:?}, and at {other:?} if the run is cut"
+        );
         let before = first.clone();
         whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(failed)?;
         check_kick(&before, &first, promises, number)?;
@@ -115,7 +120,12 @@ fn upcoming<D: Driving>(driving: &mut D, last: f64) -> Result<f64, Violation> {
     require!(next > last, PART, "clock", "after the time {last:?}, the next kick is at {next:?}");
     for _ in 0..3 {
         let again = driving.times().upcoming();
-        require!(next == again, PART, "clock", "the next kick is at {next:?}, and at {again:?} when asked again");
+        require!(
+            next == again,
+            PART,
+            "clock",
+            "the next kick is at {next:?}, and at {again:?} when asked again"
+        );
     }
     Ok(next)
 }
@@ -145,7 +155,12 @@ fn check_shares(squares: &[f64; DISKS], promises: &Promises) -> Result<(), Viola
     for (place, square) in squares.iter().enumerate() {
         let share = square / mean;
         let is_fair = promises.is_ordered || mean == 0.0 || (FAIR[0]..=FAIR[1]).contains(&share);
-        require!(is_fair, PART, "alike", "disks at place {place} of the list get {share:?} of the mean square kick");
+        require!(
+            is_fair,
+            PART,
+            "alike",
+            "disks at place {place} of the list get {share:?} of the mean square kick"
+        );
     }
     Ok(())
 }
