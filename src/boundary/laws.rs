@@ -133,7 +133,8 @@ impl Random {
     /// Returns a time origin, and a flight that begins at a free place soon after it.
     fn flight<B: Boundary + ?Sized>(&mut self, trial: &mut Trial<'_, B>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
-        let origin = self.between(0.0, LATEST * crossing);
+        let late = self.between(-7.0 * 5.0, 5.0).max(0.0);
+        let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let time = self.between(0.0, crossing);
         trial.set_origin(origin);
         let position = self.place(trial, time)?;

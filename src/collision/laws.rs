@@ -29,6 +29,7 @@ mod rule;
 mod simplest;
 
 pub use hostile::hostile_contacts;
+#[cfg(feature = "proptest")]
 pub(crate) use random::{Partner, meeting};
 pub use rule::{Promises, check, check_fingerprints};
 

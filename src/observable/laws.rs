@@ -29,7 +29,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 ///
 /// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
 /// samples each, at the times that the observer asks for. The first run starts at time 0 and is cut twice:
-/// after a sample, and between two samples; the runs that continue it must ask for the sample that was next.
+/// between two samples, and after a sample; the runs that continue it must ask for the sample that was next.
 /// Then come runs that start later and off the beat, at a late time, and before 0. A run ends early if the
 /// observer stops it or fails. The observer keeps what it has collected in the check, so make a new one for a
 /// measurement. The page "Validation" tells which planted faults the check finds.
@@ -56,8 +56,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 pub fn check<O: Observer + ?Sized>(observer: &mut O) -> Result<(), Violation> {
     let next = observer.next_sample();
     require!(!next.is_nan(), PART, "number", "before the first run, the next sample is at NaN");
-    let first = Script::new(observer, 0.0).run(0.0, None)?;
-    let second = Script::new(observer, first.now).run(0.5, first.wanted())?;
+    let first = Script::new(observer, 0.0).run(0.5, None)?;
+    let second = Script::new(observer, first.now).run(0.0, first.wanted())?;
     let third = Script::new(observer, second.now).run(0.0, second.wanted())?;
     let start = third.now + 0.37 * (1.0 + third.now);
     Script::new(observer, start).run(0.0, None)?;

@@ -313,7 +313,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             return Ok(());
         }
         let (now, bounds) = (self.sample(phase)?, finite_bounds(self.motion, phase)?);
-        for later in [1.0, 3.0, 17.0].map(|count| phase + count * period) {
+        for later in [1.0, 3.0, 17.0, 250.0].map(|count| phase + count * period) {
             let (then, then_bounds) = (self.sample(later)?, finite_bounds(self.motion, later)?);
             let moved = (then.state.displacement - now.state.displacement).abs();
             let gained = (then.state.velocity - now.state.velocity).abs();

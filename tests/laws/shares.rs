@@ -42,7 +42,9 @@ fn check_motion(_: usize, motion: Motion) -> Verdict {
 }
 
 fn check_boundary(_: usize, mut fault: Walled) -> Verdict {
-    (1..=3).try_for_each(|seed| boundary_laws::check(&mut *fault.boundary, fault.radius, 1.0, seed))
+    // Gravity is 1, and so is the speed of a fall through a radius.
+    let speed = (2.0 * fault.gravity * fault.radius).sqrt();
+    (1..=3).try_for_each(|seed| boundary_laws::check(&mut *fault.boundary, fault.radius, speed, seed))
 }
 
 fn check_scheduler(_: usize, make: Maker) -> Verdict {
@@ -71,13 +73,17 @@ fn judged_drivings(catalogue: fn() -> Vec<Planted<Driven>>) -> Verdicts {
 }
 
 fn check_pair(_: usize, pair: Pair) -> Verdict {
-    match pair.parts {
+    let verdict = match pair.parts {
         Parts::Rules([one, other]) => collision_laws::check_fingerprints(&*one, &*other),
         Parts::Motions([one, other]) => wall_laws::check_fingerprints(&*one, &*other),
         Parts::Boundaries([mut one, mut other]) => {
             boundary_laws::check_fingerprints(&mut *one, &mut *other, 0.5, 1.0)
         }
+    };
+    if let Err(violation) = &verdict {
+        assert_eq!(violation.found().starts_with("equal"), pair.act_alike, "{violation}");
     }
+    verdict
 }
 
 /// Returns the verdicts about both halves of the catalogue, by trait and half.

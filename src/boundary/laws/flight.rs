@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::LATEST;
 use super::reaction::check_reaction;
 use super::surface::check_surface;
 use super::trial::{PART, Trial, restarted};
@@ -241,8 +242,8 @@ fn check_origin<B: Boundary + ?Sized>(
     meeting: Option<&Meeting>,
 ) -> Result<(), Violation> {
     let (origin, start) = (trial.origin, flight.time());
-    // The other origin is earlier, so that no offset is negative.
-    let shift = 0.37 * origin;
+    // The other origin is earlier, so that no offset is negative. A late offset would lose digits.
+    let shift = 0.37 * origin.min(LATEST * trial.length() / trial.speed);
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());
@@ -330,6 +331,6 @@ fn grazing<B: Boundary + ?Sized>(
     let surface = trial.boundary.surface(wall, meeting.place, time);
     let normal = surface.normal;
     let velocity = surface.velocity + trial.speed * (normal.perp() - share * normal);
-    let place = meeting.place + 0.1 * share * flight.radius() * normal;
+    let place = meeting.place + 0.1 * share * share * flight.radius() * normal;
     Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
 }

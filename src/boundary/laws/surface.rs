@@ -61,12 +61,15 @@ pub(super) fn check_surface<B: Boundary + ?Sized>(
         "normal",
         "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}"
     );
-    let is_named = around.at(DVec2::ZERO, 0.0).1;
-    if is_named {
+    let deepest = around.at(DVec2::ZERO, 0.0).1;
+    if deepest == wall {
         around.check_normal(normal)?;
         around.check_velocity(&surface)?;
         around.check_radius(normal, radius)?;
     }
+    // A wall that has the same surface there, such as the next brick of a corner, will do.
+    let other = trial.boundary.surface(deepest.min(trial.wall_count - 1), place, time).normal;
+    let is_named = deepest == wall || other.distance(normal) <= SLOPE;
     let [touched, named] = &mut trial.touches[wall];
     (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
     Ok(())
@@ -81,12 +84,11 @@ struct Around<'a, 'b, B: ?Sized> {
 }
 
 impl<B: Boundary + ?Sized> Around<'_, '_, B> {
-    /// Returns the depth of a somewhat larger disk that is moved, and whether the wall of the touch is the
-    /// deepest one.
-    fn at(&self, moved: DVec2, later: f64) -> (f64, bool) {
+    /// Returns the depth of a somewhat larger disk that is moved, and the wall in which it is.
+    fn at(&self, moved: DVec2, later: f64) -> (f64, usize) {
         let larger = WIDE * self.trial.radius;
         let found = self.trial.depth(self.place + moved, larger, self.time + later);
-        found.map_or((-larger, true), |found| (found.depth - larger, found.with == self.wall))
+        found.map_or((-larger, self.wall), |found| (found.depth - larger, found.with))
     }
 
     /// Returns whether a function of a step has this slope at 0: from both sides, or from one, since the other

@@ -174,7 +174,7 @@ fn states(rules: &mut Rules) {
     let largest = Cell::new(0.0);
     rules.rule("memory", "the loss depends on the largest speed ever", FREE, move |contact| {
         largest.set(contact.closing_speed().max(largest.get()));
-        smooth(contact, 0.9 / (1.0 + 1e-3 * largest.get().min(1.0)))
+        smooth(contact, 0.9 / (1.0 + 1e-3 * largest.get().min(1e9)))
     });
     let is_due = one_in(40_000);
     rules.rule("seldom", "one call in 40000 loses all", FREE, move |contact| {
