@@ -47,8 +47,8 @@ pub(super) fn check_flights<B: Boundary + ?Sized>(
         check_reaction(trial, meeting.touch, meeting.place)?;
         flight = turned_back(trial, &flight, &meeting);
         if number % 2 == 1 {
-            let count = trial.touches.iter().map(|&[touched, _]| touched as usize).sum::<usize>();
-            let grazing = grazing(trial, &flight, &meeting, GRAZES[count % GRAZES.len()]);
+            trial.grazes += 1;
+            let grazing = grazing(trial, &flight, &meeting, GRAZES[trial.grazes % GRAZES.len()]);
             if trial.depth(grazing.position(grazing.time()), 0.0, grazing.time()).is_none() {
                 check_flight(trial, &grazing)?;
             }
@@ -72,7 +72,6 @@ fn check_flight<B: Boundary + ?Sized>(
         return Ok(None);
     }
     let meeting = found.map(|touch| check_place(trial, flight, touch)).transpose()?;
-    check_origin(trial, flight, until, meeting.as_ref())?;
     let again = trial.first_touch(flight, until)?;
     let is_same = again == found;
     require!(
@@ -81,6 +80,7 @@ fn check_flight<B: Boundary + ?Sized>(
         "repeatable",
         "the touch {found:?} is {again:?} when asked for again: {flight:?}"
     );
+    check_origin(trial, flight, until, meeting.as_ref())?;
     if let Some(meeting) = &meeting {
         check_limits(trial, flight, meeting)?;
         trial.check_regions(meeting.touch, meeting.place)?;

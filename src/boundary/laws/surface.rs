@@ -16,11 +16,15 @@ const NEAR: f64 = 1e-5;
 /// Fraction of the radius by which a disk is moved for the curvature of the wall.
 const WIDE: f64 = 0.1;
 
+/// Tangent of the angle by which a disk is turned about the point of its touch.
+const ANGLE: f64 = 0.1;
+
 /// Largest errors of a normal: of its squared length, of its direction if another wall is as near, and of its
 /// direction else, of a speed and of a curvature.
 const UNIT: f64 = 1e-9;
 const SLOPE: f64 = 0.2;
 const EXACT: f64 = 5e-8;
+const SAME: f64 = 1e-6;
 
 /// Checks the surface that a disk touches at this place.
 pub(super) fn check_surface<B: Boundary + ?Sized>(
@@ -61,15 +65,16 @@ pub(super) fn check_surface<B: Boundary + ?Sized>(
         "normal",
         "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}"
     );
+    // A wall that has the same surface there, such as the next brick of a corner, will do.
     let deepest = around.at(DVec2::ZERO, 0.0).1;
-    if deepest == wall {
+    let other = || around.trial.boundary.surface(deepest, place, time).normal;
+    let is_named = deepest == wall || deepest < around.trial.wall_count && other().distance(normal) <= SAME;
+    if is_named {
         around.check_normal(normal)?;
         around.check_velocity(&surface)?;
         around.check_radius(normal, radius)?;
+        around.check_tip(&surface)?;
     }
-    // A wall that has the same surface there, such as the next brick of a corner, will do.
-    let other = trial.boundary.surface(deepest.min(trial.wall_count - 1), place, time).normal;
-    let is_named = deepest == wall || other.distance(normal) <= SLOPE;
     let [touched, named] = &mut trial.touches[wall];
     (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
     Ok(())
@@ -132,6 +137,31 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
             "velocity",
             "wall {wall} has the velocity {speed:?} along its normal, but moves otherwise, at {place:?}, {time:?}"
         );
+        Ok(())
+    }
+
+    /// Checks that a disk that touches the same point from another side finds the same velocity there, since
+    /// it is the velocity of the material. Only at a tip do two disks touch the same point.
+    fn check_tip(&self, surface: &Surface<'_>) -> Result<(), Violation> {
+        let Self { wall, place, time, .. } = self;
+        let (normal, size) = (surface.normal, self.trial.radius);
+        for turn in [DVec2::new(1.0, ANGLE), DVec2::new(1.0, -ANGLE)] {
+            let moved = size * (turn.normalize().rotate(normal) - normal);
+            let deeper = self.at(moved, 0.0).0 - self.at(DVec2::ZERO, 0.0).0;
+            if deeper.abs() > self.trial.rounding() {
+                continue;
+            }
+            let (velocity, other) =
+                (surface.velocity, self.trial.boundary.surface(*wall, *place + moved, *time).velocity);
+            let is_same = velocity.distance(other) <= EXACT * (velocity.length() + self.trial.speed);
+            require!(
+                is_same,
+                PART,
+                "velocity",
+                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} \
+                 for one moved by {moved:?}"
+            );
+        }
         Ok(())
     }
 

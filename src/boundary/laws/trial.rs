@@ -30,6 +30,8 @@ pub(super) struct Trial<'a, B: ?Sized> {
     pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
+    /// Number of flights that graze a wall.
+    pub(super) grazes: usize,
     /// For each wall, the number of its touches, and of the overlaps at these that name it.
     pub(super) touches: Vec<[u32; 2]>,
 }
@@ -38,7 +40,7 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn new(boundary: &'a mut B, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
         let touches = vec![[0; 2]; wall_count];
-        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, touches }
+        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, grazes: 0, touches }
     }
 
     /// Returns the size of the domain. If the domain is open above, this is its width.
