@@ -54,7 +54,7 @@ pub use builder::SimulationBuilder;
 pub(crate) use cells::FEWEST;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
-pub use driving::{Driving, Rescaling, WhiteNoise};
+pub use driving::{Driving, Rescaling, WhiteNoise, laws};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use footprint::Footprint;

@@ -92,7 +92,11 @@ impl Boundary for Vessel {
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        self.container.may_meet(wall, region, radius, until)
+        if wall < self.container.wall_count() {
+            self.container.may_meet(wall, region, radius, until)
+        } else {
+            self.may_touch(region, radius)
+        }
     }
 
     fn state(&self) -> Vec<f64> {
