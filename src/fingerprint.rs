@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use crate::Violation;
+use crate::violation::require;
+
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
@@ -65,4 +68,25 @@ impl fmt::Display for Fingerprint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:016x}", self.0)
     }
+}
+
+/// Checks that two parts have different fingerprints if their answers differ somewhere, and the same
+/// fingerprint otherwise.
+pub(crate) fn check_pair(
+    part: &'static str,
+    fingerprints: [Option<Fingerprint>; 2],
+    difference: Option<String>,
+) -> Result<(), Violation> {
+    let [Some(one), Some(other)] = fingerprints else { return Ok(()) };
+    if let Some(difference) = difference {
+        require!(
+            one != other,
+            part,
+            "fingerprint",
+            "two parts have the fingerprint {one}, but differ {difference}"
+        );
+    } else {
+        require!(one == other, part, "fingerprint", "equal parts have the fingerprints {one} and {other}");
+    }
+    Ok(())
 }

@@ -63,7 +63,6 @@ mod stroke;
 mod summed;
 mod tabulated;
 mod triangular;
-mod violation;
 
 pub use bi_parabolic::BiParabolic;
 pub use delayed::Delayed;
@@ -82,7 +81,6 @@ pub use starting_at::StartingAt;
 pub use summed::Summed;
 pub use tabulated::Tabulated;
 pub use triangular::Triangular;
-pub use violation::Violation;
 
 use crate::Fingerprint;
 

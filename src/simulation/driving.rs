@@ -7,6 +7,7 @@
 //!
 //! A driving of your own implements [`Driving`]. The event loop knows nothing of it.
 
+pub mod laws;
 mod noise;
 mod rescaling;
 

@@ -46,14 +46,24 @@ const SOME: &[usize] = &[600];
 /// More disks than a scheduler that chooses by size treats as few, and than 16 bits can count.
 const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
 
-pub(super) const SCRIPTS: [Script; 9] = [
+pub(super) const SCRIPTS: [Script; 13] = [
     Script { name: "a run", disks: FEW, steps: 300, start: spread, next: run },
     Script { name: "to and fro", disks: FEW, steps: 300, start: spread, next: to_and_fro },
     Script { name: "ties", disks: FEW, steps: 300, start: tied, next: tie },
     Script { name: "extremes", disks: FEW, steps: 300, start: extreme, next: to_extremes },
     Script { name: "one busy disk", disks: FEW, steps: 300, start: idle, next: one_busy },
     Script { name: "resets", disks: FEW, steps: 300, start: spread, next: reset_often },
+    Script { name: "near ties", disks: FEW, steps: 300, start: near, next: to_near },
+    Script { name: "ties of a few", disks: FEW, steps: 300, start: late, next: to_late },
+    Script {
+        name: "resets to as many",
+        disks: &[1, 2, 20],
+        steps: 4000,
+        start: spread,
+        next: reset_to_as_many,
+    },
     Script { name: "a long run", disks: SOME, steps: 8000, start: spread, next: run },
+    Script { name: "a longer run", disks: &[40], steps: 50_000, start: spread, next: run },
     Script { name: "a large run", disks: MANY, steps: 200, start: spread, next: run },
     Script { name: "large and small", disks: MANY, steps: 12, start: spread, next: reset_to_few },
 ];
@@ -115,6 +125,17 @@ impl Stage {
         [-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY][self.below(7)]
     }
 
+    /// Returns one of a few times that differ by their last bits.
+    fn near_time(&mut self) -> f64 {
+        let base = [1.0_f64, 1.0, 1000.0, 1e7][self.below(4)];
+        f64::from_bits(base.to_bits() + self.below(12) as u64)
+    }
+
+    /// Returns one of a few late times.
+    fn late_time(&mut self) -> f64 {
+        [1e3, 1e3, 2e3, 1e9][self.below(4)]
+    }
+
     fn extreme_time(&mut self) -> f64 {
         const EXTREMES: [f64; 10] = [
             f64::NEG_INFINITY,
@@ -145,6 +166,14 @@ fn spread(stage: &mut Stage, disks: usize) -> Operation {
 
 fn tied(stage: &mut Stage, disks: usize) -> Operation {
     reset(stage, disks, Stage::tied_time)
+}
+
+fn near(stage: &mut Stage, disks: usize) -> Operation {
+    reset(stage, disks, Stage::near_time)
+}
+
+fn late(stage: &mut Stage, disks: usize) -> Operation {
+    reset(stage, disks, Stage::late_time)
 }
 
 fn extreme(stage: &mut Stage, disks: usize) -> Operation {
@@ -186,6 +215,16 @@ fn tie(stage: &mut Stage, first: usize, _: f64) -> Operation {
     Operation::Set([first, other][stage.below(2)], stage.tied_time())
 }
 
+fn to_near(stage: &mut Stage, first: usize, _: f64) -> Operation {
+    let other = stage.any_disk();
+    Operation::Set([first, other][stage.below(2)], stage.near_time())
+}
+
+fn to_late(stage: &mut Stage, first: usize, _: f64) -> Operation {
+    let other = stage.any_disk();
+    Operation::Set([first, other][stage.below(2)], stage.late_time())
+}
+
 fn to_extremes(stage: &mut Stage, first: usize, _: f64) -> Operation {
     let other = stage.any_disk();
     Operation::Set([first, other][stage.below(2)], stage.extreme_time())
@@ -202,6 +241,11 @@ fn one_busy(stage: &mut Stage, first: usize, now: f64) -> Operation {
 
 fn reset_often(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if stage.below(4) == 0 { few(stage) } else { run(stage, first, now) }
+}
+
+fn reset_to_as_many(stage: &mut Stage, first: usize, now: f64) -> Operation {
+    let disks = stage.due.len();
+    if stage.below(3) == 0 { spread(stage, disks) } else { run(stage, first, now) }
 }
 
 /// Resets to few disks after many, and back to many.
