@@ -81,14 +81,10 @@ pub(crate) fn check_pair(
 ) -> Result<(), Violation> {
     let [Some(one), Some(other)] = fingerprints else { return Ok(()) };
     if let Some(difference) = difference {
-        require!(
-            one != other,
-            part,
-            "fingerprint",
-            "two parts have the fingerprint {one}, but differ {difference}"
-        );
+        require!(part, "fingerprint", one != other;
+            "two parts have the fingerprint {one}, but differ {difference}");
     } else {
-        require!(one == other, part, "fingerprint", "equal parts have the fingerprints {one} and {other}");
+        require!(part, "fingerprint", one == other; "equal parts have the fingerprints {one} and {other}");
     }
     Ok(())
 }

@@ -22,8 +22,8 @@ const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 const TOUCHES: u32 = 8;
 
 /// A boundary, and the numbers of its trial.
-pub(super) struct Trial<'a, B: ?Sized> {
-    pub(super) boundary: &'a mut B,
+pub(super) struct Trial<'a> {
+    pub(super) boundary: &'a mut dyn Boundary,
     pub(super) domain: Domain,
     pub(super) wall_count: usize,
     pub(super) radius: f64,
@@ -36,8 +36,8 @@ pub(super) struct Trial<'a, B: ?Sized> {
     pub(super) touches: Vec<[u32; 2]>,
 }
 
-impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
-    pub(super) fn new(boundary: &'a mut B, domain: Domain, radius: f64, speed: f64) -> Self {
+impl<'a> Trial<'a> {
+    pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
         let touches = vec![[0; 2]; wall_count];
         Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, grazes: 0, touches }
@@ -98,14 +98,10 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     /// Checks that the domain and the number of walls have not changed.
     pub(super) fn check_constants(&self) -> Result<(), Violation> {
         let (before, now, walls) = (self.domain, self.boundary.domain(), self.boundary.wall_count());
-        require!(now == before, PART, "constant domain", "the domain was {before} and is now {now}");
+        require!(PART, "constant domain", now == before; "the domain was {before} and is now {now}");
         let count = self.wall_count;
-        require!(
-            walls == count,
-            PART,
-            "constant walls",
-            "there were {count} walls, and now there are {walls}"
-        );
+        require!(PART, "constant walls", walls == count;
+            "there were {count} walls, and now there are {walls}");
         Ok(())
     }
 
@@ -114,12 +110,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn check_names(&self) -> Result<(), Violation> {
         let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
         let wall = unnamed.unwrap_or_default();
-        require!(
-            unnamed.is_none(),
-            PART,
-            "overlapped wall",
-            "disks touch wall {wall}, but overlap others there"
-        );
+        require!(PART, "overlapped wall", unnamed.is_none();
+            "disks touch wall {wall}, but overlap others there");
         Ok(())
     }
 
@@ -141,19 +133,11 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     fn check_region(&self, Touch { time, wall, .. }: Touch, region: Region) -> Result<(), Violation> {
         for radius in [self.radius, 1.5 * self.radius] {
             let may = self.boundary.may_touch(&region, radius);
-            require!(
-                may,
-                PART,
-                "may_touch",
-                "a disk of radius {radius:?} touches in {region:?}, where it is denied"
-            );
+            require!(PART, "may_touch", may;
+                "a disk of radius {radius:?} touches in {region:?}, where it is denied");
             let may = self.boundary.may_meet(wall, &region, radius, time);
-            require!(
-                may,
-                PART,
-                "may_meet",
-                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied"
-            );
+            require!(PART, "may_meet", may;
+                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied");
         }
         Ok(())
     }

@@ -89,16 +89,12 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
         }
         let again = number % 4;
         let (time, other) = (upcoming(&mut whole, last, again)?, upcoming(&mut cut, last, again)?);
-        require!(
-            time == other,
-            PART,
-            "clock",
-            "kick {number} is at {time:?}, and at {other:?} if the run is cut"
-        );
+        require!(PART, "clock", time == other;
+            "kick {number} is at {time:?}, and at {other:?} if the run is cut");
         let before = first.clone();
         whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(failed)?;
         check_kick(&before, &first, promises, number)?;
-        require!(first == second, PART, "repeatable", "kick {number} of two equal drivings differs");
+        require!(PART, "repeatable", first == second; "kick {number} of two equal drivings differs");
         for (square, (new, old)) in squares.iter_mut().zip(first.iter().zip(&before)) {
             let gain = new.velocity() - old.velocity();
             let turned = old.radius() * (new.angular_velocity() - old.angular_velocity());
@@ -118,15 +114,11 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
 /// Returns the time of the next kick, which is later than the last one, and the same when asked again.
 fn upcoming<D: Driving>(driving: &mut D, last: f64, again: usize) -> Result<f64, Violation> {
     let next = driving.times().upcoming();
-    require!(next > last, PART, "clock", "after the time {last:?}, the next kick is at {next:?}");
+    require!(PART, "clock", next > last; "after the time {last:?}, the next kick is at {next:?}");
     for _ in 0..again {
         let again = driving.times().upcoming();
-        require!(
-            next == again,
-            PART,
-            "clock",
-            "the next kick is at {next:?}, and at {again:?} when asked again"
-        );
+        require!(PART, "clock", next == again;
+            "the next kick is at {next:?}, and at {again:?} when asked again");
     }
     Ok(next)
 }
@@ -139,13 +131,13 @@ fn check_kick(before: &[Disk], after: &[Disk], promises: &Promises, number: usiz
             (place, angle, image) = (new.position(), new.angle(), new.image());
         }
         let allowed = old.with_motion(place, new.velocity(), angle, new.angular_velocity()).with_image(image);
-        require!(allowed == *new, PART, "velocities only", "kick {number} makes {new:?} of {old:?}");
+        require!(PART, "velocities only", allowed == *new; "kick {number} makes {new:?} of {old:?}");
     }
     if promises.momentum {
         let momentum = |disks: &[Disk]| disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>();
         let gained = (momentum(after) - momentum(before)).length();
         let size: f64 = before.iter().chain(after).map(|disk| disk.mass() * disk.velocity().length()).sum();
-        require!(gained <= ROUNDING * size, PART, "momentum", "kick {number} adds the momentum {gained:?}");
+        require!(PART, "momentum", gained <= ROUNDING * size; "kick {number} adds the momentum {gained:?}");
     }
     Ok(())
 }
@@ -156,12 +148,8 @@ fn check_shares(squares: &[f64; DISKS], promises: &Promises) -> Result<(), Viola
     for (place, square) in squares.iter().enumerate() {
         let share = square / mean;
         let is_fair = promises.is_ordered || mean == 0.0 || (FAIR[0]..=FAIR[1]).contains(&share);
-        require!(
-            is_fair,
-            PART,
-            "alike",
-            "disks at place {place} of the list get {share:?} of the mean square kick"
-        );
+        require!(PART, "alike", is_fair;
+            "disks at place {place} of the list get {share:?} of the mean square kick");
     }
     Ok(())
 }
