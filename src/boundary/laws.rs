@@ -94,7 +94,7 @@ pub fn check<B: Boundary + ?Sized>(
         trial.radius = radius * SIZES[number % SIZES.len()];
         trial.kind = Kind::new(KINDS[number % KINDS.len()]);
         let (origin, flight) = random.flight(&mut trial)?;
-        trial.set_origin(origin);
+        trial.begin(origin)?;
         check_flights(&mut trial, flight, FLIGHTS)?;
         // Each time, the disk is of another size.
         if number % 83 == 4 {
@@ -134,7 +134,7 @@ impl Random {
         let late = self.between(-7.0 * 5.0, 5.0).max(0.0);
         let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let time = self.between(0.0, crossing);
-        trial.set_origin(origin);
+        trial.begin(origin)?;
         let position = self.place(trial, time)?;
         let speed = trial.speed * self.share();
         // The direction comes from a point in a square, not from an angle: sine and cosine differ

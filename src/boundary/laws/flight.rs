@@ -201,8 +201,11 @@ fn check_origin(
     meeting: Option<&Meeting>,
 ) -> Result<(), Violation> {
     let (origin, start) = (trial.origin, flight.time());
-    // The other origin is earlier, so that no offset is negative. A late offset would lose digits.
-    let shift = 0.37 * origin.min(LATEST * trial.length() / trial.speed);
+    let state = trial.boundary.state();
+    // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
+    // react do not know how they came to be as they are, so their other origin is later.
+    let earlier = origin.min(LATEST * trial.length() / trial.speed);
+    let shift = 0.37 * if state.is_empty() { earlier } else { -start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());
@@ -212,6 +215,7 @@ fn check_origin(
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
     let after = meeting.map(|meeting| seen(trial, meeting, shift));
     trial.set_origin(origin);
+    trial.take_state(&state)?;
     let other = other?;
     let later = |other: &Meeting| other.touch.time - shift;
     let agree = match (meeting, &other) {

@@ -30,6 +30,8 @@ pub(super) struct Trial<'a> {
     pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
+    /// The state of the walls at first.
+    pub(super) state: Vec<f64>,
     /// Number of flights that graze a wall.
     pub(super) grazes: usize,
     /// For each wall, the number of its touches, and of the overlaps at these that name it.
@@ -39,8 +41,8 @@ pub(super) struct Trial<'a> {
 impl<'a> Trial<'a> {
     pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
-        let touches = vec![[0; 2]; wall_count];
-        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, grazes: 0, touches }
+        let (touches, state) = (vec![[0; 2]; wall_count], boundary.state());
+        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, state, grazes: 0, touches }
     }
 
     /// Returns the size of the domain. If the domain is open above, this is its width.
@@ -69,6 +71,21 @@ impl<'a> Trial<'a> {
     pub(super) fn set_origin(&mut self, origin: f64) {
         self.boundary.set_time_origin(origin);
         self.origin = origin;
+    }
+
+    /// Sets an origin at which walls that react are as they were at first.
+    pub(super) fn begin(&mut self, origin: f64) -> Result<(), Violation> {
+        self.set_origin(origin);
+        self.take_state(&self.state.clone())
+    }
+
+    /// Checks that the boundary takes this state.
+    pub(super) fn take_state(&mut self, state: &[f64]) -> Result<(), Violation> {
+        let answer = self.boundary.set_state(state);
+        require!(PART, "state", answer.is_ok(); "the state {state:?} is refused: {answer:?}");
+        let again = self.boundary.state();
+        require!(PART, "state", again == state; "the state {state:?} is {again:?} after it is set");
+        Ok(())
     }
 
     /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end,
