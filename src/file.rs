@@ -1,5 +1,5 @@
-//! Files that are whole or absent, show damage, and are locked: what checkpoints, trajectories and studies are
-//! made of, for stores of other packages.
+//! Files that are whole or absent, logs that grow by whole pieces, and locks: what checkpoints,
+//! trajectories and studies are made of, for stores of other packages.
 //!
 //! ```
 //! use granular_edmd::file::{Damage, Seal, write_whole};
@@ -17,13 +17,19 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod growing;
 mod locked;
+#[cfg(feature = "serde")]
+mod log;
 #[cfg(feature = "serde")]
 mod seal;
 #[cfg(feature = "serde")]
 mod whole;
 
+pub(crate) use growing::{Growing, Medium};
 pub use locked::Locked;
+#[cfg(feature = "serde")]
+pub use log::{HEAD, Log, Piece, Pieces, read_piece};
 #[cfg(feature = "serde")]
 pub use seal::{Damage, Seal};
 #[cfg(feature = "serde")]

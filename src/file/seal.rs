@@ -36,11 +36,18 @@ impl Seal {
         self.version
     }
 
+    /// Returns the first bytes of a file of the format: its first bytes and its version.
+    pub(super) fn start(self) -> [u8; 12] {
+        let mut start = [0; 12];
+        start[..8].copy_from_slice(&self.magic);
+        start[8..].copy_from_slice(&self.version.to_le_bytes());
+        start
+    }
+
     /// Returns the contents with this seal before them.
     pub fn seal(self, contents: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + contents.len());
-        bytes.extend_from_slice(&self.magic);
-        bytes.extend_from_slice(&self.version.to_le_bytes());
+        bytes.extend_from_slice(&self.start());
         bytes.extend_from_slice(blake3::hash(contents).as_bytes());
         bytes.extend_from_slice(contents);
         bytes

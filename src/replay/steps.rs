@@ -36,31 +36,17 @@ pub struct Replayed {
 #[derive(Debug)]
 pub struct Steps<R, B, S> {
     run: Simulation<R, B, S>,
-    ids: Vec<u64>,
-    /// Numbers of disks that have come and gone.
-    population: [u64; 2],
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
     /// Begins with this run.
-    pub fn new(run: Simulation<R, B, S>) -> Self {
-        let mut steps = Self { run, ids: Vec::new(), population: [u64::MAX; 2] };
-        steps.name();
-        steps
+    pub const fn new(run: Simulation<R, B, S>) -> Self {
+        Self { run }
     }
 
     /// Returns the run after the last step.
     pub const fn run(&self) -> &Simulation<R, B, S> {
         &self.run
-    }
-
-    /// Names the disks, if any have come or gone.
-    fn name(&mut self) {
-        let counters = self.run.counters();
-        let population = [counters.insertions, counters.removals];
-        if std::mem::replace(&mut self.population, population) != population {
-            self.ids = self.run.disks().iter().map(crate::Disk::id).collect();
-        }
     }
 
     /// Goes to the next collision; without one up to and at the absolute time `end`, the run goes there and
@@ -71,17 +57,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
     pub fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
         let mut last = None;
         self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
-        let replayed = last.map(|collision| {
-            // A disk that came in since the last collision, and has gone already, has no name.
-            let id = |disk: usize| self.ids.get(disk).copied().unwrap_or(0);
-            let partner_id = match collision.partner {
-                Partner::Disk(partner) => Some(id(partner)),
-                Partner::Wall(_) => None,
-            };
-            let number = self.run.counters().collisions();
-            Replayed { number, id: id(collision.disk), partner_id, collision }
-        });
-        self.name();
-        Ok(replayed)
+        Ok(last.map(|collision| {
+            let [id, partner] = collision.ids;
+            let partner_id = matches!(collision.partner, Partner::Disk(_)).then_some(partner);
+            Replayed { number: self.run.counters().collisions(), id, partner_id, collision }
+        }))
     }
 }

@@ -87,6 +87,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Outcome<Event> {
         let periods = self.cells.grid().periods();
+        // Neighbors are listed before the collision is known: the processor then has this work to do while
+        // it waits for the roots and quotients of the collision.
+        let counts = [self.neighbors(disk, 0), self.neighbors(partner, 1)];
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
         // A couple can make a spin impossible while the velocity stays. Without one, the comparison is known
         // when the rule is compiled.
@@ -107,9 +110,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.part(disk, partner, collision.normal, left);
         }
         observer.on_collision(&collision);
-        for disk in [disk, partner] {
-            self.find_next(disk);
-        }
+        self.find_next_of_both([disk, partner], counts);
         for disk in [disk, partner] {
             self.schedule(disk);
         }
@@ -137,6 +138,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let name = self.name_of(Partner::Wall(wall));
             return Err(failed(&collision, name).into());
         }
+        let is_plain = matches!(surface.response, Response::Shared | Response::Rule(_));
+        self.ledger.has_source |= !is_plain || surface.velocity != DVec2::ZERO;
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
         }
@@ -192,6 +195,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let reaction = self.boundary.react(&impact_of(collision, wall, self.clock.now));
         observer.on_collision(collision);
         let gone = self.bodies.disk(disk, self.clock.now);
+        observer.on_remove(&gone, collision.time);
         self.take_out(disk);
         self.take_back(&gone);
         if reaction == Reaction::Moved {
@@ -200,9 +204,30 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Event::WallCollision { disk, wall }
     }
 
+    #[inline]
     fn count_regime(&mut self, collision: &Collision) {
-        let by_contact_duration = collision.impulse.regime() == Regime::ContactDuration;
-        self.counters.contact_duration_collisions += u64::from(by_contact_duration);
+        if collision.impulse.regime().is_remedy() {
+            self.count_remedy(collision);
+        }
+    }
+
+    /// Counts a collision that a remedy decided.
+    #[cold]
+    #[inline(never)]
+    fn count_remedy(&mut self, collision: &Collision) {
+        let Collision { contact, impulse, .. } = collision;
+        match impulse.regime() {
+            Regime::ContactDuration => {
+                self.counters.contact_duration_collisions += 1;
+                let longest = self.counters.longest_contact.max(contact.time_since_last_collision());
+                self.counters.longest_contact = longest;
+            }
+            Regime::LeastRebound => {
+                self.counters.least_rebound_collisions += 1;
+                self.counters.energy_of_rebounds += impulse.energy_change(contact).max(0.0);
+            }
+            _ => {}
+        }
     }
 
     /// Tells whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
@@ -269,7 +294,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let passed = self.cells.cross(disk, exit);
         self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        let count = self.cells.ahead(disk, exit, &mut self.scratch.found);
+        let count = self.cells.ahead(disk, exit, &mut self.scratch.found[0]);
         self.go_on(disk, count);
     }
 
@@ -293,7 +318,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let passed = self.cells.cross_large(disk, exit);
         self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found);
+        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found[0]);
         self.go_on(disk, count);
     }
 
@@ -301,7 +326,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn look_ahead(&mut self) {
         if self.bodies.len() >= LARGE_SYSTEM {
             self.make_room();
-            self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found);
+            self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found[0]);
         }
     }
 }

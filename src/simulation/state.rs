@@ -5,17 +5,19 @@ mod clock;
 mod forecast;
 mod guard;
 mod identities;
+mod ledger;
 mod pace;
 mod population;
 mod properties;
 
-pub(super) use bodies::Bodies;
 #[cfg(feature = "serde")]
-pub(super) use bodies::{Spin, Trajectory};
+pub(super) use bodies::Spin;
+pub(super) use bodies::{Bodies, Trajectory};
 pub(super) use clock::{Clock, Tally};
 pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]
 pub(super) use guard::Guard;
 pub(super) use guard::{Standstill, effort, least_progress};
 pub(super) use identities::Identities;
+pub(super) use ledger::Ledger;
 pub(super) use pace::FARTHEST;

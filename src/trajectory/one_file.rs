@@ -6,11 +6,11 @@ use std::path::Path;
 use super::frames::{Frames, digest};
 #[cfg(feature = "gzip")]
 use super::gzip::{self, Member};
-use super::media::{self, Growing};
+use super::media;
 use super::open::is_gzip;
 use super::store::Store;
 use super::{Format, RecordError};
-use crate::file::Locked;
+use crate::file::{Growing, Locked};
 use crate::observable::Snapshot;
 
 /// Frames in one file.
@@ -33,7 +33,14 @@ impl OneFile {
     /// Begins a new file.
     pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
         let packing = Packing::of(path)?;
-        let file = Growing::create(path)?;
+        let file = media::create(path)?;
+        Ok(Self { file, packing, frames: Frames::default() })
+    }
+
+    /// Begins in a file that is there and empty.
+    pub(super) fn begin_in(path: &Path) -> Result<Self, RecordError> {
+        let packing = Packing::of(path)?;
+        let file = Growing::new(path, media::reopen(path)?, 0, Vec::new());
         Ok(Self { file, packing, frames: Frames::default() })
     }
 

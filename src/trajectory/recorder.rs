@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use super::gsd::{HoomdSchema, Indexed};
+use super::media;
 use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
@@ -97,6 +98,25 @@ impl Recorder {
     ) -> Result<Self, RecordError> {
         let store = OneFile::reopen(path.as_ref(), &format)?;
         Ok(Self::new(format, store, times).going_on())
+    }
+
+    /// Creates a recorder that continues a file, or begins one that is absent or empty.
+    ///
+    /// It suits a run that starts itself again after a kill, which may have come before the first frame.
+    ///
+    /// # Errors
+    /// The same as for [`create`](Self::create) and [`append`](Self::append).
+    pub fn create_or_append(
+        path: impl AsRef<Path>,
+        format: impl Format + Send + Sync + 'static,
+        times: SampleTimes,
+    ) -> Result<Self, RecordError> {
+        let path = path.as_ref();
+        match path.metadata() {
+            Ok(file) if file.len() > 0 => Self::append(path, format, times),
+            Ok(_) => Ok(Self::new(format, OneFile::begin_in(path)?, times)),
+            Err(_) => Self::create(path, format, times),
+        }
     }
 
     /// Creates a recorder that begins a binary file of GSD, with the schema of HOOMD-blue.
@@ -282,7 +302,7 @@ impl Observer for Recorder {
 
     fn on_end(&mut self, _: &Snapshot<'_>) {
         if self.failure.is_none() {
-            self.failure = self.store.file().sync().err();
+            self.failure = media::sync(self.store.file()).err();
         }
     }
 

@@ -1,8 +1,7 @@
 //! The trait of stores of frames: one file, or a series of files.
 
 use super::RecordError;
-use super::media::Growing;
-use crate::file::Locked;
+use crate::file::{Growing, Locked};
 use crate::observable::Snapshot;
 
 /// A store for the bytes of frames, one after another. A stored frame stays whole, even if a later one fails.

@@ -160,6 +160,16 @@ pub enum StudyError {
         /// The folder.
         path: PathBuf,
     },
+    /// The folder holds a study of version 0.3, whose records this version does not read.
+    #[error(
+        "{} holds a study of version 0.3, whose records this version does not read; \
+         finish it by version 0.3 (`cargo install granular-edmd@0.3 --features cli`), or take a new folder: its tables stay as they are",
+        path.display()
+    )]
+    Outdated {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The folder holds a study with another plan.
     #[error("{} holds a study with another plan; choose another folder: {}", path.display(), told(differences))]
     Different {

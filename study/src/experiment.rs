@@ -3,6 +3,7 @@
 
 pub(super) mod columns;
 pub(super) mod record;
+pub(super) mod riders;
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
@@ -17,6 +18,7 @@ use super::ExperimentError;
 use super::seed::derived_seed;
 use columns::{Column, Table};
 use record::Record;
+use riders::{Interval, SavedDriving, Start};
 
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;
@@ -168,6 +170,62 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// It may read the observer, and empty it for the interval until the next sample, or let it add up over
     /// all samples.
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
+
+    /// Returns the driving of a value, if it has one: kicks of all disks at set times.
+    ///
+    /// Each value has a driving of its own, with a seed of its own, which begins with the value and is saved
+    /// with it.
+    ///
+    /// # Errors
+    /// If these parameters do not give one.
+    fn driving(&self, seed: u64) -> Result<Option<Box<dyn SavedDriving>>, ExperimentError> {
+        let _ = seed;
+        Ok(None)
+    }
+
+    /// Returns a companion, an observer that rides along and is not saved: a recorder, a closure, a channel.
+    ///
+    /// It sees the whole value, its settling too, and is made anew when a value goes on after an
+    /// interruption. Its verdict counts like that of the observer, so it must follow from the run alone.
+    ///
+    /// # Errors
+    /// If it cannot be made, such as a file that cannot be written.
+    fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
+        let _ = start;
+        Ok(None)
+    }
+
+    /// Changes a simulation before each step of a value: it moves walls, opens gates, adds or removes inlets
+    /// and disks.
+    ///
+    /// By default it changes nothing. What it does must follow from its arguments. The observer may keep what
+    /// [`boundary_in`](Self::boundary_in) needs.
+    ///
+    /// # Errors
+    /// If it cannot. The value has then failed, and the study goes on.
+    fn prepare(
+        &self,
+        step: &Interval,
+        simulation: &mut Run<Self>,
+        observer: &mut Self::Observer,
+    ) -> Result<(), ExperimentError> {
+        let _ = (step, simulation, observer);
+        Ok(())
+    }
+
+    /// Returns the walls in a step, as [`prepare`](Self::prepare) has set them, to go on with a value that
+    /// was interrupted in it, or with the next value after the last step.
+    ///
+    /// # Errors
+    /// If the parameters do not give walls.
+    fn boundary_in(
+        &self,
+        step: &Interval,
+        observer: &Self::Observer,
+    ) -> Result<Self::Boundary, ExperimentError> {
+        let _ = (step, observer);
+        self.boundary()
+    }
 
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;

@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use super::experiment::record::Origin;
-use super::folder::{Folder, sealed};
+use super::folder::Folder;
 use super::maker::Maker;
 use super::parameters::{self, tree};
 use super::provenance::{self, Provenance};
+use super::store::{Claims, Store};
+use super::whole::damaged;
 use super::{Difference, Experiment, Plan, PlanError, StudyError};
 
 /// A [`Plan`] in a folder, with the records of its finished values.
@@ -16,6 +18,8 @@ use super::{Difference, Experiment, Plan, PlanError, StudyError};
 #[derive(Debug, Clone)]
 pub struct Study<E> {
     pub(super) folder: Folder,
+    pub(super) store: Store,
+    pub(super) claims: Claims,
     pub(super) plan: Plan<E>,
     /// The plan as it is in its file.
     text: String,
@@ -116,7 +120,8 @@ impl<E: Experiment> Study<E> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
         let (provenance, maker) = (Provenance::of_text(String::new()), provenance::maker::<E>());
-        Ok(Self { folder, plan, text, hash, provenance, maker })
+        let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
+        Ok(Self { folder, store, claims, plan, text, hash, provenance, maker })
     }
 
     /// Puts the plan into the folder, if it passes a check; returns false if there is one.
@@ -141,6 +146,7 @@ impl<E: Experiment> Study<E> {
     }
 
     fn check_code(&self) -> Result<Provenance, StudyError> {
+        self.folder.check_format()?;
         let provenance = self.read_provenance()?;
         let differences = provenance.differences(&self.plan);
         if differences.is_empty() {
@@ -201,7 +207,7 @@ impl<E: Experiment> Study<E> {
             return Err(StudyError::Foreign { path: path.to_owned() });
         }
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
-            return Err(sealed::damaged(path, "it is of another value"));
+            return Err(damaged(path, "it is of another value"));
         }
         if self.is_ours(found) || self.provenance.takes(&found.maker) {
             return Ok(());

@@ -3,14 +3,12 @@
 use std::path::Path;
 
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
-use super::folder::{self, Lock, Mark, sealed};
+use super::folder;
 use super::plan::refinement::{Bracket, Seen};
-use super::plan::values::tried;
+use super::store::{Claimed, Entry, Marks};
 use super::tables::{self, Tables};
+use super::whole::damaged;
 use super::{Experiment, Plan, Point, Study, StudyError};
-
-/// Number of ramps whose first records are read ahead of a table.
-const AHEAD: usize = 4096;
 
 /// Progress of a ramp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,9 +18,9 @@ pub enum RampStatus {
     Done,
     /// A process is doing the ramp.
     Running,
-    /// A process has begun the ramp, and none is doing it now.
+    /// A part of the ramp is done, and no process is known to do it now.
     Begun,
-    /// No process has begun the ramp.
+    /// Nothing of the ramp is done.
     Waiting,
 }
 
@@ -30,28 +28,48 @@ impl<E: Experiment> Study<E> {
     /// Returns the record of a value; `None` if it is not finished.
     ///
     /// # Errors
-    /// If there is no such ramp, or the file is damaged, of another study, of other code, or cannot be read.
+    /// If there is no such ramp, or the record is damaged, of another study, of other code, or cannot be read.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
-        let path = self.folder.record(ramp, value);
-        let Some(contents) = sealed::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
-        self.check_origin(&contents.origin, ramp, value, &path)?;
+        if let Some(record) = self.known_record(ramp, value)? {
+            return Ok(Some(record));
+        }
+        let entry = self.store.refreshed()?.find(ramp, value);
+        match (entry, self.store.damage()) {
+            (Some(entry), _) => self.read(&entry).map(Some),
+            (None, Some(error)) => Err(error),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// Returns the record of a value, if it was finished when the store was last read.
+    pub(super) fn known_record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
+        self.store.known().find(ramp, value).map(|entry| self.read(&entry)).transpose()
+    }
+
+    /// Reads a record of the store.
+    pub(super) fn read(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
+        let (head, path) = (entry.head(), self.store.log_of(entry));
+        let contents: Contents<_, _> = self.store.read(entry)?;
+        self.check_origin(&contents.origin, head.ramp, head.value, &path)?;
+        let told = |reason| damaged(&path, format!("value {} of ramp {}: {reason}", head.value, head.ramp));
         let spans = |at| self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
         if contents.at.is_some_and(|at| !spans(at)) {
-            return Err(sealed::damaged(&path, "it is outside the ramp"));
+            return Err(told("it is outside the ramp".to_owned()));
         }
-        let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
-        check_record(&record, &self.plan).map_err(|reason| sealed::damaged(&path, reason))?;
+        let record = Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents };
+        check_record(&record, &self.plan).map_err(told)?;
         // Accepted code differs from this program on purpose.
-        match record.changed_part().filter(|_| self.is_ours(&record.contents.origin)) {
+        let is_ours = self.is_ours(&record.contents.origin);
+        match record.changed_part(&self.plan.protocol().last_of(record.contents.steps)).filter(|_| is_ours) {
             Some(part) => Err(StudyError::Changed { path, part }),
-            None => Ok(Some(record)),
+            None => Ok(record),
         }
     }
 
     /// Iterates over all finished records, ramp by ramp, and reads them one by one.
     pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        (0..self.plan.ramp_count()).flat_map(|ramp| self.ramp_records(ramp))
+        self.records_of(0..self.plan.ramp_count())
     }
 
     /// Iterates over all finished records of a ramp, and reads them one by one.
@@ -59,14 +77,19 @@ impl<E: Experiment> Study<E> {
     /// If there is no such ramp, the only item is an error.
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
         let missing = self.check_ramp(ramp).err();
-        let values = if missing.is_some() { 0 } else { self.plan.value_count() };
-        let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
-        // The values of a refinement have no gaps, and their number is known only at the end.
-        let is_refined = self.plan.is_refined() && missing.is_none();
-        let more = (values..)
-            .take_while(move |_| is_refined)
-            .map_while(move |value| self.record(ramp, value).transpose());
-        missing.into_iter().map(Err).chain(own).chain(more)
+        let ramps = if missing.is_some() { 0..0 } else { ramp..ramp + 1 };
+        missing.into_iter().map(Err).chain(self.records_of(ramps))
+    }
+
+    fn records_of(
+        &self,
+        ramps: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        let (entries, error) = match self.store.refreshed() {
+            Ok(entries) => (entries.of(ramps).copied().collect::<Vec<Entry>>(), None),
+            Err(error) => (Vec::new(), Some(error)),
+        };
+        error.into_iter().map(Err).chain(entries.into_iter().map(|entry| self.read(&entry)))
     }
 
     /// Returns a value at a point of the grid, with all its finished repeats; `None` if there are none.
@@ -74,13 +97,18 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If there is no such point, or a record is damaged, of another study, or cannot be read.
     pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
+        self.store.refreshed()?;
+        self.known_point(index, value)
+    }
+
+    fn known_point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
         let points = self.plan.point_count();
         if index >= points {
             return Err(StudyError::NoSuchPoint { point: index, points });
         }
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
-        let records = ramps.filter_map(|ramp| self.record(ramp, value).transpose());
+        let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
         Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
     }
 
@@ -89,9 +117,11 @@ impl<E: Experiment> Study<E> {
     ///
     /// The values that a refinement adds differ between repeats, and are not among them.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
+        let error = self.store.refreshed().err();
         let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
         let places = (0..self.plan.point_count()).flat_map(values);
-        places.filter_map(|(index, value)| self.point(index, value).transpose())
+        let found = places.filter_map(|(index, value)| self.known_point(index, value).transpose());
+        error.into_iter().map(Err).chain(found)
     }
 
     /// Returns the transitions that a refined ramp has bracketed; empty before all of them are.
@@ -113,88 +143,94 @@ impl<E: Experiment> Study<E> {
     /// Returns the progress of a ramp.
     ///
     /// # Errors
-    /// If there is no such ramp.
+    /// If there is no such ramp, or the folder cannot be read.
     pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
         self.check_ramp(ramp)?;
-        let mark = self.folder.marks(ramp..ramp + 1)?[0];
-        Ok(self.status_of(ramp, mark, self.folder.log_of(ramp).exists()))
+        Ok(self.all_status()?[ramp])
     }
 
     /// Returns the progress of all ramps.
     ///
-    /// It is much faster than [`Self::status`] of each of them.
-    ///
     /// # Errors
     /// If the folder cannot be read.
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
-        let ramps = self.plan.ramp_count();
-        // In this order, a ramp that is done meanwhile is done.
-        let begun = self.folder.all_begun(ramps)?;
-        let marks = self.folder.marks(0..ramps)?;
-        Ok((0..ramps).map(|ramp| self.status_of(ramp, marks[ramp], begun[ramp])).collect())
-    }
-
-    fn status_of(&self, ramp: usize, mark: Mark, is_begun: bool) -> RampStatus {
-        match (mark, is_begun) {
-            (Mark::Done | Mark::Failed, _) => RampStatus::Done,
-            (Mark::Open, false) => RampStatus::Waiting,
-            (Mark::Open, true) if Lock::is_taken(&self.folder.log_of(ramp)) => RampStatus::Running,
-            (Mark::Open, true) => RampStatus::Begun,
+        let mut all = vec![RampStatus::Waiting; self.plan.ramp_count()];
+        let (taken, unfinished) = (self.claims.taken()?, self.folder.unfinished()?);
+        let entries = self.store.refreshed()?;
+        let begun =
+            entries.all().map(|entry| entry.head().ramp).chain(unfinished.iter().map(|place| place[0]));
+        let begun = begun.map(|ramp| (ramp, RampStatus::Begun));
+        for (ramp, status) in begun.chain(taken.into_iter().flatten().map(|ramp| (ramp, RampStatus::Running)))
+        {
+            if let Some(place) = all.get_mut(ramp) {
+                *place = status;
+            }
         }
+        for (ramp, status) in all.iter_mut().enumerate().filter(|(_, status)| **status != RampStatus::Waiting)
+        {
+            // A ramp that was finished in between is done.
+            *status = if entries.is_done(ramp) { RampStatus::Done } else { *status };
+        }
+        Ok(all)
     }
 
-    /// Returns ramp and value of those values that stalled or failed, in the ramps that are done.
+    /// Returns whether all values have a record.
+    pub(super) fn is_done(&self) -> Result<bool, StudyError> {
+        let entries = self.store.refreshed()?;
+        Ok((0..self.plan.ramp_count()).all(|ramp| entries.is_done(ramp)))
+    }
+
+    /// Returns ramp and value of those values that were not finished: they stalled, failed or reached a limit.
     ///
     /// # Errors
-    /// If a record of such a ramp is damaged, or files cannot be read.
+    /// If files cannot be read.
     pub fn failed(&self) -> Result<Vec<[usize; 2]>, StudyError> {
-        let marks = self.folder.marks(0..self.plan.ramp_count())?.into_iter().enumerate();
-        let ramps = marks.filter(|(_, mark)| *mark == Mark::Failed).map(|(ramp, _)| ramp);
-        ramps.flat_map(|ramp| self.failed_in(ramp)).collect()
+        let entries = self.store.refreshed()?;
+        let failed = entries.all().map(Entry::head).filter(|head| head.marks.has(Marks::FAILED));
+        Ok(failed.map(|head| [head.ramp, head.value]).collect())
     }
 
-    fn failed_in(&self, ramp: usize) -> impl Iterator<Item = Result<[usize; 2], StudyError>> {
-        let all = self.ramp_records(ramp);
-        let failed =
-            all.filter(|record| !record.as_ref().is_ok_and(|record| record.outcome().reason().is_none()));
-        failed.map(|record| record.map(|record| [record.ramp_index(), record.value_index()]))
-    }
-
-    /// Removes the failed values of a ramp that is done, and all values after the first of them, since they
-    /// started from other states. The next run does them again. Returns whether there were any.
+    /// Lets the failed values of a ramp that is done count as not done, and all values after the first of
+    /// them, since they started from other states. The next run does them again. Returns whether there were
+    /// any.
     ///
     /// The same code fails again, with the same bytes: call this for code whose changes were
-    /// [accepted](Self::accept_changes). A ramp that another process does is left alone.
+    /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process does
+    /// is left alone.
     ///
     /// # Errors
-    /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or removed.
+    /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or written.
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
         self.check_ramp(ramp)?;
         self.check_unchanged()?;
-        let Some((_lock, _)) = self.folder.take(ramp)? else { return Ok(false) };
-        if self.folder.marks(ramp..ramp + 1)? != [Mark::Failed] {
+        let claimed = self.claims.claim(&(ramp..ramp + 1))?;
+        let entries = self.store.refreshed()?;
+        if matches!(claimed, Claimed::Theirs) || !entries.is_done(ramp) {
             return Ok(false);
         }
-        let Some([_, first]) = self.failed_in(ramp).next().transpose()? else { return Ok(false) };
+        let heads = || entries.of(ramp..ramp + 1).map(Entry::head);
+        let Some(first) = heads().find(|head| head.marks.has(Marks::FAILED)) else { return Ok(false) };
         self.folder.mark_incomplete()?;
-        self.folder.mark(ramp, Mark::Open)?;
-        self.folder.remove_records(ramp, first).map(|()| true)
+        let values = heads().map(|head| head.value).filter(|value| *value >= first.value);
+        self.store.void(ramp, values)?;
+        Ok(true)
     }
 
     /// Returns the seconds of one processor that the finished values took, and those that the others will
     /// take if they are like them; the latter is NaN before a value is finished.
     ///
-    /// Both are about right: they follow from the logs of 1024 ramps at most, and a value that was
-    /// interrupted logs its last piece alone.
-    pub fn seconds(&self, all: &[RampStatus]) -> (f64, f64) {
-        let ramps: Vec<usize> = (0..all.len()).filter(|&ramp| all[ramp] != RampStatus::Waiting).collect();
-        let looked: Vec<_> = tried(ramps.len()).map(|index| self.folder.logged(ramps[index])).collect();
-        let scale = ramps.len() as f64 / looked.len().max(1) as f64;
-        let values: Vec<Option<f64>> = looked.into_iter().flatten().collect();
-        let timed: Vec<f64> = values.iter().copied().flatten().collect();
-        let seconds: f64 = timed.iter().sum();
-        let left = (all.len() * self.plan.value_count()) as f64 - scale * values.len() as f64;
-        (scale * seconds, f64::max(left, 0.0) * seconds / timed.len() as f64)
+    /// Both are about right: of a value that was interrupted, the last piece counts alone.
+    ///
+    /// # Errors
+    /// If files cannot be read.
+    pub fn seconds(&self) -> Result<(f64, f64), StudyError> {
+        let entries = self.store.refreshed()?;
+        let timed =
+            || entries.all().map(|entry| f64::from(entry.head().seconds)).filter(|time| !time.is_nan());
+        let seconds: f64 = timed().sum();
+        let all = (self.plan.ramp_count() * self.plan.value_count()) as f64;
+        let left = f64::max(all - entries.all().count() as f64, 0.0);
+        Ok((seconds, left * seconds / timed().count() as f64))
     }
 
     /// Returns whether the folder has tables of all values.
@@ -231,24 +267,21 @@ impl<E: Experiment> Study<E> {
 
     /// Writes tables, and returns the number of records in them.
     pub(super) fn tables(&self, folder: &Path) -> Result<usize, StudyError> {
-        let marks = self.folder.marks(0..self.plan.ramp_count())?;
+        let entries = self.store.refreshed()?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        for (ramp, mark) in marks.into_iter().enumerate() {
-            if ramp.is_multiple_of(AHEAD) {
-                self.folder.read_ahead(ramp..self.plan.ramp_count().min(ramp + AHEAD));
-            }
+        for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();
-            for record in self.ramp_records(ramp) {
-                let record = record?;
+            for entry in entries.of(ramp..ramp + 1) {
+                let record = self.read(entry)?;
                 tables.add(&record)?;
                 seen.push(self.plan.seen(&record));
                 finished += 1;
             }
             // A table that lacks a row must not look complete.
-            if mark != Mark::Open && seen.len() < self.plan.value_count() {
-                let path = self.folder.record(ramp, seen.len());
-                return Err(sealed::damaged(&path, "a record of a ramp that is done is missing"));
+            if !entries.is_done(ramp) && (self.folder.is_complete() || self.store.damage().is_some()) {
+                let missing = || damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
+                return Err(self.store.damage().unwrap_or_else(missing));
             }
             tables.end_ramp(ramp, &self.brackets(&seen))?;
         }

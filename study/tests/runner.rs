@@ -1,5 +1,8 @@
 //! The command line of studies: plans are written, checked, run in many processes, and read.
 
+#[path = "support/logs.rs"]
+mod logs;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -108,7 +111,7 @@ fn ramps_in_many_processes_are_a_study() {
     let children = ["0", "1", "2"].map(start);
     assert!(children.into_iter().all(|mut child| child.wait().unwrap().success()));
     let status = scratch.runs(&["status", "many"]);
-    assert_eq!(code(&status), Some(3));
+    assert_eq!(code(&status), Some(8));
     let (ramps, times) = said(&status).split_once('\n').map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
     assert_eq!(ramps, "4 ramps: 3 done, 0 running, 0 begun, 1 waiting; no tables of all");
     assert!(times.starts_with("about ") && times.ends_with(" core seconds are left\n"), "{times}");
@@ -129,9 +132,7 @@ fn ramps_in_many_processes_are_a_study() {
     assert!(scratch.0.join("many/values.csv").exists());
     assert!(start("3").wait().unwrap().success());
     assert_eq!(code(&scratch.runs(&["status", "many"])), Some(0));
-    for file in
-        ["values.csv", "points.csv", "profiles.csv", "columns.csv", "plan.toml", "ramps/0003/0000.record"]
-    {
+    for file in ["values.csv", "points.csv", "profiles.csv", "columns.csv", "plan.toml"] {
         let [one, many] = ["one", "many"].map(|study| fs::read(scratch.0.join(study).join(file)).unwrap());
         assert!(one == many, "{file}");
     }
@@ -150,19 +151,18 @@ fn failed_values_are_listed_and_tried_again() {
     fs::write(scratch.0.join("plan.toml"), plan.replace("repeats = 2", "repeats = 1")).unwrap();
     let run = |arguments: &[&str]| {
         let output = scratch.runs(&[&["run", "plan.toml", "--out", "study"], arguments].concat());
-        assert_eq!(code(&output), Some(0), "{}", said(&output));
-        let files = ["0000.record", "0001.record", "0002.record"];
-        files.map(|file| fs::read(scratch.0.join("study/ramps/0000").join(file)).unwrap())
+        assert_eq!(code(&output), Some(7), "{}", said(&output));
+        logs::records(&scratch.0.join("study"))
     };
     let before = run(&[]);
     let status = said(&scratch.runs(&["status", "study"]));
-    assert!(status.contains("1 values stalled or failed: 0000/0001"), "{status}");
+    assert!(status.contains("1 values were not finished: 0000/0001"), "{status}");
     assert!(said(&scratch.runs(&["status", "study", "--json"])).contains(r#""failed":[[0, 1]]"#));
-    let log = || fs::read_to_string(scratch.0.join("study/ramps/0000/log.jsonl")).unwrap().lines().count();
+    let log = || logs::lines(&scratch.0.join("study")).lines().count();
     assert!(run(&[]) == before && log() == 3);
     assert!(run(&["--retry"]) == before, "the same code fails with the same bytes");
     assert_eq!(log(), 5, "the failed value and the one after it");
-    assert_eq!(code(&scratch.runs(&["status", "study"])), Some(0));
+    assert_eq!(code(&scratch.runs(&["status", "study"])), Some(7));
 }
 
 /// A contact duration longer than the time between collisions turns the rule off: it is said, not only a
@@ -177,8 +177,8 @@ fn warnings_of_values_are_told() {
     let output = scratch.runs(&["run", "plan.toml", "--out", "study"]);
     assert_eq!(code(&output), Some(0), "{}", said(&output));
     let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(told.contains("of them have warnings; study/ramps/*/log.jsonl say of what"), "{told}");
-    let log = fs::read_to_string(scratch.0.join("study/ramps/0000/log.jsonl")).unwrap();
+    assert!(told.contains("of them have warnings; study/logs/*.jsonl say of what"), "{told}");
+    let log = logs::lines(&scratch.0.join("study"));
     assert!(log.contains("longer than the time between collisions"), "{log}");
 }
 
@@ -192,10 +192,12 @@ fn a_study_grows() {
     fs::write(scratch.0.join("larger.toml"), &larger).unwrap();
     let output = scratch.runs(&["run", "larger.toml", "--out", "larger", "--from", "study"]);
     assert_eq!((code(&output), said(&output).as_str()), (Some(0), "9 of 9 values are finished in larger\n"));
-    let log = |ramp: &usize| {
-        fs::read_to_string(scratch.0.join(format!("larger/ramps/{ramp:04}/log.jsonl"))).unwrap()
+    let log = logs::lines(&scratch.0.join("larger"));
+    let is_taken = |ramp: &usize| {
+        let own = format!("{{\"ramp\":{ramp},");
+        log.lines().any(|line| line.starts_with(&own) && line.contains("taken_over"))
     };
-    let taken: Vec<usize> = (0..9).filter(|ramp| log(ramp).contains("taken_over")).collect();
+    let taken: Vec<usize> = (0..9).filter(is_taken).collect();
     assert_eq!(taken, [0, 1, 6, 7]);
     fs::write(scratch.0.join("other.toml"), larger.replace("settle = 10", "settle = 20")).unwrap();
     let output = scratch.runs(&["run", "other.toml", "--out", "other", "--from", "study"]);
@@ -214,7 +216,7 @@ fn exit_codes_say_how_a_command_ended() {
     assert_eq!(of(&["run", "plan.toml", "--out", "study", "--ramp", "7"]), Some(1), "1: failed");
     assert_eq!(of(&["run", "plan.toml"]), Some(2), "2: wrong command line");
     assert_eq!(of(&["check", "study/provenance.json"]), Some(2), "2: no plan");
-    assert_eq!(of(&["status", "study"]), Some(3), "3: not all done");
+    assert_eq!(of(&["status", "study"]), Some(8), "8: not all done, and nobody does the rest");
     assert_eq!(of(&["run", "plan.toml", "--out", "study", "--no-tables"]), Some(0));
     assert!(!scratch.0.join("study/values.csv").exists());
     assert_eq!(of(&["status", "study"]), Some(4), "4: no tables");
@@ -257,7 +259,7 @@ fn a_signal_acts_within_a_second_whatever_the_sampling_interval_is() {
     let scratch = Scratch::new("bounded");
     fs::write(scratch.0.join("plan.toml"), SMALL.replace("every = 2", "every = 10000000")).unwrap();
     let arguments = ["run", "plan.toml", "--out", "study", "--ramp", "0", "--threads", "1"];
-    let partial = scratch.0.join("study/ramps/0000/0000.partial");
+    let partial = scratch.0.join("study/unfinished/0000-0000");
     let mut lengths = Vec::new();
     for _ in 0..2 {
         let mut child = scratch.command(&arguments).stdout(Stdio::null()).spawn().unwrap();
@@ -346,7 +348,7 @@ fn a_signal_saves_and_the_same_command_goes_on() {
     let output = child.wait_with_output().unwrap();
     assert!(killed.is_ok_and(|status| status.success()));
     assert_eq!(code(&output), Some(130), "{}", said(&output));
-    assert!(scratch.0.join("study/ramps/0000/0000.partial").exists());
+    assert!(scratch.0.join("study/unfinished/0000-0000").exists());
     assert!(said(&scratch.runs(&["status", "study"])).contains("1 begun"));
 }
 

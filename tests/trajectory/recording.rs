@@ -477,3 +477,21 @@ fn a_damaged_file_is_left_or_cut_at_a_whole_frame() {
         }
     }
 }
+
+#[test]
+fn a_file_is_begun_or_gone_on_with() {
+    let scratch = Scratch::new("begun");
+    let (whole, path) = (scratch.path("whole.xyz"), scratch.path("path.xyz"));
+    let (bytes, _) = recorded(&whole);
+    fs::write(&path, "").unwrap();
+    for end in [0.2, 1.7, 3.0] {
+        // The state of then is made anew.
+        let mut run = mixture();
+        let mut recorder = Recorder::create_or_append(&path, ExtendedXyz, times()).unwrap();
+        run.run_until(end, &mut recorder).unwrap();
+    }
+    assert!(fs::read(&path).unwrap() == bytes);
+    fs::write(&path, "notes\n").unwrap();
+    assert!(Recorder::create_or_append(&path, ExtendedXyz, times()).is_err());
+    assert_eq!(fs::read_to_string(&path).unwrap(), "notes\n");
+}

@@ -49,19 +49,12 @@ impl Boundary for Vessel {
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
-        let reach = 1.001 * radius;
-        let mut near = self.index.near(region.min - reach, region.max + reach);
-        self.container.may_touch(region, radius)
-            || near.any(|entry| {
-                let region = Region::new(region.min - entry.image, region.max - entry.image);
-                let (wall, travel) = self.wall(entry.wall as usize);
-                travel.may_reach(&wall.brick, &region, reach)
-            })
+        self.container.may_touch(region, radius) || self.parts_may_touch(region, radius)
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
-        self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until))
+        let first = self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until));
+        if self.has_patches { first.map(|touch| self.on_patch(touch, flight)) } else { first }
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
@@ -83,6 +76,10 @@ impl Boundary for Vessel {
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let parts = self.overlap_with_parts(probe);
         Overlap::deepest(self.container.overlap(probe).into_iter().chain(parts))
+    }
+
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        Some(self.free_area(region, radius, time))
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

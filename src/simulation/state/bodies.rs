@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::forecast::Forecast;
+use super::forecast::{Earliest, Exit, Forecast};
 use super::identities::Identities;
 use super::properties::Properties;
 use crate::collision::{Body, Material};
@@ -154,6 +154,20 @@ impl Bodies {
         self.particles.get(disk).map(|particle| &particle.forecast)
     }
 
+    /// Sets the next collision of a disk.
+    #[inline(always)]
+    pub(in crate::simulation) fn expect(&mut self, disk: usize, earliest: Earliest) {
+        let collisions = self.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
+        self.particles[disk].forecast.set_collision(earliest, collisions);
+    }
+
+    /// Sets when and where the flight of a disk in its cell ends.
+    #[inline(always)]
+    pub(in crate::simulation) fn exit(&mut self, disk: usize, due: f64, exit: Exit) {
+        let forecast = &mut self.particles[disk].forecast;
+        (forecast.exit_due, forecast.exit) = (due, exit);
+    }
+
     pub(in crate::simulation) fn id(&self, disk: usize) -> u64 {
         self.identities.of(disk)
     }
@@ -271,6 +285,16 @@ impl Bodies {
     /// Returns all disks as the user sees them.
     pub(in crate::simulation) fn disks(&self, offset: f64) -> Vec<Disk> {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
+    }
+
+    /// Returns the kinetic and potential energy of all disks.
+    pub(in crate::simulation) fn energy(&self, offset: f64) -> f64 {
+        let pull = self.gravity.acceleration();
+        let of = |disk: Disk| {
+            let kinetic = disk.translational_energy() + disk.rotational_energy();
+            kinetic - disk.mass() * pull.dot(disk.position())
+        };
+        (0..self.len()).map(|disk| of(self.disk(disk, offset))).sum()
     }
 
     /// Moves the epoch on by this time.

@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::{CHUNKS, F64, I8, LOG, Shape, U8, U64};
-use crate::file::Locked;
+use crate::file::{Growing, Locked, Medium as _};
 use crate::observable::Snapshot;
 use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
-use crate::trajectory::media::{self, Growing, Medium as _};
+use crate::trajectory::media;
 use crate::trajectory::open::is_gzip;
 use crate::trajectory::store::Store;
 
@@ -51,7 +51,7 @@ impl Indexed {
             let error = io::Error::new(io::ErrorKind::InvalidInput, reason);
             return Err(RecordError::io("use", path)(error));
         }
-        let mut file = Growing::create(path)?;
+        let mut file = media::create(path)?;
         let index = Index { location: HEADER as u64, room: ROOM, ..Index::default() };
         let head = [header(index.location, ROOM as u64), vec![0; ROOM * ENTRY], names()].concat();
         file.push(&head, &[]).map_err(|error| {

@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::write_box;
-use crate::file::Locked;
+use crate::file::{Growing, Locked};
 use crate::observable::Snapshot;
 use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
-use crate::trajectory::media::{self, Growing};
+use crate::trajectory::media;
 use crate::trajectory::store::Store;
 
 /// Beginning and ending of the file of times. The ending follows each frame, so that the file is always
@@ -35,7 +35,7 @@ impl Series {
             io::ErrorKind::AlreadyExists => RecordError::Exists { path: folder.clone() },
             _ => RecordError::io("create", &folder)(error),
         })?;
-        let file = Growing::create(path).inspect_err(|_| {
+        let file = media::create(path).inspect_err(|_| {
             // The folder is new and empty, so nothing is lost.
             let _ = fs::remove_dir(&folder);
         });

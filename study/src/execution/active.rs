@@ -1,18 +1,20 @@
 //! One value of a ramp, from its start to its record: a pure function of the plan, the index and the record
 //! from which it starts.
 
+use std::path::Path;
 use std::time::Duration;
 
 use granular_edmd::Simulation;
-use granular_edmd::simulation::{Checkpoint, Counters, RunEnd, RunError};
+use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
-use super::sliced;
+use super::sliced::{self, Riders};
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
 #[cfg(feature = "cli")]
 use crate::opening::Study;
 use crate::plan::refinement::Step;
-use crate::{Experiment, Plan, Protocol, Run};
+use crate::seed::derived_seed;
+use crate::{Experiment, Interval, Plan, Protocol, Run, Start};
 
 /// A value to be run.
 pub(super) struct Value<'a, E: Experiment> {
@@ -22,11 +24,13 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) step: Step,
     /// The record from which the value starts, if there is one.
     pub(super) before: Option<&'a Record<E>>,
+    /// Folder of the study.
+    pub(super) folder: &'a Path,
 }
 
-/// An unfinished value as data: its place, the work so far, and its state.
+/// An unfinished value as data: its place, the work so far, its state and its driving.
 pub(super) type Partial<E> =
-    (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint);
+    (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint, Option<Vec<u8>>);
 
 /// The finished work of a value.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
@@ -35,6 +39,8 @@ pub(super) struct Work<S, O> {
     /// The start of the value.
     start: Cycles,
     steps: u64,
+    /// True once the experiment has prepared the next step.
+    is_prepared: bool,
     /// True if the observer has seen the start of a run, and not its end.
     is_under_way: bool,
     /// Counters at the start of the value.
@@ -47,6 +53,19 @@ pub(super) struct Active<'a, E: Experiment> {
     value: &'a Value<'a, E>,
     work: Work<E::Sample, E::Observer>,
     run: Run<E>,
+    riders: Riders,
+}
+
+/// Why a value ends before its last step.
+pub(super) enum Early {
+    /// The observer ends it.
+    Stopped,
+    /// It has come to a limit.
+    Limited(String),
+    /// The engine gives up.
+    Run(RunError),
+    /// The experiment cannot prepare a step.
+    Prepare(ExperimentError),
 }
 
 impl<'a, E: Experiment> Value<'a, E> {
@@ -54,20 +73,36 @@ impl<'a, E: Experiment> Value<'a, E> {
     pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
-        if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), .. }) =
+        if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
             let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
             let steps = self.plan.protocol().steps() - missing;
-            let work = Work { start, steps, is_under_way: false, counters, measured };
-            if let Ok(active) = self.go_on((self.origin.clone(), work, state)) {
+            let work = Work { start, steps, is_prepared: false, is_under_way: false, counters, measured };
+            if let Ok(active) = self.go_on((self.origin.clone(), work, state, driving))? {
                 return Ok(active);
             }
         }
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
         let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
-        let work = Work { start, steps: 0, is_under_way: false, counters, measured };
-        Ok(Active { value: self, work, run })
+        let work = Work { start, steps: 0, is_prepared: false, is_under_way: false, counters, measured };
+        let riders = self.riders(run.time(), None).map_err(|source| self.cannot_start(source))?;
+        Ok(Active { value: self, work, run, riders })
+    }
+
+    /// Returns driving and companion; with a driving that was saved, those of a value that goes on.
+    fn riders(&self, time: f64, saved: Option<Option<&[u8]>>) -> Result<Riders, ExperimentError> {
+        let Origin { ramp, value, seed, .. } = self.origin;
+        // The seeds of 0 and 1 are those of disks and rule.
+        let mut driving = self.experiment.driving(derived_seed(seed, value as u64 + 2))?;
+        match (&mut driving, saved.flatten()) {
+            (Some(driving), Some(bytes)) => driving.load(bytes)?,
+            (None, Some(_)) => return Err("it was driven".into()),
+            (Some(_), None) if saved.is_some() => return Err("it was not driven".into()),
+            _ => {}
+        }
+        let start = Start { folder: self.folder, ramp, value, seed, time, is_resumed: saved.is_some() };
+        Ok(Riders { driving, companion: self.experiment.companion(&start)?, is_under_way: false })
     }
 
     /// Returns whether a record of the same ramp in another study has all that the record of this value
@@ -81,12 +116,33 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// Returns the record of this value from that of the same value in another study.
     pub(super) fn taken_over(&self, Record { contents, .. }: Record<E>) -> Record<E> {
         let origin = Origin { maker: contents.origin.maker, ..self.origin.clone() };
-        let state = contents.state.filter(|_| self.plan.keeps_state(self.origin.value));
-        Record { experiment: self.experiment.clone(), contents: Contents { origin, state, ..contents } }
+        let keeps = self.plan.keeps_state(self.origin.value);
+        let (state, driving) = (contents.state.filter(|_| keeps), contents.driving.filter(|_| keeps));
+        let contents = Contents { origin, state, driving, ..contents };
+        Record { experiment: self.experiment.clone(), contents }
     }
 
     /// Continues the value where it was saved, or returns the reason why it cannot.
-    pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, String> {
+    ///
+    /// # Errors
+    /// If the companion cannot be made.
+    pub(super) fn go_on(&'a self, partial: Partial<E>) -> Result<Result<Active<'a, E>, String>, StudyError> {
+        let driving = partial.3.clone();
+        let (work, run) = match self.state_of(partial) {
+            Ok(found) => found,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        match self.riders(run.time(), Some(driving.as_deref())) {
+            Ok(riders) => Ok(Ok(Active { value: self, work, run, riders })),
+            Err(source) => Err(self.cannot_start(source)),
+        }
+    }
+
+    #[expect(clippy::type_complexity, reason = "the parts of a value that goes on")]
+    fn state_of(
+        &self,
+        (_, work, state, _): Partial<E>,
+    ) -> Result<(Work<E::Sample, E::Observer>, Run<E>), String> {
         let protocol = self.plan.protocol();
         work.check(protocol)?;
         check(work.start == self.start(), "it starts elsewhere")?;
@@ -94,9 +150,14 @@ impl<'a, E: Experiment> Value<'a, E> {
             .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
         check_state(&state, from..=to)?;
         work.measured.check(&self.experiment, Some(&state))?;
-        let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
+        let boundary = match work.steps.checked_sub(u64::from(!work.is_prepared)) {
+            Some(last) => self.experiment.boundary_in(&protocol.interval(last), &work.measured.observer),
+            None => self.experiment.boundary(),
+        };
+        let run = boundary.and_then(|boundary| Self::resume(&state, &self.experiment, boundary));
+        let run = run.map_err(|_| "its state cannot go on")?;
         check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
-        Ok(Active { value: self, work, run })
+        Ok((work, run))
     }
 
     /// Returns the time at which the value starts, in whole cycles if the length of a cycle has not changed.
@@ -113,14 +174,16 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let mut run = Self::resume(state, &before.experiment).map_err(|source| self.cannot_start(source))?;
+        let walls = before.last_boundary(&self.plan.protocol().last_of(before.contents.steps));
+        let run = walls.and_then(|walls| Self::resume(state, &before.experiment, walls));
+        let mut run = run.map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
         Ok(run)
     }
 
-    /// Resumes a saved state with the rule and the walls of the experiment that saved it.
-    fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, ExperimentError> {
-        Ok(Simulation::resume(state, saved.rule()?, saved.boundary()?).build()?)
+    /// Resumes a saved state with the rule of the experiment that saved it.
+    fn resume(state: &Checkpoint, saved: &E, boundary: E::Boundary) -> Result<Run<E>, ExperimentError> {
+        Ok(Simulation::resume(state, saved.rule()?, boundary).build()?)
     }
 
     fn cannot_start(&self, source: ExperimentError) -> StudyError {
@@ -141,12 +204,12 @@ impl<E: Experiment> Study<E> {
         let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
         // Other code would not do the same.
         if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
-            return Err(StudyError::Changed { path: self.folder.record(ramp, value), part: "revision" });
+            return Err(StudyError::Changed { path: self.folder().to_owned(), part: "revision" });
         }
         let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
         let experiment = self.plan.experiment_at(ramp, step.at)?;
         let (plan, origin, before) = (&self.plan, self.origin(ramp, value), before.as_ref());
-        let value = Value { plan, origin, experiment, step, before };
+        let value = Value { plan, origin, experiment, step, before, folder: self.folder() };
         let (run, end) = (value.first_state()?, plan.protocol().cycles() as f64);
         let end = value.start().time(end, value.experiment.cycle());
         Ok((value.experiment, run, end))
@@ -165,30 +228,62 @@ impl<E: Experiment> Active<'_, E> {
 
     /// Runs the next step, which settles or takes a sample, for this wall-clock time at most. The observer
     /// may end the value during the step. The next call continues a step that takes longer, with the same
-    /// bits.
-    pub(super) fn step(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
+    /// bits. Returns whether the step is done.
+    pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Early> {
+        self.prepare()?;
+        match self.advance(slice).map_err(Early::Run)? {
+            RunEnd::Time => {
+                self.work.steps += 1;
+                self.work.is_prepared = false;
+                Ok(true)
+            }
+            RunEnd::WallClock => Ok(false),
+            RunEnd::Collisions => {
+                let most = self.value.plan.protocol().most_collisions().unwrap_or(u64::MAX);
+                Err(Early::Limited(format!("it has reached the limit of {most} collisions")))
+            }
+            _ => Err(Early::Stopped),
+        }
+    }
+
+    /// Lets the experiment prepare the next step, once.
+    fn prepare(&mut self) -> Result<(), Early> {
+        if std::mem::replace(&mut self.work.is_prepared, true) {
+            return Ok(());
+        }
+        let interval: Interval = self.value.plan.protocol().interval(self.work.steps);
+        let observer = &mut self.work.measured.observer;
+        self.value.experiment.prepare(&interval, &mut self.run, observer).map_err(Early::Prepare)
+    }
+
+    fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let protocol = self.value.plan.protocol();
         let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
         let end = protocol.end_of(step) as f64;
         let at = |cycles: f64| self.work.start.time(cycles, cycle);
         let (sample, end) = (at(end - protocol.lead()), at(end));
-        let ended = if protocol.is_sampled(step) {
-            self.sample(sample, end, slice)?
-        } else {
-            sliced::run(&mut self.run, end, slice, &mut (), &mut self.work.is_under_way)?
-        };
-        if ended == RunEnd::Time {
-            self.work.steps += 1;
+        if protocol.is_sampled(step) {
+            return self.sample(sample, end, slice);
         }
-        Ok(ended)
+        let limits = self.limits(end, slice);
+        sliced::run(&mut self.run, &limits, &mut self.riders, &mut (), &mut self.work.is_under_way)
+    }
+
+    /// Returns the limits of a piece of the value.
+    fn limits(&self, end: f64, slice: Duration) -> Limits {
+        let limits = Limits::until(end).with_wall_clock(slice);
+        let Some(most) = self.value.plan.protocol().most_collisions() else { return limits };
+        let done = self.run.counters().since(&self.work.counters).collisions();
+        limits.with_most_collisions(most.saturating_sub(done))
     }
 
     fn sample(&mut self, time: f64, end: f64, slice: Duration) -> Result<RunEnd, RunError> {
+        let [to_sample, to_end] = [time, end].map(|end| self.limits(end, slice));
         let Work { measured, is_under_way, steps, .. } = &mut self.work;
         let Measured { times, samples, observer } = measured;
         // A slice may have ended between the sample and the end of the step.
         if samples.len() as u64 == self.value.plan.protocol().samples_of(*steps) {
-            let ended = sliced::run(&mut self.run, time, slice, observer, is_under_way)?;
+            let ended = sliced::run(&mut self.run, &to_sample, &mut self.riders, observer, is_under_way)?;
             if ended != RunEnd::Time {
                 return Ok(ended);
             }
@@ -196,42 +291,46 @@ impl<E: Experiment> Active<'_, E> {
             times.push(snapshot.time());
             samples.push(self.value.experiment.sample(&snapshot, observer));
         }
-        sliced::run(&mut self.run, end, slice, observer, is_under_way)
+        sliced::run(&mut self.run, &to_end, &mut self.riders, observer, is_under_way)
     }
 
     /// Returns the unfinished value as data, to go on with it later.
-    pub(super) fn partial(&self) -> (&Origin, &Work<E::Sample, E::Observer>, Checkpoint) {
-        (&self.value.origin, &self.work, self.run.checkpoint())
+    #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
+    pub(super) fn partial(
+        &self,
+    ) -> Result<(&Origin, &Work<E::Sample, E::Observer>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
+        Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
     /// Returns the record of a finished value.
-    pub(super) fn record(self) -> Record<E> {
+    pub(super) fn record(self) -> Result<Record<E>, StudyError> {
         let mut end = self.work.start;
         end.count += self.value.plan.protocol().cycles();
         let state = self.run.checkpoint();
         self.into_record(Outcome::Completed, end, state)
     }
 
-    /// Returns the record of a value that its observer has ended.
-    pub(super) fn stopped(self) -> Record<E> {
-        let (time, state) = (self.run.time(), self.run.checkpoint());
-        self.into_record(Outcome::Stopped { time }, Cycles { since: time, count: 0 }, state)
-    }
-
-    /// Returns the record of a value that the engine could not finish. The next value starts from the state
-    /// in which this one started.
-    pub(super) fn failed(self, error: &RunError) -> Result<Record<E>, StudyError> {
-        let (time, reason) = (self.run.time(), chain(error));
-        let outcome = match error {
-            RunError::Stalled { .. } => Outcome::Stalled { time, reason },
-            _ => Outcome::Failed { time, reason },
+    /// Returns the record of a value that ended early. After one that was not stopped by its observer, the
+    /// next value starts from the state in which this one started.
+    pub(super) fn ended(self, early: Early) -> Result<Record<E>, StudyError> {
+        let time = self.run.time();
+        let outcome = match early {
+            Early::Stopped => {
+                let (state, end) = (self.run.checkpoint(), Cycles { since: time, count: 0 });
+                return self.into_record(Outcome::Stopped { time }, end, state);
+            }
+            Early::Limited(reason) => Outcome::Limited { time, reason },
+            Early::Run(error @ RunError::Stalled { .. }) => Outcome::Stalled { time, reason: chain(&error) },
+            Early::Run(error) => Outcome::Failed { time, reason: chain(&error) },
+            Early::Prepare(error) => Outcome::Failed { time, reason: chain(error.as_ref()) },
         };
         let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
-        Ok(self.into_record(outcome, start, state))
+        self.into_record(outcome, start, state)
     }
 
-    fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Record<E> {
-        let Self { value, work, run } = self;
+    fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Result<Record<E>, StudyError> {
+        let Self { value, work, run, riders } = self;
+        let driving = riders.saved().map_err(|source| value.cannot_start(source))?;
         let parts = [state.rule(), state.boundary()];
         let state = value.plan.keeps_state(value.origin.value).then_some(state);
         let contents = Contents {
@@ -243,9 +342,11 @@ impl<E: Experiment> Active<'_, E> {
             measured: work.measured,
             counters: run.counters().since(&work.counters),
             parts,
+            steps: work.steps,
+            driving: driving.filter(|_| state.is_some()),
             state,
         };
-        Record { experiment: value.experiment.clone(), contents }
+        Ok(Record { experiment: value.experiment.clone(), contents })
     }
 }
 

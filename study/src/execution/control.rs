@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use granular_edmd::ParameterError;
+use granular_edmd::quantity::positive;
+
 /// Progress of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -36,6 +39,7 @@ pub struct Control<'a> {
     interrupt: Option<&'a AtomicBool>,
     pub(super) earlier: &'a [PathBuf],
     pub(super) save_interval: Duration,
+    pub(super) most_seconds: Option<f64>,
     pub(super) waits: bool,
     pub(super) writes_tables: bool,
     pub(super) verifies: bool,
@@ -50,6 +54,7 @@ impl Default for Control<'_> {
             interrupt: None,
             earlier: &[],
             save_interval: Duration::from_secs(60),
+            most_seconds: None,
             waits: true,
             writes_tables: true,
             verifies: false,
@@ -92,6 +97,20 @@ impl<'a> Control<'a> {
         Self { save_interval: interval, ..self }
     }
 
+    /// Returns the same control, which ends each value that takes more than this wall-clock time, with
+    /// [`Outcome::Limited`](crate::Outcome::Limited).
+    ///
+    /// Whether a value ends so depends on the machine. It counts as one that failed: its record stays until
+    /// [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result everywhere is
+    /// [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a value that was
+    /// interrupted counts from its resumption.
+    ///
+    /// # Errors
+    /// If the time is not positive.
+    pub fn with_most_seconds(self, seconds: f64) -> Result<Self, ParameterError> {
+        Ok(Self { most_seconds: Some(positive("most seconds for a value", seconds)?), ..self })
+    }
+
     /// Returns the same control, which does not wait for ramps that other processes run.
     ///
     /// A run then returns as soon as only such ramps are left. [`Summary::elsewhere`] names them, since their
@@ -132,13 +151,11 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
-    /// Number of values that the engine could not finish, in the ramps that this run has looked at: they
-    /// stalled or failed. They have fewer samples or none; [`Outcome::reason`](crate::Outcome::reason)
-    /// and the `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
-    /// [`Control::with_verification`].
+    /// Number of values that were not finished: they stalled, failed, or reached a limit. They have fewer
+    /// samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
-    /// Number of values, in the same ramps, whose runs have
-    /// [warnings](granular_edmd::simulation::Counters::warnings). The `log.jsonl` of their ramp says of what.
+    /// Number of values whose runs have [warnings](granular_edmd::simulation::Counters::warnings). The files
+    /// `logs/*.jsonl` of the study say of what.
     pub warned: usize,
     /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,

@@ -21,6 +21,7 @@ impl<E: Experiment> Earlier<E> {
             if !differences.is_empty() {
                 return Err(StudyError::Different { path: folder.clone(), differences });
             }
+            study.store.refreshed()?;
             let ramps = (0..study.plan.ramp_count()).map(|ramp| (study.plan.ramp_seed(ramp), ramp)).collect();
             Ok((study, ramps))
         };
@@ -47,7 +48,7 @@ impl<E: Experiment> SameRamps<'_, E> {
         let are_same = |other: &Plan<E>| seen.is_empty() || other.protocol() == plan.protocol();
         self.0.retain(|(study, _)| are_same(&study.plan) && study.plan.next(seen) == Some(step));
         for (study, ramp) in &self.0 {
-            let record = study.record(*ramp, seen.len())?;
+            let record = study.known_record(*ramp, seen.len())?;
             // Values of code that was accepted there are done again here.
             if let Some(record) = record.filter(|record| study.is_ours(&record.contents.origin)) {
                 return Ok(Some(record));

@@ -1,14 +1,12 @@
-//! The ramps that are left for the threads of a process.
+//! The blocks of ramps that are left for the threads of a process.
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::folder::Mark;
-
-/// A ramp, as far as is known.
+/// A block, as far as is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Ramp {
+enum Block {
     Free,
     /// Another process does it, or has done it.
     Elsewhere,
@@ -16,62 +14,67 @@ enum Ramp {
     Gone,
 }
 
-/// A ring of ramps.
+/// A ring of blocks.
 ///
 /// Processes begin at random places and go on in order from there. So they seldom meet, and each runs the
-/// ramps ahead of it. One that meets another goes to a new place.
+/// blocks ahead of it. One that meets another goes to a new place.
 #[derive(Debug)]
 pub(super) struct Queue {
-    pub(super) ramps: Range<usize>,
+    blocks: Vec<Range<usize>>,
     ring: Mutex<Ring>,
 }
 
 #[derive(Debug)]
 struct Ring {
-    ramps: Vec<Ramp>,
-    /// The place from which the next ramp is looked for.
+    blocks: Vec<Block>,
+    /// The place from which the next block is looked for.
     place: usize,
 }
 
 impl Queue {
-    pub(super) fn new(ramps: Range<usize>) -> Self {
-        let (all, place) = (vec![Ramp::Free; ramps.len()], anywhere(ramps.len()));
-        Self { ramps, ring: Mutex::new(Ring { ramps: all, place }) }
+    pub(super) fn new(blocks: Vec<Range<usize>>) -> Self {
+        let (all, place) = (vec![Block::Free; blocks.len()], anywhere(blocks.len()));
+        Self { blocks, ring: Mutex::new(Ring { blocks: all, place }) }
     }
 
-    /// Takes the next free ramp.
-    pub(super) fn next(&self) -> Option<usize> {
-        self.ring().turn(Ramp::Free, Ramp::Gone).map(|index| self.ramps.start + index)
+    /// Takes the next free block, with its index.
+    pub(super) fn next(&self) -> Option<(usize, Range<usize>)> {
+        let index = self.ring().turn(Block::Free, Block::Gone)?;
+        Some((index, self.blocks[index].clone()))
     }
 
-    /// Notes that a ramp is elsewhere, and goes to a new place.
-    pub(super) fn leave(&self, ramp: usize) {
+    /// Notes that a block is elsewhere, and goes to a new place.
+    pub(super) fn leave(&self, index: usize) {
         let mut ring = self.ring();
-        ring.ramps[ramp - self.ramps.start] = Ramp::Elsewhere;
-        ring.place = anywhere(ring.ramps.len());
+        ring.blocks[index] = Block::Elsewhere;
+        ring.place = anywhere(ring.blocks.len());
     }
 
-    /// Strikes out ramps that are done, and returns the number of those that were free or elsewhere.
-    pub(super) fn strike(&self, marks: &[Mark]) -> usize {
+    /// Strikes out the blocks that are done, and returns the number of their ramps.
+    pub(super) fn strike(&self, is_done: impl Fn(&Range<usize>) -> bool) -> usize {
         let mut ring = self.ring();
-        let all = ring.ramps.iter_mut().zip(marks);
-        let done = all.filter(|(ramp, mark)| **ramp != Ramp::Gone && **mark != Mark::Open);
-        done.map(|(ramp, _)| *ramp = Ramp::Gone).count()
+        let all = self.blocks.iter().zip(&mut ring.blocks).filter(|(_, block)| **block != Block::Gone);
+        let done = all.filter(|(ramps, _)| is_done(ramps));
+        done.map(|(ramps, block)| {
+            *block = Block::Gone;
+            ramps.len()
+        })
+        .sum()
     }
 
-    /// Returns the ramps that are elsewhere.
-    pub(super) fn elsewhere(&self) -> Vec<usize> {
+    /// Returns the blocks that are elsewhere.
+    pub(super) fn elsewhere(&self) -> Vec<Range<usize>> {
         let ring = self.ring();
-        let all = self.ramps.clone().zip(&ring.ramps);
-        all.filter(|(_, state)| **state == Ramp::Elsewhere).map(|(ramp, _)| ramp).collect()
+        let all = self.blocks.iter().zip(&ring.blocks);
+        all.filter(|(_, state)| **state == Block::Elsewhere).map(|(ramps, _)| ramps.clone()).collect()
     }
 
-    /// Lets this many ramps that are elsewhere be tried.
+    /// Lets a number of blocks that are elsewhere be tried.
     pub(super) fn retry(&self, count: usize) {
         let mut ring = self.ring();
-        ring.place = anywhere(ring.ramps.len());
+        ring.place = anywhere(ring.blocks.len());
         for _ in 0..count {
-            ring.turn(Ramp::Elsewhere, Ramp::Free);
+            ring.turn(Block::Elsewhere, Block::Free);
         }
     }
 
@@ -81,17 +84,17 @@ impl Queue {
 }
 
 impl Ring {
-    /// Finds the next ramp of a kind, changes its kind, and returns its index.
-    fn turn(&mut self, from: Ramp, to: Ramp) -> Option<usize> {
-        let mut ring = (self.place..self.ramps.len()).chain(0..self.place);
-        let found = ring.find(|index| self.ramps[*index] == from)?;
-        self.ramps[found] = to;
+    /// Finds the next block of a kind, changes its kind, and returns its index.
+    fn turn(&mut self, from: Block, to: Block) -> Option<usize> {
+        let mut ring = (self.place..self.blocks.len()).chain(0..self.place);
+        let found = ring.find(|index| self.blocks[*index] == from)?;
+        self.blocks[found] = to;
         self.place = found + 1;
         Some(found)
     }
 }
 
-/// Returns a random place among this many. It has no influence on results.
+/// Returns a random place below this number. It has no influence on results.
 fn anywhere(count: usize) -> usize {
     // The standard library seeds its hash tables from the system: a random number that needs no dependency.
     let random = RandomState::new().build_hasher().finish();

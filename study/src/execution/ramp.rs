@@ -1,73 +1,257 @@
-//! One ramp, value after value.
+//! One ramp, value after value: each is read if it is finished, continued if it was begun, and otherwise run
+//! from its start.
 
+use std::collections::HashSet;
+use std::ops::Range;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use super::active::{Active, Early, Partial, Value};
 use super::earlier::SameRamps;
-use super::shift::Shift;
-use crate::folder::{Lock, Mark};
+use super::session::{LOOK, Session};
+use crate::experiment::record::{Contents, Record};
+use crate::json::Object;
 use crate::plan::refinement::{Seen, Step};
-use crate::{Experiment, Record, StudyError};
+use crate::store::{Claimed, Entries, Head, Marks};
+use crate::whole::{self, damaged};
+use crate::{Experiment, StudyError};
 
-/// The way through a ramp.
-pub(super) struct Walk<'a, 's, E: Experiment> {
-    pub(super) shift: &'a Shift<'s, E>,
-    pub(super) ramp: usize,
-    /// True if nothing was ever run here, so no file need be looked for.
-    pub(super) is_fresh: bool,
-    pub(super) lock: Lock,
-    pub(super) earlier: SameRamps<'a, E>,
-    pub(super) seen: Vec<Seen>,
-    last: Option<Record<E>>,
-    /// [`Mark::Failed`] once the engine could not finish a value.
-    mark: Mark,
+/// Shortest piece of a run, so that it advances even if it is saved all the time.
+const SHORTEST: Duration = Duration::from_millis(20);
+
+/// The reason why a value does not go on.
+enum Pause {
+    Done,
+    Interrupted,
+    Early(Early),
 }
 
-/// Runs a ramp until it is done or must stop. Returns false if another process runs it or has done it.
-pub(super) fn attempt<E: Experiment>(shift: &Shift<'_, E>, ramp: usize) -> Result<bool, StudyError> {
-    let (folder, plan) = (&shift.study.folder, shift.study.plan());
-    let Some((lock, is_fresh)) = folder.take(ramp)? else { return Ok(false) };
-    if !is_fresh && !shift.control.verifies && folder.marks(ramp..ramp + 1)? != [Mark::Open] {
-        return Ok(false);
+/// The way through a ramp.
+struct Walk<'a, 's, E: Experiment> {
+    session: &'a Session<'s, E>,
+    ramp: usize,
+    /// What the store had when the ramp was claimed.
+    entries: &'a Entries,
+    unfinished: &'a HashSet<[usize; 2]>,
+    earlier: SameRamps<'a, E>,
+    seen: Vec<Seen>,
+    last: Option<Record<E>>,
+    /// True if there is a file of the next value half done.
+    has_partial: bool,
+}
+
+/// Runs the ramps of a block until they are done or the run must stop. Returns false if another process does
+/// them.
+pub(super) fn attempt<E: Experiment>(
+    session: &Session<'_, E>,
+    ramps: &Range<usize>,
+) -> Result<bool, StudyError> {
+    let study = session.study;
+    let _claim = match study.claims.claim(ramps)? {
+        Claimed::Ours(claim) => Some(claim),
+        Claimed::Collision if session.is_of_one_ramp() => None,
+        Claimed::Theirs | Claimed::Collision => return Ok(false),
+    };
+    // Others may have done some of them before this process had the claim.
+    let (entries, unfinished) = (study.store.refreshed()?, study.folder.unfinished()?);
+    if let Some(error) = study.store.damage().filter(|_| !ramps.clone().all(|ramp| entries.is_done(ramp))) {
+        session.if_sound::<()>(Err(error))?;
     }
-    let earlier = shift.earlier.ramps(plan.ramp_seed(ramp));
-    let (seen, mark) = (Vec::new(), Mark::Done);
-    let mut walk = Walk { shift, ramp, is_fresh, lock, earlier, seen, last: None, mark };
-    while let Some(step) = plan.next(&walk.seen) {
-        if !walk.take(step)? {
-            return Ok(true);
+    for ramp in ramps.clone() {
+        if session.must_stop() {
+            break;
+        }
+        if entries.is_done(ramp) && !session.control.verifies {
+            session.skip(1);
+            continue;
+        }
+        let earlier = session.earlier.ramps(study.plan().ramp_seed(ramp));
+        let (entries, unfinished, seen) = (&entries, &unfinished, Vec::new());
+        let mut walk =
+            Walk { session, ramp, entries, unfinished, earlier, seen, last: None, has_partial: false };
+        while let Some(step) = study.plan().next(&walk.seen) {
+            if !walk.take(step)? {
+                break;
+            }
         }
     }
-    folder.mark(ramp, walk.mark)?;
     Ok(true)
 }
 
 impl<E: Experiment> Walk<'_, '_, E> {
     /// Takes a step; returns false if its value was interrupted.
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
-        let value = self.seen.len();
-        if value >= self.shift.study.plan().value_count() {
-            self.shift.count_more();
+        let (study, value) = (self.session.study, self.seen.len());
+        self.has_partial = self.unfinished.contains(&[self.ramp, value]);
+        if value >= study.plan().value_count() {
+            self.session.count_more();
         }
-        let found = match self.known(step)? {
-            None if self.shift.must_stop() => None,
-            None => {
-                let before = match step.before {
-                    // A bisection starts from an earlier value.
-                    Some(before) if before + 1 < value => self.shift.study.record(self.ramp, before)?,
-                    _ => self.last.take(),
-                };
-                self.new_value(step, before.as_ref())?
-            }
-            known => known,
+        if let Some(record) = self.known(step)? {
+            self.seen.push(study.plan().seen(&record));
+            self.last = Some(record);
+            return Ok(true);
+        }
+        if self.session.must_stop() {
+            return Ok(false);
+        }
+        let before = match step.before {
+            // A bisection starts from an earlier value.
+            Some(before) if before + 1 < value => study.record(self.ramp, before)?,
+            _ => self.last.take(),
         };
-        let Some(record) = found else { return Ok(false) };
-        let is_failed = record.outcome().reason().is_some();
-        self.mark = if is_failed { Mark::Failed } else { self.mark };
-        self.shift.count(|summary| {
-            summary.finished += 1;
-            summary.failed += usize::from(is_failed);
-            summary.warned += usize::from(!record.counters().warnings().is_empty());
-        });
-        self.seen.push(self.shift.study.plan().seen(&record));
+        let started = Instant::now();
+        let Some((record, is_taken)) = self.new_value(step, before.as_ref())? else { return Ok(false) };
+        self.seen.push(study.plan().seen(&record));
+        self.keep(&record, (!is_taken).then(|| started.elapsed()))?;
         self.last = Some(record);
         Ok(true)
     }
+
+    /// Returns the record of the next value, if it is finished.
+    fn known(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
+        let (study, ramp, value) = (self.session.study, self.ramp, self.seen.len());
+        let Some(entry) = self.entries.find(ramp, value) else { return Ok(None) };
+        let read = study.read(&entry).and_then(|record| {
+            // It may belong to another step, if an earlier value was run again since.
+            if (record.leg(), record.ramped_value()) == (step.leg, step.at) {
+                return Ok(Some(record));
+            }
+            let reason = format!("value {value} of ramp {ramp}: it is of another value");
+            Err(damaged(&study.store.log_of(&entry), reason))
+        });
+        let record = self.session.if_sound(read)?;
+        if record.is_some() {
+            self.advance(study.plan().protocol().steps());
+            // A process that was killed just after it had finished a value may have left this file.
+            self.forget_partial(value)?;
+        }
+        Ok(record)
+    }
+
+    /// Runs the next value from a record, or takes it over from an earlier study, which the flag tells; `None`
+    /// if it was interrupted.
+    fn new_value(
+        &mut self,
+        step: Step,
+        before: Option<&Record<E>>,
+    ) -> Result<Option<(Record<E>, bool)>, StudyError> {
+        let (study, value) = (self.session.study, self.seen.len());
+        // A plan of many values has not tried all of them.
+        let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
+        let origin = study.origin(self.ramp, value);
+        let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
+        let mut earlier = self.earlier.next(&study.plan, &self.seen, step)?;
+        if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
+            self.advance(study.plan.protocol().steps());
+            return Ok(Some((work.taken_over(record), true)));
+        }
+        let mut active = match self.saved(&work)? {
+            Some(active) => active,
+            None => work.begin(earlier)?,
+        };
+        self.advance(active.steps());
+        let record = match self.steps(&mut active)? {
+            Pause::Done => active.record()?,
+            Pause::Interrupted => return Ok(None),
+            Pause::Early(early) => active.ended(early)?,
+        };
+        Ok(Some((record, false)))
+    }
+
+    /// Returns an unfinished value as it was saved, if there is one.
+    fn saved<'v>(&mut self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
+        let (study, index) = (self.session.study, self.seen.len());
+        if !self.has_partial {
+            return Ok(None);
+        }
+        let path = study.folder.partial(self.ramp, index);
+        let read = whole::read_sealed::<Partial<E>>(&path).and_then(|partial| {
+            let Some(partial) = partial else { return Ok(None) };
+            study.check_origin(&partial.0, self.ramp, index, &path)?;
+            value.go_on(partial)?.map(Some).map_err(|reason| damaged(&path, reason))
+        });
+        self.session.if_sound(read)
+    }
+
+    /// Runs the steps of a value until it is finished, piece by piece, and saves it now and then.
+    fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Pause, StudyError> {
+        let control = self.session.control;
+        let (began, mut saved) = (Instant::now(), Instant::now());
+        while !active.is_done() {
+            if self.session.must_stop() {
+                self.save(active)?;
+                return Ok(Pause::Interrupted);
+            }
+            if saved.elapsed() > control.save_interval {
+                self.save(active)?;
+                saved = Instant::now();
+            }
+            let rest = self.session.study.plan.protocol().steps() - active.steps();
+            let until_save = control.save_interval.saturating_sub(saved.elapsed());
+            let ended = match control.most_seconds.filter(|most| began.elapsed().as_secs_f64() > *most) {
+                Some(most) => Err(Early::Limited(format!("it has taken more than {most} s"))),
+                None => active.step(until_save.clamp(SHORTEST, LOOK)),
+            };
+            match ended {
+                Ok(true) => self.advance(1),
+                Ok(false) => {}
+                Err(early) => {
+                    self.advance(rest);
+                    return Ok(Pause::Early(early));
+                }
+            }
+        }
+        Ok(Pause::Done)
+    }
+
+    fn save(&mut self, active: &Active<'_, E>) -> Result<(), StudyError> {
+        self.has_partial = true;
+        let folder = &self.session.study.folder;
+        let path = folder.partial(self.ramp, self.seen.len());
+        let partial = active.partial().map_err(|source| StudyError::Encode { path: path.clone(), source })?;
+        folder.make_room_for_unfinished()?;
+        whole::write_sealed::<Partial<E>>(&path, &partial)
+    }
+
+    /// Keeps the record of a value, the last one that was seen.
+    fn keep(&self, record: &Record<E>, time: Option<Duration>) -> Result<(), StudyError> {
+        let study = self.session.study;
+        self.session.open_study()?;
+        let is_last = study.plan.next(&self.seen).is_none();
+        let marks = Marks::default().with(Marks::LAST, is_last);
+        let marks = marks.with(Marks::FAILED, record.outcome().reason().is_some());
+        let marks = marks.with(Marks::WARNED, !record.counters().warnings().is_empty());
+        let seconds = time.map_or(f32::NAN, |time| time.as_secs_f32());
+        let head = Head { ramp: self.ramp, value: record.value_index(), edition: 0, marks, seconds };
+        let line = line(record, time);
+        study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents, &line)?;
+        self.forget_partial(record.value_index())
+    }
+
+    fn forget_partial(&self, value: usize) -> Result<(), StudyError> {
+        if !self.has_partial {
+            return Ok(());
+        }
+        whole::remove(&self.session.study.folder.partial(self.ramp, value))
+    }
+
+    /// Counts steps of the next value.
+    fn advance(&self, steps: u64) {
+        self.session.advance(self.ramp, self.seen.len(), steps);
+    }
+}
+
+/// Returns the line of a record for people, with the time that it took, unless it was taken over.
+fn line<E: Experiment>(record: &Record<E>, time: Option<Duration>) -> String {
+    let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
+    let line = Object::default().with("ramp", record.ramp_index()).with("value", record.value_index());
+    let line = line.text("outcome", record.outcome().name());
+    let line = record.outcome().reason().into_iter().fold(line, |line, reason| line.text("reason", reason));
+    let warnings: Vec<String> = record.counters().warnings().iter().map(ToString::to_string).collect();
+    let line = if warnings.is_empty() { line } else { line.text("warnings", &warnings.join("; ")) };
+    let line = line.with("collisions", record.counters().disk_collisions);
+    let line = match time {
+        None => line.with("taken_over", true),
+        Some(time) => line.with("seconds", format_args!("{:.3}", time.as_secs_f64())),
+    };
+    line.with("unix_time", unix_time).line()
 }

@@ -1,34 +1,63 @@
 //! Runs in slices, of which an observer notices nothing.
 
-use std::time::Duration;
-
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 use granular_edmd::simulation::{Limits, RunEnd, RunError, Simulation};
 
-/// Runs until an absolute time, or for this wall-clock time at most.
+use crate::{ExperimentError, SavedDriving};
+
+/// What rides along beside the observer.
+#[derive(Default)]
+pub(super) struct Riders {
+    pub(super) driving: Option<Box<dyn SavedDriving>>,
+    pub(super) companion: Option<Box<dyn Observer>>,
+    /// True if the companion has seen the start of a run, and not its end.
+    pub(super) is_under_way: bool,
+}
+
+impl Riders {
+    /// Returns the driving as bytes.
+    pub(super) fn saved(&self) -> Result<Option<Vec<u8>>, ExperimentError> {
+        self.driving.as_ref().map(|driving| driving.save()).transpose()
+    }
+}
+
+/// Runs until a limit.
 ///
-/// `is_under_way` tells whether an earlier slice has begun the run. The observer sees one start and one end,
-/// however many slices there are.
+/// `is_under_way` is true if an earlier slice has begun the run. The observer sees one start and one end,
+/// however many slices there are. So does the companion, of which each process has one of its own.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
-    end: f64,
-    slice: Duration,
+    limits: &Limits,
+    riders: &mut Riders,
     observer: &mut O,
     is_under_way: &mut bool,
 ) -> Result<RunEnd, RunError> {
     let mut sliced = Sliced { observer, is_under_way: *is_under_way };
-    let ended = simulation.run(&Limits::until(end).with_wall_clock(slice), &mut sliced);
-    *is_under_way = matches!(ended, Ok(RunEnd::WallClock));
-    if !*is_under_way {
-        observer.on_end(&simulation.snapshot());
-    }
-    // A verdict to stop comes too late now. A failure must still be reported, as after any run.
-    let failed = observer.verdict().err().filter(|_| !*is_under_way && ended.is_ok());
-    match failed {
-        Some(source) => Err(RunError::Observer { time: simulation.time(), source }),
-        None => ended,
+    let driving = riders.driving.as_deref_mut();
+    let ended = match &mut riders.companion {
+        None => run_to(simulation, limits, driving, &mut sliced),
+        Some(companion) => {
+            let mut other = Sliced { observer: companion, is_under_way: riders.is_under_way };
+            // One more kind of event loop for all companions.
+            let both: &mut dyn Observer = &mut (&mut sliced, &mut other);
+            let ended = run_to(simulation, limits, driving, both);
+            other.end(ended, &mut riders.is_under_way, &simulation.snapshot())
+        }
+    };
+    sliced.end(ended, is_under_way, &simulation.snapshot())
+}
+
+fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
+    simulation: &mut Simulation<R, B>,
+    limits: &Limits,
+    driving: Option<&mut (dyn SavedDriving + 'static)>,
+    observer: &mut O,
+) -> Result<RunEnd, RunError> {
+    match driving {
+        Some(driving) => simulation.run_driven(limits, driving, observer),
+        None => simulation.run(limits, observer),
     }
 }
 
@@ -38,9 +67,31 @@ struct Sliced<'a, O> {
     is_under_way: bool,
 }
 
+impl<O: Observer> Sliced<'_, O> {
+    /// Tells the observer of the end of a run that is not cut.
+    fn end(
+        self,
+        ended: Result<RunEnd, RunError>,
+        is_under_way: &mut bool,
+        moment: &Snapshot<'_>,
+    ) -> Result<RunEnd, RunError> {
+        *is_under_way = matches!(ended, Ok(RunEnd::WallClock));
+        if *is_under_way {
+            return ended;
+        }
+        self.observer.on_end(moment);
+        // A verdict to stop comes too late now. A failure must still be reported, as after any run.
+        match self.observer.verdict().err().filter(|_| ended.is_ok()) {
+            Some(source) => Err(RunError::Observer { time: moment.time(), source }),
+            None => ended,
+        }
+    }
+}
+
 impl<O: Observer> Observer for Sliced<'_, O> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        if !self.is_under_way {
+        // A driven run starts anew after each kick.
+        if !std::mem::replace(&mut self.is_under_way, true) {
             self.observer.on_start(start);
         }
     }

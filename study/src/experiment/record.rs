@@ -10,7 +10,7 @@ use granular_edmd::statistics::{BlockedMean, Estimate};
 
 use crate::maker::Maker;
 use crate::parameters;
-use crate::{Experiment, Leg, Scalar};
+use crate::{Experiment, ExperimentError, Interval, Leg, Scalar};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -40,7 +40,18 @@ pub enum Outcome {
         /// Message of the engine.
         reason: String,
     },
-    /// The engine gave up for another reason.
+    /// The value reached a limit: the collisions of its
+    /// [protocol](crate::Protocol::with_most_collisions), or the seconds of a
+    /// [control](crate::Control::with_most_seconds).
+    ///
+    /// The samples and the next value are as for a stalled value.
+    Limited {
+        /// Time since the start of the ramp.
+        time: f64,
+        /// The limit.
+        reason: String,
+    },
+    /// The engine gave up for another reason, or a method of the experiment did.
     ///
     /// The samples and the next value are as for a stalled value.
     Failed {
@@ -58,14 +69,17 @@ impl Outcome {
             Self::Completed => "completed",
             Self::Stopped { .. } => "stopped",
             Self::Stalled { .. } => "stalled",
+            Self::Limited { .. } => "limited",
             Self::Failed { .. } => "failed",
         }
     }
 
-    /// Returns the message of the engine, if it could not finish the value: the outcome is stalled or failed.
+    /// Returns the reason why the value was not finished: it stalled, failed, or reached a limit.
     pub fn reason(&self) -> Option<&str> {
         match self {
-            Self::Stalled { reason, .. } | Self::Failed { reason, .. } => Some(reason),
+            Self::Stalled { reason, .. } | Self::Failed { reason, .. } | Self::Limited { reason, .. } => {
+                Some(reason)
+            }
             Self::Completed | Self::Stopped { .. } => None,
         }
     }
@@ -94,8 +108,11 @@ pub(crate) struct Contents<S, O> {
     pub(crate) counters: Counters,
     /// Fingerprints of the rule and the walls that made the value.
     pub(crate) parts: [Option<Fingerprint>; 2],
-    /// State at the end, if it is kept.
+    /// Number of steps that are done.
+    pub(crate) steps: u64,
+    /// State at the end, and the driving then, if the state is kept.
     pub(crate) state: Option<Checkpoint>,
+    pub(crate) driving: Option<Vec<u8>>,
 }
 
 /// The measurements of a value.
@@ -213,13 +230,21 @@ impl<E: Experiment> Record<E> {
         self.contents.state.as_ref()
     }
 
+    /// Returns the walls at the end of the value. One that was not finished ends where it began.
+    pub(crate) fn last_boundary(&self, last: &Interval) -> Result<E::Boundary, ExperimentError> {
+        match self.outcome().reason() {
+            Some(_) => self.experiment.boundary(),
+            None => self.experiment.boundary_in(last, self.observer()),
+        }
+    }
+
     /// Returns the name of the rule or the walls if they are not those with which the value was run. Rules
     /// and walls without fingerprints cannot be told apart.
-    pub(crate) fn changed_part(&self) -> Option<&'static str> {
+    pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
             Some("rule")
-        } else if self.experiment.boundary().is_ok_and(|now| now.fingerprint() != boundary) {
+        } else if self.last_boundary(last).is_ok_and(|now| now.fingerprint() != boundary) {
             Some("boundary")
         } else {
             None

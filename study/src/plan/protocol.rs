@@ -3,6 +3,8 @@
 use granular_edmd::ParameterError;
 use granular_edmd::quantity::accept;
 
+use crate::Interval;
+
 /// Greatest length of a value in cycles, and largest number of samples, for which products stay exact.
 const MOST: u64 = 1 << 40;
 
@@ -25,6 +27,8 @@ pub struct Protocol {
     samples: u64,
     every: u64,
     phase: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    most_collisions: Option<u64>,
 }
 
 crate::gate::from_file! {
@@ -33,8 +37,12 @@ crate::gate::from_file! {
         samples: u64,
         every: u64,
         #[serde(default = "end")]
-        phase: f64
-    } => Self::new(settle, samples, every)?.with_phase(phase), ParameterError
+        phase: f64,
+        most_collisions: Option<u64>
+    } => {
+        let protocol = Self::new(settle, samples, every)?.with_phase(phase)?;
+        most_collisions.map_or(Ok(protocol), |most| protocol.with_most_collisions(most))
+    }, ParameterError
 }
 
 const fn end() -> f64 {
@@ -56,7 +64,7 @@ impl Protocol {
         count(1..=MOST, "sampling interval in cycles", "in 1..=2^40", every)?;
         let total = u128::from(settle) + u128::from(samples) * u128::from(every);
         accept(total <= u128::from(MOST), "length of a value in cycles", "at most 2^40", total as f64)?;
-        Ok(Self { settle, samples, every, phase: 1.0 })
+        Ok(Self { settle, samples, every, phase: 1.0, most_collisions: None })
     }
 
     /// Returns the same protocol with samples at this phase of their cycle, in `(0, 1]`; the default is 1,
@@ -67,6 +75,24 @@ impl Protocol {
     pub fn with_phase(self, phase: f64) -> Result<Self, ParameterError> {
         accept(phase > 0.0 && phase <= 1.0, "phase of the samples", "in (0, 1]", phase)?;
         Ok(Self { phase, ..self })
+    }
+
+    /// Returns the same protocol with at most this number of collisions in a value, with disks or walls.
+    ///
+    /// A value that reaches it ends with [`Outcome::Limited`](super::Outcome::Limited), so that one value of a
+    /// sweep cannot take as long as all others together.
+    ///
+    /// # Errors
+    /// If the number is 0, or above 2^63 − 1, the largest one that a plan can hold.
+    pub fn with_most_collisions(self, most: u64) -> Result<Self, ParameterError> {
+        let is_possible = (1..=i64::MAX as u64).contains(&most);
+        accept(is_possible, "largest number of collisions", "in 1..2^63", most as f64)?;
+        Ok(Self { most_collisions: Some(most), ..self })
+    }
+
+    /// Returns the largest number of collisions in a value, if there is one.
+    pub const fn most_collisions(&self) -> Option<u64> {
+        self.most_collisions
     }
 
     /// Returns the number of cycles that a value settles before its samples.
@@ -126,6 +152,16 @@ impl Protocol {
     /// Returns whether a step ends with a sample.
     pub(crate) const fn is_sampled(&self, step: u64) -> bool {
         step >= self.settling_steps()
+    }
+
+    /// Returns the last step of a value of which these steps are done.
+    pub(crate) fn last_of(&self, steps: u64) -> Interval {
+        self.interval(self.steps().saturating_sub(1).min(steps))
+    }
+
+    /// Returns the step of this index.
+    pub(crate) fn interval(&self, index: u64) -> Interval {
+        Interval { index, sample: index.checked_sub(self.settling_steps()) }
     }
 
     /// Returns the time from a sample to the end of its step, in cycles.

@@ -14,6 +14,7 @@ use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Control, Experiment, Plan, Protocol, Study};
 
 use crate::limits::{Limits, in_child};
+use crate::logs;
 use crate::mixture::{Mixture, mixture};
 use crate::report::report;
 use crate::specimens::{Scratch, checkpoint};
@@ -38,16 +39,20 @@ fn own_plan() -> Plan<Mixture> {
     Plan::new(mixture(), Protocol::new(10, 80, 2).unwrap(), 5).unwrap().with_axis(axis).unwrap()
 }
 
-/// Returns all files of a study but its log, which contains times.
+/// Returns all files of a study whose bytes do not depend on how often it was stopped, and each record as if it
+/// were a file.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = PathBuf::from(path.file_name().unwrap());
-        if path.is_dir() {
-            files.extend(contents(&path).into_iter().map(|(inner, bytes)| (name.join(inner), bytes)));
-        } else if !path.ends_with("log.jsonl") {
-            files.insert(name, fs::read(&path).unwrap());
+    let mut files = logs::records(folder);
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(folder).unwrap().to_owned();
+            if path.is_dir() {
+                folders.push(path);
+            } else if logs::is_the_same_always(&name) {
+                files.insert(name, fs::read(&path).unwrap());
+            }
         }
     }
     files
@@ -187,8 +192,7 @@ fn a_disk_that_turns_read_only_keeps_what_it_has() {
     let Some(disk) = Disk::new("read-only-disk", "16m") else { return };
     let folder = disk.folder().join("study");
     assert_eq!(run(&folder, &plan()), Ok(true));
-    fs::remove_file(folder.join("ramps/0001/0000.record")).unwrap();
-    fs::remove_file(folder.join("done")).unwrap();
+    logs::forget(&folder, 1, 0);
     let path = disk.folder().join("state");
     let [old, new] = two_states();
     old.write(&path).unwrap();
@@ -210,7 +214,7 @@ fn a_folder_of_somebody_else_is_an_error() {
     let folder = scratch.0.join("study");
     assert_eq!(run(&folder, &plan()), Ok(true));
     // There is something to do again.
-    fs::remove_file(folder.join("done")).unwrap();
+    logs::forget(&folder, 1, 0);
     let before = contents(&folder);
     let executable = std::env::current_exe().unwrap();
     let output = Command::new("setpriv")

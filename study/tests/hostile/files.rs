@@ -8,6 +8,7 @@ use proptest::prelude::*;
 
 use crate::cases::config;
 use crate::edits::{edit, edited};
+use crate::logs;
 use crate::mixture::Mixture;
 use crate::specimens::Scratch;
 use crate::studies::{done_study, own_plan, plan};
@@ -24,16 +25,24 @@ fn damaged(bytes: &[u8], stride: usize) -> impl Iterator<Item = Vec<u8>> {
 
 fn damaged_records(name: &str, stride: usize) {
     let (scratch, study) = done_study(name, &plan());
-    let path = scratch.0.join("ramps/0000/0000.record");
-    let sound = fs::read(&path).unwrap();
-    for (case, bytes) in damaged(&sound, stride).enumerate() {
-        fs::write(&path, bytes).unwrap();
-        let error = study.record(0, 0).unwrap_err();
-        assert!(
-            matches!(&error, StudyError::Damaged { path: named, .. } if *named == path),
-            "{case}: {error}"
-        );
+    let sound = study.record(0, 0).unwrap().unwrap();
+    drop(study);
+    let (path, place) = logs::place(&scratch.0, 0, 0);
+    let all = fs::read(&path).unwrap();
+    for (case, bytes) in damaged(&all[place.clone()], stride).enumerate() {
+        let is_cut = bytes.len() < place.len();
+        let rest = if is_cut { &[] } else { &all[place.end..] };
+        fs::write(&path, [&all[..place.start], &bytes, rest].concat()).unwrap();
+        match Study::<VibratedBox>::open(&scratch.0).unwrap().record(0, 0) {
+            Ok(found) => assert!(is_cut && found.is_none(), "{case}"),
+            Err(error) => {
+                let is_named = matches!(&error, StudyError::Damaged { path: named, .. } if *named == path);
+                assert!(is_named && !is_cut, "{case}: {error}");
+            }
+        }
     }
+    fs::write(&path, all).unwrap();
+    assert!(Study::open(&scratch.0).unwrap().record(0, 0).unwrap() == Some(sound));
 }
 
 /// The test flips a bit of nearly each byte, in turn.

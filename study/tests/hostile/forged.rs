@@ -8,7 +8,8 @@ use granular_edmd_study::{Control, Experiment, Plan, Record, Study};
 
 use crate::forging::{LITTLE, STRIDE, forged, none_panics, stride};
 use crate::limits::in_child;
-use crate::specimens::resume;
+use crate::logs;
+use crate::specimens::{CONTENTS_AT, resume};
 use crate::studies::{done_study, own_plan, plan, run_steps, stopped_study};
 
 #[test]
@@ -32,14 +33,15 @@ fn forged_records() {
 /// Reads all forgeries of a record; what is accepted is looked at, and takes part in the study.
 fn forge_records<E: Experiment>(name: &str, plan: &Plan<E>, look: impl Fn(&Record<E>)) {
     let (scratch, study) = done_study(name, plan);
-    let path = scratch.0.join("ramps/0000/0001.record");
-    let file = fs::read(&path).unwrap();
+    drop(study);
+    let file = [&[0; CONTENTS_AT], logs::record(&scratch.0, 0, 1).as_slice()].concat();
     none_panics(forged(&file, stride()), |bytes| {
-        fs::write(&path, bytes).unwrap();
+        logs::replace(&scratch.0, 0, 1, &bytes[CONTENTS_AT..]);
+        let study = Study::<E>::open(&scratch.0).unwrap();
         let Ok(Some(record)) = study.record(0, 1) else { return };
         look(&record);
         // All values have records, so this call reads them and writes tables.
-        let _ = Study::<E>::open(&scratch.0).unwrap().run(&Control::default().with_verification());
+        let _ = study.run(&Control::default().with_verification());
     });
 }
 
@@ -52,13 +54,13 @@ fn forged_partials() {
 
 fn forge_partials<E: Experiment>(name: &str, plan: &Plan<E>) {
     let (scratch, study) = stopped_study(name, plan, 8);
-    let path = scratch.0.join("ramps/0000/0001.partial");
+    let path = scratch.0.join("unfinished/0000-0001");
     let file = fs::read(&path).unwrap();
     none_panics(forged(&file, stride()), |bytes| {
         fs::write(&path, bytes).unwrap();
         match run_steps(&study, 8) {
             Ok(summary) => assert!(summary.redone.iter().all(|redone| *redone == path)),
-            Err(error) => assert!(error.to_string().contains("0001.partial"), "{error}"),
+            Err(error) => assert!(error.to_string().contains("0000-0001"), "{error}"),
         }
     });
 }

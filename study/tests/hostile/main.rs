@@ -15,6 +15,8 @@ mod forging;
 mod intruders;
 #[cfg(unix)]
 mod limits;
+#[path = "../support/logs.rs"]
+mod logs;
 #[path = "../support/mixture.rs"]
 mod mixture;
 mod numbers;

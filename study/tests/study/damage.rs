@@ -7,34 +7,49 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use granular_edmd_study::vibrated_box::VibratedBox;
 use granular_edmd_study::{Control, Progress, Study, StudyError};
 
+use crate::logs;
 use crate::support::{AnyError, Scratch, TEMPORARY, assert_same, contents, done, small_plan};
 
 #[test]
 fn damage_is_noticed_named_and_repaired() -> Result<(), AnyError> {
     let (scratch, study) = done(&small_plan(), "damaged");
     let expected = contents(&scratch.0);
-    let path = scratch.0.join("ramps/0001/0002.record");
-    let sound = fs::read(&path)?;
+    drop(study);
+    let (log, place) = logs::place(&scratch.0, 1, 2);
+    let sound = fs::read(&log)?;
     let flipped = |at: usize| {
         let mut bytes = sound.clone();
         bytes[at] ^= 0x10;
         bytes
     };
-    let another = fs::read(scratch.0.join("ramps/0001/0003.record"))?;
-    let cut = [0, 7, 10, 40, sound.len() / 2, sound.len() - 1].map(|length| sound[..length].to_vec());
-    let changed = [0, 9, 20, 60, sound.len() - 1].map(flipped);
-    for bytes in cut.into_iter().chain(changed).chain([another]) {
-        fs::write(&path, bytes)?;
+    let another = logs::record(&scratch.0, 1, 3);
+    logs::replace(&scratch.0, 1, 2, &another);
+    let another = fs::read(&log)?;
+    let mark = place.start;
+    let changed = [mark, mark + 4, mark + 9, mark + 24, mark + 40, mark + 60, place.end - 1].map(flipped);
+    for bytes in changed.into_iter().chain([another]) {
+        fs::write(&log, bytes)?;
+        let study = Study::<VibratedBox>::open(&scratch.0)?;
         let error = study.record(1, 2).unwrap_err();
-        assert!(matches!(&error, StudyError::Damaged { path: named, .. } if *named == path), "{error}");
-        assert!(study.records().any(|record| record.is_err()));
+        assert!(matches!(&error, StudyError::Damaged { path, .. } if *path == log), "{error}");
+        assert!(study.write_tables().is_err());
         let summary = study.run(&Control::default().with_verification())?;
         assert!(summary.is_complete());
-        assert_eq!(summary.redone, std::slice::from_ref(&path));
+        assert_eq!(summary.redone, std::slice::from_ref(&log));
+        assert!(contents(&scratch.0) == expected);
+        assert!(Study::<VibratedBox>::open(&scratch.0)?.records().all(|record| record.is_ok()));
+    }
+    // A log that was cut has whole records or none.
+    for length in [place.start, place.start + 10, place.end - 1] {
+        fs::write(&log, &sound[..length])?;
+        let study = Study::<VibratedBox>::open(&scratch.0)?;
+        assert!(study.record(1, 2)?.is_none());
+        assert!(study.run(&Control::default())?.is_complete());
         assert!(contents(&scratch.0) == expected);
     }
-    let log = fs::read_to_string(scratch.0.join("ramps/0001/log.jsonl"))?;
-    assert!(log.contains(r#"{"damaged":"0001/0002.record","reason":"its checksum does not match"}"#));
+    let log = logs::lines(&scratch.0);
+    let told = r#"{"damaged":"0000.records","reason":"value 2 of ramp 1: its checksum does not match"}"#;
+    assert!(log.contains(told), "{log}");
     for line in log.lines() {
         serde_json::from_str::<serde_json::Value>(line)?;
     }
@@ -51,7 +66,7 @@ fn a_damaged_half_done_value_is_started_again() -> Result<(), AnyError> {
     let summary = study.run(&Control::default().with_interrupt(&stop).with_progress(&progress))?;
     assert!(!summary.is_complete());
     // The ramp that reported its progress first has begun.
-    let partials = [0, 1].map(|ramp| scratch.0.join(format!("ramps/{ramp:04}/0000.partial")));
+    let partials = [0, 1].map(|ramp| scratch.0.join(format!("unfinished/{ramp:04}-0000")));
     let partial = partials.into_iter().find(|path| path.exists()).ok_or("nothing was begun")?;
     let bytes = fs::read(&partial)?;
     fs::write(&partial, &bytes[..bytes.len() / 2])?;

@@ -12,12 +12,12 @@ use crate::support::{AnyError, Scratch, TEMPORARY, contents, done, small_box, sm
 fn only_temporary_files_of_the_library_are_removed() -> Result<(), AnyError> {
     let scratch = Scratch::new("temporaries");
     let study = Study::create(&scratch.0, &small_plan())?;
-    fs::create_dir_all(scratch.0.join("ramps/0000"))?;
-    let theirs = ["data.tmp", "granular-edmd.tmp", "ramps/0000/0001.record.tmp", "ramps/0000/notes.tmp"];
+    fs::create_dir_all(scratch.0.join("unfinished"))?;
+    let theirs = ["data.tmp", "granular-edmd.tmp", "unfinished/0000-0001.tmp", "unfinished/notes.tmp"];
     for name in theirs {
         fs::write(scratch.0.join(name), name)?;
     }
-    for folder in ["", "ramps/0000"] {
+    for folder in ["", "unfinished"] {
         fs::write(scratch.0.join(folder).join(TEMPORARY), "of a killed process")?;
     }
     fs::create_dir(scratch.0.join("granular-edmd-4711-1-0123456789abcdef.tmp"))?;
@@ -25,7 +25,7 @@ fn only_temporary_files_of_the_library_are_removed() -> Result<(), AnyError> {
     for name in theirs {
         assert_eq!(fs::read_to_string(scratch.0.join(name))?, name);
     }
-    for folder in ["", "ramps/0000"] {
+    for folder in ["", "unfinished"] {
         assert!(!scratch.0.join(folder).join(TEMPORARY).exists(), "{folder}");
     }
     Ok(())
@@ -40,10 +40,12 @@ fn folders_that_cannot_be_used_are_named() -> Result<(), AnyError> {
     let other = Plan::new(small_box(), Protocol::new(1, 1, 1)?, 1)?;
     assert!(matches!(Study::open_or_create(&scratch.0, &other), Err(StudyError::Different { .. })));
     // A file where a folder should be cannot be written into, not even by the superuser.
-    fs::write(scratch.0.join("ramps"), "not a folder")?;
-    let error = study.run(&Control::default()).unwrap_err();
-    assert!(error.to_string().starts_with("cannot create"), "{error}");
-    assert!(error.to_string().contains("ramps"), "{error}");
+    for name in ["locks", "logs"] {
+        fs::write(scratch.0.join(name), "not a folder")?;
+        let error = study.run(&Control::default()).unwrap_err().to_string();
+        assert!(error.starts_with("cannot ") && error.contains(name), "{error}");
+        fs::remove_file(scratch.0.join(name))?;
+    }
     let error = Study::create(scratch.0.join("README.txt"), &small_plan()).unwrap_err();
     assert!(matches!(error, StudyError::Io { .. }), "{error}");
     Ok(())
@@ -145,9 +147,23 @@ fn a_plan_edited_after_the_start_is_refused_with_what_differs() -> Result<(), An
     fs::write(&path, fs::read_to_string(&path)?.replace("seed = 7", "seed = 8"))?;
     let told = study.run(&Control::default()).unwrap_err().to_string();
     assert!(told.contains("seed is 8 there and 7 here"), "{told}");
-    assert!(!scratch.0.join("ramps").exists());
+    assert!(!scratch.0.join("logs").exists());
     // Written otherwise, it is the same plan.
     fs::write(&path, format!("# a comment\n{}", small_plan().to_toml()?))?;
     assert!(study.run(&Control::default())?.is_complete());
+    Ok(())
+}
+
+/// Records of version 0.3 are files of their own, which this version does not read.
+#[test]
+fn a_study_of_version_0_3_is_refused_by_name() -> Result<(), AnyError> {
+    let (scratch, _) = done(&small_plan(), "outdated");
+    fs::remove_dir_all(scratch.0.join("logs"))?;
+    fs::create_dir_all(scratch.0.join("ramps/0000"))?;
+    for error in [Study::<VibratedBox>::open(&scratch.0), Study::open_or_create(&scratch.0, &small_plan())] {
+        let error = error.unwrap_err();
+        assert!(matches!(&error, StudyError::Outdated { path } if *path == scratch.0), "{error}");
+        assert!(error.to_string().contains("cargo install granular-edmd@0.3"), "{error}");
+    }
     Ok(())
 }

@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use granular_edmd_study::vibrated_box::{Sides, VibratedBox};
 use granular_edmd_study::{Axis, Control, Course, Experiment, Plan, PlanError, Protocol, Ramp, Study, Width};
 
+use crate::logs;
 use crate::mixture::{Mixture, mixture};
 use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, small_box};
 
-/// Returns the number of values that a ramp's log says were taken over.
+/// Returns the number of values that the logs say were taken over.
 fn taken<E: Experiment>(study: &Study<E>) -> usize {
-    let log = |ramp| fs::read_to_string(study.folder().join(format!("ramps/{ramp:04}/log.jsonl"))).unwrap();
-    (0..study.plan().ramp_count()).map(|ramp| log(ramp).matches("taken_over").count()).sum()
+    logs::lines(study.folder()).matches("taken_over").count()
 }
 
 /// Does these plans, then a larger one after them, and checks that it is as if it had done everything.
@@ -182,7 +182,7 @@ fn what_must_not_differ_is_named() -> Result<(), AnyError> {
         let study = Study::create(scratch.0.join(index.to_string()), &plan)?;
         let error = report(&study.run(&Control::default().with_earlier_studies(&from)).unwrap_err());
         assert!(error.contains(reason), "{error}");
-        assert!(!study.folder().join("ramps").exists(), "{error}");
+        assert!(!study.folder().join("logs").exists(), "{error}");
     }
     Ok(())
 }

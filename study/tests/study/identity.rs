@@ -173,9 +173,9 @@ fn accepted_code_goes_on_and_tables_tell_which_made_what() -> Result<(), AnyErro
 fn a_record_of_other_code_is_refused() -> Result<(), AnyError> {
     let (mine, theirs) = (half_done("identity-mine"), Scratch::new("identity-theirs"));
     Study::create(&theirs.0, &plan::<SAMPLE>())?.run(&Control::default())?;
-    fs::create_dir_all(mine.0.join("ramps/0001"))?;
-    fs::copy(theirs.0.join("ramps/0001/0000.record"), mine.0.join("ramps/0001/0000.record"))?;
-    let error = Study::open_or_create(&mine.0, &plan::<AS_IT_WAS>())?.run(&Control::default()).unwrap_err();
+    fs::copy(theirs.0.join("logs/0000.records"), mine.0.join("logs/9999.records"))?;
+    let study = Study::open_or_create(&mine.0, &plan::<AS_IT_WAS>())?;
+    let error = study.run(&Control::default().with_verification()).unwrap_err();
     assert!(matches!(error, StudyError::Changed { part: "revision", .. }), "{error}");
     Ok(())
 }

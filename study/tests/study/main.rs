@@ -7,6 +7,8 @@ mod folders;
 mod growth;
 mod identity;
 mod interruption;
+#[path = "../support/logs.rs"]
+mod logs;
 #[path = "../support/mixture.rs"]
 mod mixture;
 mod own;
@@ -17,6 +19,7 @@ mod random;
 mod refinement;
 #[path = "../support/report.rs"]
 mod report;
+mod riders;
 mod support;
 mod tables;
 mod values;

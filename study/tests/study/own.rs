@@ -13,6 +13,7 @@ use granular_edmd_study::{
 };
 use serde::{Deserialize, Serialize};
 
+use crate::logs;
 use crate::mixture::{Mixture, Sticky, mixture};
 use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions};
@@ -70,12 +71,14 @@ fn an_own_experiment_goes_on_with_the_same_bytes() {
 fn a_damaged_record_of_one_s_own_is_done_again() -> Result<(), AnyError> {
     let (scratch, study) = done("own-damaged");
     let before = contents(&scratch.0);
-    let path = scratch.0.join("ramps/0002/0001.record");
-    let sound = fs::read(&path)?;
+    drop(study);
+    let sound = logs::record(&scratch.0, 2, 1);
     for cut in [0, 20, sound.len() / 2, sound.len() - 1] {
-        fs::write(&path, &sound[..cut])?;
+        logs::replace(&scratch.0, 2, 1, &sound[..cut]);
+        let study = Study::<Mixture>::open(&scratch.0)?;
         assert!(matches!(study.record(2, 1), Err(StudyError::Damaged { .. })));
-        assert_eq!(study.run(&Control::default().with_verification())?.redone, std::slice::from_ref(&path));
+        let redone = study.run(&Control::default().with_verification())?.redone;
+        assert_eq!(redone, [scratch.0.join("logs/0000.records")]);
         assert!(contents(&scratch.0) == before);
     }
     Ok(())
@@ -324,7 +327,7 @@ fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
     for summary in [study.run(&Control::default())?, study.run(&Control::default().with_verification())?] {
         assert_eq!((summary.finished, summary.failed), (3, 3));
     }
-    let log = fs::read_to_string(scratch.0.join("ramps/0000/log.jsonl"))?;
+    let log = logs::lines(&scratch.0);
     assert!(log.contains(r#""outcome":"stalled","reason":"#), "{log}");
     let points = fs::read_to_string(scratch.0.join("points.csv"))?;
     assert!(points.starts_with("point,value,leg,repeats,failed,height,"), "{points}");

@@ -7,6 +7,7 @@ use granular_edmd_study::{
     Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError, Width,
 };
 
+use crate::logs;
 use crate::mixture::{Mixture, mixture};
 use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions, small_box};
@@ -80,17 +81,19 @@ fn an_interrupted_refinement_goes_on_with_the_same_bytes() {
 fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
     let (scratch, study) = done("refined-damaged");
     let before = contents(&scratch.0);
+    drop(study);
+    let log = scratch.0.join("logs/0000.records");
     for value in [1, 9] {
-        let path = scratch.0.join(format!("ramps/0001/{value:04}.record"));
-        fs::write(&path, "cut")?;
-        assert!(matches!(study.record(1, value), Err(StudyError::Damaged { .. })));
-        assert_eq!(study.run(&Control::default().with_verification())?.redone, [path]);
+        logs::replace(&scratch.0, 1, value, b"cut");
+        let study = Study::<Mixture>::open(&scratch.0)?;
+        assert!(matches!(study.record(1, value as usize), Err(StudyError::Damaged { .. })));
+        assert_eq!(study.run(&Control::default().with_verification())?.redone, [log.clone()]);
         assert!(contents(&scratch.0) == before);
     }
     // The place in the record of another half shows that it is another one.
-    let [first, second] = ["0007", "0008"].map(|value| scratch.0.join(format!("ramps/0000/{value}.record")));
-    fs::copy(&first, &second)?;
-    assert_eq!(study.run(&Control::default().with_verification())?.redone, [second]);
+    logs::replace(&scratch.0, 0, 8, &logs::record(&scratch.0, 0, 7));
+    let study = Study::<Mixture>::open(&scratch.0)?;
+    assert_eq!(study.run(&Control::default().with_verification())?.redone, [log]);
     assert!(contents(&scratch.0) == before);
     Ok(())
 }

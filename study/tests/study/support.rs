@@ -10,6 +10,8 @@ use std::time::Duration;
 use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Control, Course, Experiment, Plan, Progress, Protocol, Ramp, Study};
 
+use crate::logs;
+
 pub(crate) type AnyError = Box<dyn std::error::Error>;
 
 pub(crate) const BASE: Base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
@@ -48,17 +50,19 @@ impl Drop for Scratch {
     }
 }
 
-/// Returns all files of a study but the log, which has the times.
+/// Returns all files of a study whose bytes do not depend on how its work was divided, and each record as if it
+/// were a file.
 pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = BTreeMap::new();
+    let mut files = logs::records(folder);
     let mut folders = vec![folder.to_owned()];
     while let Some(next) = folders.pop() {
         for entry in fs::read_dir(next).unwrap() {
             let path = entry.unwrap().path();
+            let name = path.strip_prefix(folder).unwrap().to_owned();
             if path.is_dir() {
                 folders.push(path);
-            } else if !path.ends_with("log.jsonl") {
-                files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            } else if logs::is_the_same_always(&name) {
+                files.insert(name, fs::read(&path).unwrap());
             }
         }
     }

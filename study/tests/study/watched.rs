@@ -15,6 +15,7 @@ use granular_edmd_study::{
 };
 use serde::{Deserialize, Serialize};
 
+use crate::logs;
 use crate::report::report;
 use crate::support::{AnyError, Scratch};
 
@@ -124,11 +125,13 @@ fn names_of_columns_may_be_made_when_the_program_runs() -> Result<(), AnyError> 
     );
     // A file that the experiment refuses, for whatever reason, is logged in a line of JSON, and done again.
     REFUSED.store(1, Ordering::Relaxed);
-    fs::remove_file(scratch.0.join("done"))?;
-    assert_eq!(study.run(&Control::default())?.redone.len(), 1);
-    let log = fs::read_to_string(scratch.0.join("ramps/0000/log.jsonl"))?;
+    assert_eq!(study.run(&Control::default().with_verification())?.redone.len(), 1);
+    let log = logs::lines(&scratch.0);
     let lines: Vec<serde_json::Value> = log.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
-    assert!(lines.iter().any(|line| line["reason"] == "a \"bad\"\nfile of C:\\data"), "{log}");
+    assert!(
+        lines.iter().any(|line| line["reason"] == "value 0 of ramp 0: a \"bad\"\nfile of C:\\data"),
+        "{log}"
+    );
     Ok(())
 }
 

@@ -1,17 +1,17 @@
-//! The files of a study, each whole or absent, and sealed if it holds a record.
+//! The small files of a study, each whole or absent, and sealed if it holds a value half done.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
-use granular_edmd::file::{Damage, Seal, is_temporary, unique_name, write_unsynced, write_whole};
+use granular_edmd::file::{Damage, Seal, is_temporary, unique_name, write_whole};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::StudyError;
 
-/// Mark of a record, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANSTUD", 4);
+/// Mark of a value half done, and the version of the format that this crate writes and reads.
+const SEAL: Seal = Seal::new(*b"GRANPART", 5);
 
 /// Writes a file, whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
@@ -40,25 +40,37 @@ pub(crate) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     published
 }
 
-/// Writes data with a magic number, a version and a checksum. The data must read back as they were written.
-/// Unless they are cheap, they outlast a loss of power.
+/// Returns data as bytes, which read back as they were written.
+pub(crate) fn encoded<T: DeserializeOwned + Serialize>(
+    data: &impl Serialize,
+) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
+    let contents = postcard::to_stdvec(data)?;
+    let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
+    if again.is_ok_and(|again| again == contents) {
+        return Ok(contents);
+    }
+    Err("a sample or observer does not read back as it is written: its type must not have `#[serde(untagged)]`, \
+         `flatten`, `skip` or `skip_serializing_if`"
+        .into())
+}
+
+/// Reads data that [`encoded`] has made.
+pub(crate) fn decoded<T: DeserializeOwned>(contents: &[u8]) -> Result<T, &'static str> {
+    match postcard::take_from_bytes(contents) {
+        Ok((data, [])) => Ok(data),
+        Ok(_) => Err("there is more in it than there should be"),
+        Err(_) => Err("its contents make no sense"),
+    }
+}
+
+/// Writes data with a magic number, a version and a checksum.
 pub(crate) fn write_sealed<T: DeserializeOwned + Serialize>(
     path: &Path,
     data: &impl Serialize,
-    are_cheap: bool,
 ) -> Result<(), StudyError> {
-    let cannot = |source| StudyError::Encode { path: path.to_owned(), source };
-    let contents = postcard::to_stdvec(data).map_err(|error| cannot(Box::new(error)))?;
-    let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
-    if again.is_ok_and(|again| again == contents) {
-        let write = if are_cheap { write_unsynced } else { write_whole };
-        return write(path, &SEAL.seal(&contents)).map_err(StudyError::io("write", path));
-    }
-    Err(cannot(
-        "a sample or observer does not read back as it is written: its type must not have `#[serde(untagged)]`, \
-         `flatten`, `skip` or `skip_serializing_if`"
-            .into(),
-    ))
+    let contents = encoded::<T>(data);
+    let contents = contents.map_err(|source| StudyError::Encode { path: path.to_owned(), source })?;
+    write(path, &SEAL.seal(&contents))
 }
 
 /// Reads data that [`write_sealed`] has written; `None` if there is no such file.
@@ -73,16 +85,12 @@ pub(crate) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
 
 fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
     let contents = SEAL.open(bytes).map_err(|broken| match broken {
-        Damage::Foreign => "it does not begin as a record",
+        Damage::Foreign => "it does not begin as a value half done",
         Damage::Version(_) => "it has another version of the format",
         Damage::Cut => "it was cut",
         _ => "its checksum does not match",
     })?;
-    match postcard::take_from_bytes(contents) {
-        Ok((data, [])) => Ok(data),
-        Ok(_) => Err("there is more in it than there should be"),
-        Err(_) => Err("its contents make no sense"),
-    }
+    decoded(contents)
 }
 
 /// Removes a file, if it is there.

@@ -1,0 +1,257 @@
+//! Logs: files that grow by whole pieces, each with a head, a checksum and contents.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::{Damage, Growing, Seal};
+
+/// First bytes of every piece, by which the next one is found after a damage.
+const MARK: [u8; 4] = *b"\xabPC\n";
+
+/// Number of bytes of the head of a piece.
+pub const HEAD: usize = 16;
+
+/// Bytes before the contents: mark, head, length, check of these, checksum of the contents.
+const BEFORE: usize = 4 + HEAD + 4 + 8 + 16;
+
+/// Bytes before the first piece: first bytes and version of the format.
+const START: u64 = 12;
+
+/// A log: a file to which one process appends, while any number of others may read.
+///
+/// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or a
+/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be alone.
+///
+/// ```
+/// use granular_edmd::file::{Log, Seal, read_piece};
+///
+/// const SEAL: Seal = Seal::new(*b"MY STORE", 1);
+/// # let path = std::env::temp_dir().join(format!("granular-edmd-log-{}", std::process::id()));
+/// let mut log = Log::open(&path, SEAL)?;
+/// // The head is for an index: the value 7 of 12, for example.
+/// log.push(*b"value 7 of 12   ", b"contents")?;
+///
+/// let found = Log::read(&path, SEAL, 0)?;
+/// assert_eq!(found.pieces[0].head, *b"value 7 of 12   ");
+/// let mut file = std::fs::File::open(&path)?;
+/// assert_eq!(read_piece(&mut file, &found.pieces[0])?, Ok(b"contents".to_vec()));
+/// # std::fs::remove_file(&path)?;
+/// # Ok::<(), std::io::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Log {
+    file: Growing<File>,
+}
+
+/// The head of a piece, and the place of its contents.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Piece {
+    /// The head, for an index.
+    pub head: [u8; HEAD],
+    /// Place of the contents in the file.
+    pub start: u64,
+    /// Number of bytes of the contents.
+    pub length: u32,
+}
+
+/// The pieces of a log, from some place on.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct Pieces {
+    /// The pieces that are whole, in their order. Their checksums are not compared.
+    pub pieces: Vec<Piece>,
+    /// End of the last one: the next look begins here.
+    pub end: u64,
+    /// True if something that is no piece stands before a piece.
+    pub is_damaged: bool,
+}
+
+impl Log {
+    /// Opens a log to append to it, which is created if it is not there.
+    ///
+    /// # Errors
+    /// If the file cannot be opened, or is of another format or version ([`io::ErrorKind::InvalidData`]).
+    pub fn open(path: &Path, seal: Seal) -> io::Result<Self> {
+        let end = if path.exists() { Self::read(path, seal, 0)?.end } else { 0 };
+        let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
+        let mut file = Growing::new(path, file, end, Vec::new());
+        if end < START {
+            file.length = 0;
+            file.push(&seal.start(), &[])?;
+        }
+        Ok(Self { file })
+    }
+
+    /// Appends a piece, whole or not at all.
+    ///
+    /// # Errors
+    /// If the system cannot write it, or the contents have 4 GiB or more.
+    pub fn push(&mut self, head: [u8; HEAD], contents: &[u8]) -> io::Result<()> {
+        let length = u32::try_from(contents.len()).map_err(io::Error::other)?;
+        let mut bytes = Vec::with_capacity(BEFORE + contents.len());
+        bytes.extend_from_slice(&MARK);
+        bytes.extend_from_slice(&head);
+        bytes.extend_from_slice(&length.to_le_bytes());
+        bytes.extend_from_slice(&check(&bytes));
+        bytes.extend_from_slice(&blake3::hash(contents).as_bytes()[..16]);
+        bytes.extend_from_slice(contents);
+        self.file.push(&bytes, &[])
+    }
+
+    /// Waits until the system has stored everything.
+    ///
+    /// # Errors
+    /// If it cannot.
+    pub fn sync(&self) -> io::Result<()> {
+        self.file.medium.sync_data()
+    }
+
+    /// Finds the pieces of a log from a place on: 0, or the [end](Pieces::end) of an earlier look.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
+    pub fn read(path: &Path, seal: Seal, from: u64) -> io::Result<Pieces> {
+        let mut file = File::open(path)?;
+        let mut found = Pieces { end: from, ..Pieces::default() };
+        let length = file.seek(SeekFrom::End(0))?;
+        if from >= length {
+            return Ok(found);
+        }
+        file.seek(SeekFrom::Start(from))?;
+        let mut input = BufReader::with_capacity(1 << 16, file);
+        if from == 0 && !begins(&mut input, seal)? {
+            return Ok(found);
+        }
+        found.end = from.max(START);
+        while let Some(piece) = next(&mut input, found.end, length)? {
+            found.is_damaged |= piece.start - BEFORE as u64 != found.end;
+            found.end = piece.start + u64::from(piece.length);
+            found.pieces.push(piece);
+        }
+        Ok(found)
+    }
+}
+
+/// Reads the contents of a piece, or tells that they are damaged.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_piece(file: &mut File, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage>> {
+    let mut bytes = vec![0; 16 + piece.length as usize];
+    file.seek(SeekFrom::Start(piece.start - 16))?;
+    match file.read_exact(&mut bytes) {
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(Err(Damage::Cut)),
+        read => read?,
+    }
+    let contents = bytes.split_off(16);
+    Ok(if blake3::hash(&contents).as_bytes()[..16] == bytes { Ok(contents) } else { Err(Damage::Changed) })
+}
+
+/// Returns whether a log begins as it should; false if it is cut short there.
+fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
+    let mut start = Vec::new();
+    input.take(START).read_to_end(&mut start)?;
+    if seal.start() == *start {
+        return Ok(true);
+    }
+    if seal.start().starts_with(&start) {
+        return Ok(false);
+    }
+    let told = "it is of another format, or of another version of it";
+    Err(io::Error::new(io::ErrorKind::InvalidData, told))
+}
+
+/// Finds the next whole piece at a place or after it, and goes behind it.
+fn next(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
+    if length.saturating_sub(place) < BEFORE as u64 {
+        return Ok(None);
+    }
+    let mut before = [0; BEFORE];
+    input.read_exact(&mut before)?;
+    let piece = match piece_of(&before, place, length) {
+        Some(piece) => piece,
+        None => match search(input, place, length)? {
+            Some(piece) => piece,
+            None => return Ok(None),
+        },
+    };
+    input.seek_relative(i64::from(piece.length))?;
+    Ok(Some(piece))
+}
+
+/// Finds a whole piece after something that is none.
+fn search(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
+    let mut rest = Vec::new();
+    input.seek(SeekFrom::Start(place))?;
+    input.read_to_end(&mut rest)?;
+    let mut places = rest.windows(BEFORE).enumerate().filter(|(_, bytes)| bytes.starts_with(&MARK));
+    let found = places.find_map(|(at, bytes)| piece_of(bytes.first_chunk()?, place + at as u64, length));
+    if let Some(piece) = found {
+        input.seek(SeekFrom::Start(piece.start))?;
+    }
+    Ok(found)
+}
+
+/// Returns the piece that begins at a place of a file of this length, if one does that is whole.
+fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
+    let (checked, rest) = before.split_at(4 + HEAD + 4);
+    let head = *checked[4..].first_chunk()?;
+    let size = u32::from_le_bytes(*checked.last_chunk()?);
+    let start = place + BEFORE as u64;
+    let is_whole = before.starts_with(&MARK) && check(checked) == rest[..8];
+    (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size })
+}
+
+fn check(bytes: &[u8]) -> [u8; 8] {
+    blake3::hash(bytes).as_bytes().as_chunks().0[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    const SEAL: Seal = Seal::new(*b"TEST LOG", 1);
+
+    fn pieces(path: &Path) -> Vec<Vec<u8>> {
+        let mut file = File::open(path).unwrap();
+        let found = Log::read(path, SEAL, 0).unwrap().pieces;
+        found.iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
+    }
+
+    /// However a log is cut, its whole pieces stay, and the next piece follows them. Whatever byte is changed,
+    /// no other piece is lost, and none is read as what it is not.
+    #[test]
+    fn whole_pieces_survive_cuts_and_damage() {
+        let path = std::env::temp_dir().join(format!("granular-edmd-pieces-{}", std::process::id()));
+        let _ = fs::remove_file(&path);
+        let written = [vec![1; 10], Vec::new(), vec![3; 40]];
+        let mut log = Log::open(&path, SEAL).unwrap();
+        for (index, piece) in written.iter().enumerate() {
+            log.push([index as u8; HEAD], piece).unwrap();
+        }
+        let (bytes, ends) = (fs::read(&path).unwrap(), Log::read(&path, SEAL, 0).unwrap().pieces);
+        for length in 0..=bytes.len() {
+            fs::write(&path, &bytes[..length]).unwrap();
+            let whole = ends.iter().filter(|end| end.start + u64::from(end.length) <= length as u64).count();
+            assert_eq!(pieces(&path), written[..whole], "{length}");
+            Log::open(&path, SEAL).unwrap().push([9; HEAD], b"next").unwrap();
+            let expected = [&written[..whole], &[b"next".to_vec()]].concat();
+            assert_eq!(pieces(&path), expected, "{length}");
+        }
+        for place in START as usize..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[place] ^= 4;
+            fs::write(&path, &changed).unwrap();
+            let found = pieces(&path);
+            assert_eq!(found.len(), 2, "{place}");
+            assert!(found.iter().all(|piece| written.contains(piece)), "{place}");
+        }
+        fs::write(&path, b"something else").unwrap();
+        assert_eq!(Log::open(&path, SEAL).unwrap_err().kind(), io::ErrorKind::InvalidData);
+        fs::remove_file(&path).unwrap();
+    }
+}

@@ -1,0 +1,151 @@
+//! Data that all threads of a running study share.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::earlier::Earlier;
+use super::queue::Queue;
+use crate::json::Object;
+use crate::store::{Entry, Marks};
+use crate::{Control, Experiment, Progress, Study, StudyError, Summary};
+
+/// Longest time until a thread checks whether it must stop.
+pub(super) const LOOK: Duration = Duration::from_millis(200);
+
+/// A run of a study.
+pub(super) struct Session<'a, E: Experiment> {
+    pub(super) study: &'a Study<E>,
+    pub(super) control: &'a Control<'a>,
+    pub(super) earlier: Earlier<E>,
+    /// The ramps that are to be done.
+    ramps: Range<usize>,
+    /// Number of steps that are done, and of those in all values.
+    steps: [AtomicU64; 2],
+    /// Files that were damaged and have been replaced.
+    redone: Mutex<Vec<PathBuf>>,
+    /// True once a thread has met an error.
+    ///
+    /// The others then stop as if interrupted.
+    broken: AtomicBool,
+    /// True once this run has removed the mark that the study is complete.
+    is_opened: AtomicBool,
+}
+
+impl<'a, E: Experiment> Session<'a, E> {
+    pub(super) fn new(
+        study: &'a Study<E>,
+        control: &'a Control<'a>,
+        ramps: Range<usize>,
+    ) -> Result<Self, StudyError> {
+        let values = (ramps.len() * study.plan().value_count()) as u64;
+        Ok(Self {
+            study,
+            control,
+            earlier: Earlier::open(control.earlier, study.plan())?,
+            ramps,
+            steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
+            redone: Mutex::default(),
+            broken: AtomicBool::new(false),
+            is_opened: AtomicBool::new(false),
+        })
+    }
+
+    /// Returns whether this run was asked for one ramp alone, of which an engine knows that no other process
+    /// does it.
+    pub(super) fn is_of_one_ramp(&self) -> bool {
+        self.ramps.len() == 1
+    }
+
+    /// Strikes out the blocks of a queue that are done. A verification looks at all of them.
+    pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
+        if self.control.verifies {
+            return Ok(());
+        }
+        let entries = self.study.store.refreshed()?;
+        let ramps = queue.strike(|ramps| ramps.clone().all(|ramp| entries.is_done(ramp)));
+        self.skip(ramps);
+        Ok(())
+    }
+
+    /// Counts the steps of ramps that are done.
+    pub(super) fn skip(&self, ramps: usize) {
+        let plan = self.study.plan();
+        let steps = (ramps * plan.value_count()) as u64 * plan.protocol().steps();
+        self.steps[0].fetch_add(steps, Ordering::Relaxed);
+    }
+
+    /// Counts a value that a refinement adds.
+    pub(super) fn count_more(&self) {
+        self.steps[1].fetch_add(self.study.plan().protocol().steps(), Ordering::Relaxed);
+    }
+
+    /// Counts steps of a value, and reports the progress.
+    pub(super) fn advance(&self, ramp: usize, value: usize, steps: u64) {
+        let done = self.steps[0].fetch_add(steps, Ordering::Relaxed) + steps;
+        if let Some(progress) = self.control.progress {
+            progress(&Progress { ramp, value, done, total: self.steps[1].load(Ordering::Relaxed) });
+        }
+    }
+
+    /// Returns what was read; notes a damaged file, and returns `None`.
+    pub(super) fn if_sound<T>(&self, read: Result<Option<T>, StudyError>) -> Result<Option<T>, StudyError> {
+        match read {
+            Err(StudyError::Damaged { path, reason }) => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let line = Object::default().text("damaged", &name).text("reason", &reason);
+                self.study.store.note(&line.line())?;
+                self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
+                Ok(None)
+            }
+            other => other,
+        }
+    }
+
+    /// Removes the mark that the study is complete, once in a run, before the first value that may not be in
+    /// the tables.
+    pub(super) fn open_study(&self) -> Result<(), StudyError> {
+        if self.is_opened.swap(true, Ordering::Relaxed) {
+            return Ok(());
+        }
+        self.study.folder.mark_incomplete()
+    }
+
+    /// Lets all threads stop, since one has met an error.
+    pub(super) fn break_off(&self) {
+        self.broken.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn must_stop(&self) -> bool {
+        self.control.is_interrupted() || self.broken.load(Ordering::Relaxed)
+    }
+
+    /// Sleeps for this time, or until the run must stop.
+    pub(super) fn sleep(&self, time: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < time && !self.must_stop() {
+            std::thread::sleep(LOOK.min(time.saturating_sub(start.elapsed())));
+        }
+    }
+
+    /// Returns the summary of the run.
+    pub(super) fn summary(self, mut elsewhere: Vec<usize>) -> Result<Summary, StudyError> {
+        let entries = self.study.store.refreshed()?;
+        elsewhere.retain(|ramp| !entries.is_done(*ramp));
+        let values = self.study.plan().value_count();
+        let found = || entries.of(self.ramps.clone()).map(Entry::head);
+        let with = |mark: Marks| found().filter(|head| head.marks.has(mark)).count();
+        let finished = found().count();
+        let more = found().filter(|head| head.value >= values).count();
+        // Of a refinement that is not done, at least one value is missing.
+        let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
+        let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
+        let (failed, warned) = (with(Marks::FAILED), with(Marks::WARNED));
+        let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
+        redone.sort();
+        redone.dedup();
+        Ok(Summary { finished, failed, warned, total, elsewhere, redone })
+    }
+}

@@ -1,0 +1,71 @@
+//! Riders of a value beside its observer: a driving that is saved with it, and a companion that is not.
+
+use std::path::Path;
+
+use granular_edmd::simulation::Driving;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::ExperimentError;
+
+/// A [`Driving`] that a study saves with a value half done, and goes on with.
+///
+/// Every driving that serde writes and reads is one.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a driving that can be saved",
+    note = "implement `simulation::Driving`, and derive `Serialize` and `Deserialize`"
+)]
+pub trait SavedDriving: Driving + Send {
+    /// Returns the driving as bytes.
+    ///
+    /// # Errors
+    /// If serde cannot write it.
+    fn save(&self) -> Result<Vec<u8>, ExperimentError>;
+
+    /// Takes the state of a driving that was saved.
+    ///
+    /// # Errors
+    /// If the bytes are of another driving.
+    fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError>;
+}
+
+impl<D: Driving + Serialize + DeserializeOwned + Send> SavedDriving for D {
+    fn save(&self) -> Result<Vec<u8>, ExperimentError> {
+        Ok(postcard::to_stdvec(self)?)
+    }
+
+    fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError> {
+        *self = postcard::from_bytes(bytes)?;
+        Ok(())
+    }
+}
+
+/// The start of a value, or of the rest of one that was interrupted: what a
+/// [companion](super::Experiment::companion) is made for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Start<'a> {
+    /// Folder of the study.
+    pub folder: &'a Path,
+    /// Index of the ramp.
+    pub ramp: usize,
+    /// Index of the value in the ramp.
+    pub value: usize,
+    /// Seed of the ramp.
+    pub seed: u64,
+    /// Absolute time from which the run goes on.
+    pub time: f64,
+    /// True if the value goes on from where it was saved. One that was killed before its first save starts
+    /// anew, and files of its companion may be there.
+    pub is_resumed: bool,
+}
+
+/// A step of a value: a part of its settling, or the interval that ends with a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Interval {
+    /// Index of the step in its value, settling included.
+    pub index: u64,
+    /// Index of the sample with which the step ends; `None` while the value settles.
+    pub sample: Option<u64>,
+}

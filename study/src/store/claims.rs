@@ -1,0 +1,159 @@
+//! Claims: which process does which ramps, by the locks of a fixed number of files.
+
+use std::fs::{File, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use granular_edmd::file::Locked;
+
+use crate::StudyError;
+use crate::whole::if_there;
+
+/// Number of lock files.
+const LOCKS: usize = 256;
+
+/// Largest number of blocks of ramps, each of which is claimed as one. Sixty-four processes then lose a few
+/// percent at the end, when some of them have a block left and the others none.
+const BLOCKS: usize = 2048;
+
+/// A right to do some ramps. It ends with the process, even if that is killed.
+///
+/// The file of the lock stays. If it were removed, two processes could hold the locks of two different files
+/// of the same name.
+#[derive(Debug)]
+pub(crate) struct Claim(Locked);
+
+/// The answer to a claim.
+#[derive(Debug)]
+pub(crate) enum Claimed {
+    /// The ramps are for this process.
+    Ours(Claim),
+    /// Another process does them.
+    Theirs,
+    /// Another process does other ramps under the lock of these.
+    Collision,
+}
+
+/// Returns the blocks of this number of ramps.
+pub(crate) fn blocks(ramps: usize) -> impl Iterator<Item = Range<usize>> {
+    let size = ramps.div_ceil(BLOCKS).max(1);
+    (0..ramps).step_by(size).map(move |first| first..ramps.min(first + size))
+}
+
+/// The folder of the lock files.
+#[derive(Debug, Clone)]
+pub(crate) struct Claims {
+    folder: PathBuf,
+    /// Number of ramps in a block.
+    size: usize,
+}
+
+impl Claims {
+    pub(crate) fn new(root: &Path, ramps: usize) -> Self {
+        Self { folder: root.join("locks"), size: ramps.div_ceil(BLOCKS).max(1) }
+    }
+
+    fn file(&self, ramp: usize) -> PathBuf {
+        self.folder.join(format!("{:03}", ramp / self.size % LOCKS))
+    }
+
+    /// Claims ramps of one block.
+    pub(crate) fn claim(&self, ramps: &Range<usize>) -> Result<Claimed, StudyError> {
+        let path = self.file(ramps.start);
+        let file = open(&path)?;
+        match Locked::take(file) {
+            Ok(locked) => {
+                let told = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
+                told.map_err(StudyError::io("write", &path))?;
+                Ok(Claimed::Ours(Claim(locked)))
+            }
+            Err(TryLockError::WouldBlock) => {
+                let held = held(&path);
+                let are_theirs = held.is_none_or(|held| held.start < ramps.end && ramps.start < held.end);
+                Ok(if are_theirs { Claimed::Theirs } else { Claimed::Collision })
+            }
+            Err(TryLockError::Error(source)) => Err(StudyError::NoLock { path, source }),
+        }
+    }
+
+    /// Returns the ramps that processes do, as far as the system tells.
+    pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
+        let files = if_there("read", &self.folder, std::fs::read_dir(&self.folder))?;
+        let paths = files.into_iter().flatten().flatten().map(|file| file.path());
+        Ok(paths.filter(|path| is_taken(path)).filter_map(|path| held(&path)).collect())
+    }
+}
+
+/// Returns whether a process has the lock of a file.
+fn is_taken(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let locked = file.try_lock_shared();
+    let _ = file.unlock();
+    matches!(locked, Err(TryLockError::WouldBlock))
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        let _ = tell(&self.0, "");
+    }
+}
+
+/// Writes which ramps a lock is for.
+fn tell(lock: &Locked, text: &str) -> io::Result<()> {
+    let mut file = lock.file();
+    file.set_len(0)?;
+    file.seek(SeekFrom::Start(0))?;
+    file.write_all(text.as_bytes())
+}
+
+/// Returns the ramps for which a lock is held; `None` if its file does not say so.
+fn held(path: &Path) -> Option<Range<usize>> {
+    // The holder may be about to write it.
+    (0..20).find_map(|_| {
+        let mut text = String::new();
+        File::open(path).ok()?.read_to_string(&mut text).ok()?;
+        let (first, end) = text.strip_suffix('\n').and_then(|text| text.split_once("..")).or_else(|| {
+            std::thread::sleep(Duration::from_millis(1));
+            None
+        })?;
+        Some(first.parse().ok()?..end.parse().ok()?)
+    })
+}
+
+/// Opens the file of a lock, in a folder that is made if it is not there.
+pub(crate) fn open(path: &Path) -> Result<File, StudyError> {
+    let mut options = File::options();
+    options.read(true).write(true).create(true).truncate(false);
+    let opened = options.open(path);
+    let opened = match (&opened, path.parent()) {
+        (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
+            std::fs::create_dir_all(folder).map_err(StudyError::io("create", folder))?;
+            options.open(path)
+        }
+        _ => opened,
+    };
+    opened.map_err(StudyError::io("write", path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_is_seen_by_others_until_it_ends() {
+        let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
+        let claims = Claims::new(&root, 10_000);
+        let all: Vec<Range<usize>> = blocks(10_000).collect();
+        assert_eq!((all.len(), &all[1], all.last()), (2000, &(5..10), Some(&(9995..10_000))));
+        let Claimed::Ours(claim) = claims.claim(&all[1]).unwrap() else { panic!("it is free") };
+        assert!(matches!(claims.claim(&(7..8)).unwrap(), Claimed::Theirs));
+        assert!(matches!(claims.claim(&all[1 + LOCKS]).unwrap(), Claimed::Collision));
+        assert_eq!(claims.taken().unwrap(), [5..10]);
+        drop(claim);
+        assert_eq!(claims.taken().unwrap(), []);
+        assert!(matches!(claims.claim(&(7..8)).unwrap(), Claimed::Ours(_)));
+        std::fs::remove_dir_all(&root).unwrap();
+    }
+}

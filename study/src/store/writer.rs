@@ -1,0 +1,94 @@
+//! The log of one process, and beside it its lines for people, whose file is locked.
+
+use std::fs::TryLockError;
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use granular_edmd::file::{Locked, Log};
+
+use super::claims::open;
+use super::index::Head;
+use super::{SEAL, logs, unreadable};
+use crate::StudyError;
+
+/// Seconds of work that a loss of power may cost.
+const AT_RISK: f32 = 0.1;
+
+/// A log that this process alone writes.
+#[derive(Debug)]
+pub(super) struct Writer {
+    path: PathBuf,
+    log: Log,
+    lines: Locked,
+    /// True if the last line is whole.
+    is_whole: bool,
+    /// Seconds of work that are not synced.
+    at_risk: f32,
+}
+
+impl Writer {
+    /// Takes a log that no process writes, or begins one.
+    pub(super) fn open(folder: &Path) -> Result<Self, StudyError> {
+        let mut known = logs(folder)?;
+        known.sort();
+        let count = known.len();
+        // The standard library seeds its hash tables from the system: a random number that needs no dependency.
+        let start =
+            RandomState::new().build_hasher().finish().checked_rem(count as u64).unwrap_or(0) as usize;
+        known.rotate_left(start);
+        let names =
+            known.into_iter().chain((count..).map(|number| folder.join(format!("{number:04}.records"))));
+        for path in names {
+            let lines = path.with_extension("jsonl");
+            match Locked::take(open(&lines)?) {
+                Ok(lines) => {
+                    let log = Log::open(&path, SEAL).map_err(|error| match error.kind() {
+                        io::ErrorKind::InvalidData => unreadable(&path, error),
+                        _ => StudyError::io("write", &path)(error),
+                    })?;
+                    return Ok(Self { path, log, lines, is_whole: false, at_risk: 0.0 });
+                }
+                Err(TryLockError::WouldBlock) => {}
+                Err(TryLockError::Error(source)) => return Err(StudyError::NoLock { path: lines, source }),
+            }
+        }
+        Err(StudyError::NoLock { path: folder.to_owned(), source: io::ErrorKind::WouldBlock.into() })
+    }
+
+    /// Appends a piece, and a line.
+    pub(super) fn push(&mut self, head: Head, contents: &[u8], line: Option<&str>) -> Result<(), StudyError> {
+        self.log.push(head.bytes(), contents).map_err(StudyError::io("write", &self.path))?;
+        // A disk takes longer to sync than many a value to be done again.
+        self.at_risk += head.seconds.max(0.0);
+        if self.at_risk > AT_RISK {
+            self.sync()?;
+        }
+        line.into_iter().for_each(|line| self.note(line));
+        Ok(())
+    }
+
+    pub(super) fn sync(&mut self) -> Result<(), StudyError> {
+        self.at_risk = 0.0;
+        self.log.sync().map_err(StudyError::io("write", &self.path))
+    }
+
+    /// Adds a line. Lines that cannot be written are no reason to lose work, so a failure is ignored.
+    pub(super) fn note(&mut self, line: &str) {
+        let whole = if self.is_whole { Ok(self.lines.file()) } else { to_last_line_end(self.lines.file()) };
+        self.is_whole = whole.and_then(|mut end| end.write_all(format!("{line}\n").as_bytes())).is_ok();
+    }
+}
+
+/// Goes to the end of the last whole line, and removes what follows it.
+fn to_last_line_end(mut file: &std::fs::File) -> io::Result<&std::fs::File> {
+    let mut bytes = Vec::new();
+    file.rewind()?;
+    file.read_to_end(&mut bytes)?;
+    let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1) as u64;
+    if whole < bytes.len() as u64 {
+        file.set_len(whole)?;
+    }
+    file.seek(SeekFrom::Start(whole))?;
+    Ok(file)
+}
