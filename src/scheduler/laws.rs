@@ -79,7 +79,7 @@ impl<S: EventScheduler> Performance<S> {
 
     fn run(mut self) -> Result<(), Violation> {
         self.compare(|| "before the first reset".to_owned())?;
-        let mut operation = (self.script.start)(&mut self.stage, self.disks);
+        let mut operation = self.script.start(&mut self.stage, self.disks);
         for step in 0..self.script.steps {
             self.step = step;
             self.stage.note(&operation);
@@ -119,12 +119,8 @@ impl<S: EventScheduler> Performance<S> {
         self.scheduler.upcoming(&mut named);
         let Self { script, disks, step, .. } = *self;
         let (name, sentence) = (script.name, "the look at upcoming disks changes others");
-        require!(
-            named.starts_with(&kept),
-            PART,
-            "hint",
-            "script \"{name}\" of {disks} disks, step {step}: {sentence}"
-        );
+        require!(PART, "hint", named.starts_with(&kept);
+            "script \"{name}\" of {disks} disks, step {step}: {sentence}");
         self.compare(|| "after a look at upcoming disks".to_owned())
     }
 }

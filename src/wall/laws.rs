@@ -157,12 +157,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             }
             jumps += u32::from(!self.is_integral(last, next, &whole)?);
             let [from, to] = [start, next.phase];
-            require!(
-                jumps <= JUMPS,
-                PART,
-                "displacement",
-                "between the phases {from:?} and {to:?} its displacement is not the integral of its velocity"
-            );
+            require!(PART, "displacement", jumps <= JUMPS;
+                "between the phases {from:?} and {to:?} its displacement is not the integral of its \
+                 velocity");
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
             self.answers.push(next);
             last = next;
@@ -170,7 +167,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         self.strength(start, length, &whole)?;
         for sample in self.answers.iter().rev() {
             let again = self.sample(sample.phase)?;
-            require!(again == *sample, PART, "repeatable", "{sample:?} is {again:?} when asked for again");
+            require!(PART, "repeatable", again == *sample; "{sample:?} is {again:?} when asked for again");
         }
         Ok(whole.until)
     }
@@ -181,12 +178,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = ROUNDING * self.length();
         let is_inside = displacement >= low - slack && displacement <= high + slack;
         let sentence = "is beyond its reach";
-        require!(
-            is_inside,
-            PART,
-            "reach",
-            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}"
-        );
+        require!(PART, "reach", is_inside;
+            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}");
         Ok(Sample { phase, state })
     }
 
@@ -212,13 +205,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = self.speed_rounding(from, bounds);
         let is_within = gain >= least - slack && gain <= most + slack;
         let [start, end] = [from.phase, to.phase];
-        require!(
-            is_within,
-            PART,
-            "bounds",
-            "from phase {start:?} to {end:?} its velocity changes by {gain:?}, but the bounds of its acceleration \
-             allow {least:?} to {most:?}"
-        );
+        require!(PART, "bounds", is_within;
+            "from phase {start:?} to {end:?} its velocity changes by {gain:?}, but the bounds of its \
+             acceleration allow {least:?} to {most:?}");
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
         // Given the first and the last velocity, the displacement is extreme if the acceleration is first at
@@ -227,12 +216,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
         let is_integral =
             (rise - expected).abs() <= spread + self.length_rounding(from, bounds) + slack * wait;
-        require!(
-            is_integral,
-            PART,
-            "displacement",
-            "from phase {start:?} to {end:?} it advances by {rise:?}, but its velocity says {expected:?}"
-        );
+        require!(PART, "displacement", is_integral;
+            "from phase {start:?} to {end:?} it advances by {rise:?}, but its velocity says {expected:?}");
         Ok(())
     }
 
@@ -269,12 +254,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             let slack = 4.0 * self.speed_rounding(now, bounds) / step.abs() + EXACT * scale;
             let AccelerationBounds { min, max, .. } = *bounds;
             let is_within = found >= min - slack && found <= max + slack;
-            require!(
-                is_within,
-                PART,
-                "bounds",
-                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and {max:?}"
-            );
+            require!(PART, "bounds", is_within;
+                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and \
+                 {max:?}");
         }
         Ok(())
     }
@@ -289,19 +271,11 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = bounds.min.abs().max(bounds.max.abs()) * wait * wait
             + self.length_rounding(before, &bounds)
             + self.speed_rounding(before, &bounds) * wait;
-        require!(
-            jump <= slack,
-            PART,
-            "jump",
-            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}"
-        );
+        require!(PART, "jump", jump <= slack;
+            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}");
         let is_told = self.jumps || jump >= -slack - 1e-6 * (self.high - self.low);
-        require!(
-            is_told,
-            PART,
-            "jump",
-            "at phase {until:?} it jumps by {jump:?}, but says that it never jumps"
-        );
+        require!(PART, "jump", is_told;
+            "at phase {until:?} it jumps by {jump:?}, but says that it never jumps");
         Ok(())
     }
 
@@ -325,12 +299,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
             let sentence = "is not that at phase";
-            require!(
-                !differs,
-                PART,
-                "period",
-                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}"
-            );
+            require!(PART, "period", !differs;
+                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}");
         }
         Ok(())
     }

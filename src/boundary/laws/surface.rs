@@ -27,44 +27,24 @@ const EXACT: f64 = 5e-8;
 const SAME: f64 = 1e-6;
 
 /// Checks the surface that a disk touches at this place.
-pub(super) fn check_surface<B: Boundary + ?Sized>(
-    trial: &mut Trial<'_, B>,
-    touch: Touch,
-    place: DVec2,
-) -> Result<(), Violation> {
+pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let surface = trial.boundary.surface(wall, place, time);
     let (normal, velocity, radius) = (surface.normal, surface.velocity, surface.radius);
     let is_unit = normal.is_finite() && (normal.length_squared() - 1.0).abs() <= UNIT;
-    require!(
-        is_unit,
-        PART,
-        "unit normal",
-        "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}"
-    );
-    require!(
-        velocity.is_finite(),
-        PART,
-        "finite velocity",
-        "the velocity {velocity:?} of wall {wall} at {time:?}"
-    );
+    require!(PART, "unit normal", is_unit;
+        "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}");
+    require!(PART, "finite velocity", velocity.is_finite();
+        "the velocity {velocity:?} of wall {wall} at {time:?}");
     let masses = [surface.mass, surface.tangential_mass];
     let are_possible = radius != 0.0 && !radius.is_nan() && masses.iter().all(|&mass| mass > 0.0);
-    require!(
-        are_possible,
-        PART,
-        "surface",
-        "wall {wall} has the radius {radius:?} and the masses {masses:?}"
-    );
+    require!(PART, "surface", are_possible;
+        "wall {wall} has the radius {radius:?} and the masses {masses:?}");
     let around = Around { trial, wall, place, time };
     let step = FAR * trial.radius;
     let goes_in = around.at(-step * normal, 0.0).0 - around.at(DVec2::ZERO, 0.0).0 >= (1.0 - SLOPE) * step;
-    require!(
-        goes_in,
-        PART,
-        "normal",
-        "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}"
-    );
+    require!(PART, "normal", goes_in;
+        "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}");
     // A wall that has the same surface there, such as the next brick of a corner, will do.
     let deepest = around.at(DVec2::ZERO, 0.0).1;
     let other = || around.trial.boundary.surface(deepest, place, time).normal;
@@ -81,14 +61,14 @@ pub(super) fn check_surface<B: Boundary + ?Sized>(
 }
 
 /// Overlaps with a wall around a touch.
-struct Around<'a, 'b, B: ?Sized> {
-    trial: &'a Trial<'b, B>,
+struct Around<'a, 'b> {
+    trial: &'a Trial<'b>,
     wall: usize,
     place: DVec2,
     time: f64,
 }
 
-impl<B: Boundary + ?Sized> Around<'_, '_, B> {
+impl Around<'_, '_> {
     /// Returns the depth of a somewhat larger disk that is moved, and the wall in which it is.
     fn at(&self, moved: DVec2, later: f64) -> (f64, usize) {
         let larger = WIDE * self.trial.radius;
@@ -112,12 +92,9 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         let along = |direction: DVec2| move |step: f64| self.at(step * direction, 0.0).0;
         let is_gradient = self.has_slope(-1.0, step, EXACT, along(normal))
             && self.has_slope(0.0, step, EXACT, along(normal.perp()));
-        require!(
-            is_gradient,
-            PART,
-            "normal",
-            "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}, is not the gradient of the gap"
-        );
+        require!(PART, "normal", is_gradient;
+            "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}, is not the gradient of the \
+             gap");
         Ok(())
     }
 
@@ -131,12 +108,9 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         // A step is the length that the wall goes at most. No question is about a time before the origin.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_rate = *time < 2.0 * step / scale || self.has_slope(speed / scale, step, slack, depth);
-        require!(
-            is_rate,
-            PART,
-            "velocity",
-            "wall {wall} has the velocity {speed:?} along its normal, but moves otherwise, at {place:?}, {time:?}"
-        );
+        require!(PART, "velocity", is_rate;
+            "wall {wall} has the velocity {speed:?} along its normal, but moves otherwise, at {place:?}, \
+             {time:?}");
         Ok(())
     }
 
@@ -154,13 +128,9 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
             let (velocity, other) =
                 (surface.velocity, self.trial.boundary.surface(*wall, *place + moved, *time).velocity);
             let is_same = velocity.distance(other) <= EXACT * (velocity.length() + self.trial.speed);
-            require!(
-                is_same,
-                PART,
-                "velocity",
-                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} \
-                 for one moved by {moved:?}"
-            );
+            require!(PART, "velocity", is_same;
+                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at \
+                 {other:?} for one moved by {moved:?}");
         }
         Ok(())
     }
@@ -180,13 +150,9 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         let is_smooth = (wide - narrow).abs() <= slack;
         let is_close = |expected: f64| (narrow - expected).abs() <= slack;
         let is_curvature = !is_smooth || is_close(-1.0 / (radius + size)) || is_close(-1.0 / size);
-        require!(
-            is_curvature,
-            PART,
-            "radius",
+        require!(PART, "radius", is_curvature;
             "wall {wall} has the radius {radius:?}, but depths around {place:?}, time {time:?}, have the \
-             curvature {narrow:?}"
-        );
+             curvature {narrow:?}");
         Ok(())
     }
 }

@@ -150,11 +150,13 @@ impl Promises {
         let is_between_disks = contact.radii()[1] > 0.0 && !contact.kinds().contains(&Kind::WALL);
         if self.exchange && is_between_disks && contact.radii()[1].is_finite() {
             let other = rule.impulse(&exchanged(contact));
-            check_same(contact, impulse, other, 1.0, "exchange of partners")?;
+            check_same(contact, impulse, other, 1.0, "exchange of partners")
+                .map_err(|violation| forgetful(rule, contact, impulse).unwrap_or(violation))?;
         }
         if self.mirror {
             let other = rule.impulse(&mirrored(contact));
-            check_same(contact, impulse, other, -1.0, "mirror image")?;
+            check_same(contact, impulse, other, -1.0, "mirror image")
+                .map_err(|violation| forgetful(rule, contact, impulse).unwrap_or(violation))?;
         }
         Ok(impulse)
     }
@@ -195,9 +197,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
     for index in (0..count).rev().chain((0..count).map(|step| step * STRIDE % count)) {
         let (contact, impulse) = &answers[index];
         let later = rule.impulse(contact);
-        unless(bits(*impulse) == bits(later), "repeatable", contact, *impulse, || {
-            format!("is another when asked for again: {later}, {:?}", later.regime())
-        })?;
+        check_again(contact, *impulse, later)?;
     }
     Ok(())
 }
@@ -264,6 +264,17 @@ fn check_same(
         && close(impulse.tangential(), sign * other.tangential(), impulse.normal())
         && close(impulse.couple(), -other.couple(), turning);
     unless(is_same, law, contact, impulse, || format!("is another there: {other}"))
+}
+
+fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<(), Violation> {
+    unless(bits(impulse) == bits(later), "repeatable", contact, impulse, || {
+        format!("is another when asked for again: {later}, {:?}", later.regime())
+    })
+}
+
+/// Returns the violation of a rule that forgets its answer when it is asked for it some more times.
+fn forgetful<R: CollisionRule + ?Sized>(rule: &R, contact: &Contact, impulse: Impulse) -> Option<Violation> {
+    (0..4).find_map(|_| check_again(contact, impulse, rule.impulse(contact)).err())
 }
 
 /// Returns the bits of an impulse, and its regime.
