@@ -88,6 +88,22 @@ impl ParameterError {
     }
 }
 
+/// Converts errors of these types into an error that holds its cause in a box.
+///
+/// A conversion from any error at all would also be one from the error itself, which the language has
+/// already.
+macro_rules! from_causes {
+    ($error:ident from $($cause:ty),+) => {
+        $(impl From<$cause> for $error {
+            fn from(cause: $cause) -> Self {
+                Self(cause.into())
+            }
+        })+
+    };
+}
+
+pub(crate) use from_causes;
+
 #[cfg(test)]
 mod tests {
     use super::*;

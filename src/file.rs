@@ -1,5 +1,5 @@
-//! Files that are whole or absent, logs that grow by whole pieces, and locks: what checkpoints, trajectories and
-//! studies are made of, for stores of other packages.
+//! Files that are whole or absent, logs that grow by whole pieces, and locks: what checkpoints,
+//! trajectories and studies are made of, for stores of other packages.
 //!
 //! ```
 //! use granular_edmd::file::{Damage, Seal, write_whole};

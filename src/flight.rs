@@ -27,8 +27,8 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Creates a flight of a disk of the default kind that starts at `time` with this position and velocity of
-    /// the center.
+    /// Creates a flight of a disk of the default kind that starts at `time` with this position and velocity
+    /// of the center.
     #[inline]
     pub const fn new(time: f64, position: DVec2, velocity: DVec2, acceleration: DVec2, radius: f64) -> Self {
         Self { time, position, velocity, acceleration, radius, kind: Kind::DEFAULT }

@@ -1,7 +1,7 @@
 //! The gate for values from files: they pass the same checks as those of a constructor.
 
-/// Reads a type from files: first these fields, and no others, then the value that the expression makes of
-/// them, or the error of its check, which is a `ParameterError` if no other type is named.
+/// Implements `Deserialize`: reads exactly these fields, then evaluates the expression. Its error is a
+/// `ParameterError` unless another type is named.
 ///
 /// A derived `Deserialize` would fill private fields with numbers that no constructor accepts.
 macro_rules! from_file {
@@ -32,6 +32,33 @@ macro_rules! from_file {
 }
 
 pub(crate) use from_file;
+
+/// A value without fields, as files hold it: an empty table. Some formats, TOML among them, know no unit.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Empty {}
+
+/// Lets files hold a type without fields as [`Empty`].
+macro_rules! without_fields {
+    ($($name:ident),+) => {
+        $(#[cfg(feature = "serde")]
+        impl From<crate::gate::Empty> for $name {
+            fn from(_: crate::gate::Empty) -> Self {
+                Self
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl From<$name> for crate::gate::Empty {
+            fn from(_: $name) -> Self {
+                Self {}
+            }
+        })+
+    };
+}
+
+pub(crate) use without_fields;
 
 /// Writes a number that can be infinite or NaN. It is absent then, since not all formats know these.
 #[cfg(feature = "serde")]

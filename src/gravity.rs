@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::ParameterError;
 use crate::disk::bounded;
+use crate::quantity::accept;
 
 /// Gravity: the constant acceleration of all disks in free flight.
 ///
@@ -17,8 +18,10 @@ use crate::disk::bounded;
 /// assert_eq!(Gravity::from(2.0).acceleration(), DVec2::new(0.0, -2.0));
 /// assert_eq!(Gravity::from(DVec2::new(0.3, -0.4)).downward(), 0.4);
 /// // A chute that descends to the right by 30 degrees.
-/// let slope = Gravity::tilted(1.0, 30_f64.to_radians());
+/// let slope = Gravity::tilted(1.0, 30_f64.to_radians())?;
 /// assert!((slope.rightward() - 0.5).abs() < 1e-15);
+/// assert!(Gravity::tilted(1.0, 30.0).is_err(), "degrees");
+/// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 ///
 /// Each simulation checks its gravity, when it is built and in
@@ -35,8 +38,14 @@ impl Gravity {
 
     /// Returns gravity of this strength in a box that is turned clockwise by `angle`, in radians: the floor
     /// descends to the right.
-    pub fn tilted(strength: f64, angle: f64) -> Self {
-        Self { rightward: strength * libm::sin(angle), downward: strength * libm::cos(angle) }
+    ///
+    /// # Errors
+    /// If the angle is beyond a right angle in magnitude: it was probably meant in degrees, and gravity would
+    /// pull the disks off the floor. A vector may point anywhere.
+    pub fn tilted(strength: f64, angle: f64) -> Result<Self, ParameterError> {
+        let is_slope = angle.abs() <= std::f64::consts::FRAC_PI_2;
+        accept(is_slope, "angle of a slope", "in radians, at most a right angle", angle)?;
+        Ok(Self { rightward: strength * libm::sin(angle), downward: strength * libm::cos(angle) })
     }
 
     /// Returns the component that points to the right.
@@ -67,8 +76,8 @@ impl Gravity {
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
     pub fn checked(self) -> Result<Self, ParameterError> {
-        // The exit from a cell divides by gravity, and the sign of the infinity decides whether a disk that rises
-        // ever comes back.
+        // The exit from a cell divides by gravity, and the sign of the infinity decides whether a disk that
+        // rises ever comes back.
         let rightward = bounded("gravity to the right", self.rightward)?;
         Ok(Self { rightward: rightward + 0.0, downward: bounded("gravity", self.downward)? + 0.0 })
     }

@@ -30,6 +30,7 @@ pub use random::{placed_at_random, random};
 pub use rows::placed_in_rows;
 pub use velocities::with_maxwellian_velocities;
 
+use glam::DVec2;
 use thiserror::Error;
 
 use crate::ParameterError;
@@ -37,7 +38,7 @@ use crate::boundary::Domain;
 use crate::disk::countable;
 use crate::error::Readable;
 use crate::quantity::accept;
-use crate::simulation::BuildError;
+use crate::simulation::{BuildError, FEWEST};
 
 /// An error: the disks do not fit, or cannot be placed.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -57,6 +58,18 @@ pub enum PlacementError {
         radius: f64,
         /// Interior of the boundary, up to the height to which disks were placed.
         interior: Domain,
+    },
+    /// A period of the domain is too short for a simulation of such disks: a disk would see another one and
+    /// its image at the same time.
+    #[error(
+        "a simulation needs periods of more than four diameters, but the period is {} and the diameter {}",
+        Readable(*.period), Readable(*.diameter)
+    )]
+    ShortPeriod {
+        /// The shorter period.
+        period: f64,
+        /// Diameter of the largest disk.
+        diameter: f64,
     },
     /// The disks jam before they are packed.
     #[error("the disks jam at the area fraction {reached:.4}: they would need {wanted:.4}")]
@@ -84,6 +97,13 @@ const CLOSE: f64 = 1.000_1;
 fn spacings() -> impl Iterator<Item = f64> {
     const LOOSE: f64 = 1.4;
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
+}
+
+/// Checks that the periods of a domain suit disks of this radius. The engine would refuse them later.
+fn check_periods(domain: &Domain, radius: f64) -> Result<(), PlacementError> {
+    let (DVec2 { x, y }, diameter) = (domain.periods(), 2.0 * radius);
+    let short = [x, y].into_iter().find(|&period| period > 0.0 && period <= FEWEST * diameter);
+    short.map_or(Ok(()), |period| Err(PlacementError::ShortPeriod { period, diameter }))
 }
 
 /// Cuts the interior of a boundary at a height above its bottom. A box that is periodic upward and cut below

@@ -17,6 +17,7 @@
 //! | [`Energies`] | translational, rotational and potential energy per disk |
 //! | [`Temperatures`] | horizontal, vertical and rotational temperature |
 //! | [`TemperaturesAboutFlow`] | the same about the mean velocity in each cell of a [`Grid`] |
+//! | [`HexaticOrder`] | ψ6, local and global, and the coordination number |
 //! | [`Velocities`] | velocities of all disks |
 //! | [`OfKind`] | any of these, for the disks of one kind |
 //! | [`from_fn`] | the result of a closure |
@@ -39,6 +40,7 @@
 //! | [`TransportCoefficients`] | shear and bulk viscosity, thermal conductivity |
 //! | [`Stress`] | stress tensor of the disks, kinetic and collisional |
 //! | [`Arrivals`] | disks that come to walls, by time: the flow into a sink |
+//! | [`Crossings`] | crossings of a line by direction: the flux through it |
 //! | [`WallStress`] | pressure and shear stress on walls |
 //! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
 //! | [`OfKind`], [`BetweenKinds`] | what another observer keeps, for one kind or for collisions of two |
@@ -106,16 +108,21 @@ mod collision_event;
 mod collision_histograms;
 mod compose;
 mod contract;
+mod crossings;
 mod energies;
 mod energy_change;
 mod energy_change_profile;
 mod fields;
+mod free_shares;
 mod from_fn;
 mod grid;
 mod height_profile;
+mod hexatic_order;
 mod lags;
 pub mod laws;
+mod marks;
 mod mean_squared_displacement;
+mod neighbors;
 mod order_parameters;
 mod pair_correlation;
 mod per_disk;
@@ -126,6 +133,7 @@ mod snapshot;
 mod stop;
 mod stress;
 mod stretch;
+mod system;
 mod table;
 mod tabular;
 mod temperatures;
@@ -149,6 +157,8 @@ pub use contract::Observable;
 pub use contract::Observer;
 pub(crate) use contract::verdict;
 pub use contract::{ObserverError, Verdict};
+#[doc(alias("counter", "flux", "throughput"))]
+pub use crossings::Crossings;
 pub use energies::{Energies, EnergyPerDisk};
 #[doc(alias("dissipation", "energy loss", "dE"))]
 pub use energy_change::EnergyChange;
@@ -159,8 +169,13 @@ pub use from_fn::{FromFn, OnCollision, OnSample, from_fn, on_collision, on_sampl
 pub use grid::Grid;
 #[doc(alias("density profile", "volume fraction"))]
 pub use height_profile::{DenseLayer, HeightProfile};
+#[doc(alias("psi6", "bond order", "hexagonal order"))]
+pub use hexatic_order::{Hexatic, HexaticOrder};
+pub(crate) use marks::Mark;
 #[doc(alias("MSD", "mean squared", "diffusion"))]
 pub use mean_squared_displacement::MeanSquaredDisplacement;
+#[doc(alias("coordination number", "contacts"))]
+pub use neighbors::{Neighbor, Neighbors};
 #[doc(alias("convection", "psi", "Ψ1", "Ψ2"))]
 pub use order_parameters::{ConvectionOrder, OrderParameters};
 #[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]

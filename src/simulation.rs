@@ -51,6 +51,7 @@ mod traffic;
 mod warnings;
 
 pub use builder::SimulationBuilder;
+pub(crate) use cells::FEWEST;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
 pub use driving::{Driving, Rescaling, WhiteNoise};
@@ -66,14 +67,14 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::boundary::{Boundary, Container, Overlap, Probe};
 use crate::collision::{CollisionRule, Frictional};
 use crate::instructions::Instructions;
-use crate::observable::{Observable, Partner, Snapshot};
+use crate::observable::{Mark, Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
 use builder::fit;
 use cells::Cells;
 use lookahead::Lookahead;
-use state::{Bodies, Clock};
+use state::{Bodies, Clock, Ledger};
 
 /// A system of disks that is taken from event to event.
 ///
@@ -116,6 +117,9 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     instructions: Instructions,
     scratch: Scratch,
     inlets: Vec<Inlet>,
+    ledger: Ledger,
+    /// Marks of this run and of its walls.
+    marks: [Mark; 2],
 }
 
 /// A rule that is chosen when the program runs.
@@ -215,10 +219,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # use granular_edmd::{glam::DVec2, observable::Partner};
     /// let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
     /// let run = Simulation::builder(Elastic, Container::closed(9.0, 2.0)?).disks([disk(2.0)?]).build()?;
-    /// let with = |x| Ok::<_, granular_edmd::ParameterError>(run.overlap(&disk(x)?).map(|overlap| overlap.with));
-    /// assert_eq!(with(2.75)?, Some(Partner::Disk(0)));
-    /// assert_eq!(with(0.25)?, Some(Partner::Wall(1)));
-    /// assert_eq!(with(4.0)?, None);
+    /// let with = |disk: Disk| run.overlap(&disk).map(|overlap| (overlap.with, overlap.depth));
+    /// assert_eq!(with(disk(2.75)?), Some((Partner::Disk(0), 0.25)));
+    /// assert_eq!(with(disk(0.25)?), Some((Partner::Wall(1), 0.25)));
+    /// assert_eq!(with(disk(4.0)?), None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn overlap(&self, disk: &Disk) -> Option<Overlap<Partner>> {
@@ -245,7 +249,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the present state as of the time that was asked for. [`Self::time`] may differ from that time
     /// by rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
-        Snapshot::of_run(time, self.clock.now, &self.bodies, &self.boundary, self.bodies.gravity)
+        let Self { bodies, boundary, marks, .. } = self;
+        Snapshot::of_run(time, self.clock.now, bodies, boundary, bodies.gravity, *marks)
     }
 
     /// Returns the numbers of events since the simulation was built.
@@ -288,6 +293,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity.larger())?;
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.set_gravity(gravity, self.clock.now);
+        self.ledger.has_source = true;
         self.clock.epoch_length = self.bodies.epoch_length();
         self.predict_all();
         Ok(())
@@ -307,6 +313,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
         self.count_jumps(&boundary);
         (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
+        self.ledger.has_source = true;
+        self.marks[1] = Mark::new();
         self.predict_all();
         Ok(())
     }

@@ -80,7 +80,7 @@ fn flow(arguments: &Arguments, angle: f64) -> Result<Flow, Box<dyn Error>> {
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps.iter().copied());
     let disks = initial::random(&ground, GRAINS, 0.5, 30.0, 1)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.7, 0.0, 0.5)?, 0.05)?;
-    let gravity = Gravity::tilted(1.0, angle.to_radians());
+    let gravity = Gravity::tilted(1.0, angle.to_radians())?;
     let mut run = Simulation::builder(rule, ground).disks(disks).gravity(gravity).build()?;
 
     let time = if arguments.quick { arguments.time.min(10.0) } else { arguments.time };

@@ -14,6 +14,7 @@ pub(super) use path::Path;
 use glam::DVec2;
 
 use super::Region;
+use super::area::Curve;
 use crate::Fingerprint;
 use arc::Arc;
 use segment::Segment;
@@ -175,6 +176,23 @@ impl Brick {
             }
             Shape::Arc(arc) => arc.points(STEP),
         }
+    }
+
+    /// Returns the curves on which the center of a touching disk of this radius lies. A half-line is cut off
+    /// after this length.
+    pub(super) fn curves(&self, radius: f64, length: f64) -> impl Iterator<Item = Curve> + use<> {
+        let shape = self.shape;
+        let sides = [radius, -radius].into_iter().take(if radius > 0.0 { 2 } else { 1 });
+        sides.filter_map(move |away| match shape {
+            Shape::Segment(segment) => {
+                let end = segment.to().unwrap_or(segment.from + length * segment.direction);
+                let aside = away * segment.direction.perp();
+                Some(Curve::Line(segment.from + aside, end + aside))
+            }
+            Shape::Arc(arc) => {
+                (arc.radius + away > 0.0).then_some(Curve::Circle(arc.center, arc.radius + away))
+            }
+        })
     }
 
     /// Returns the points that fix the place of the brick.

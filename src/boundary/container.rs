@@ -141,8 +141,8 @@ impl Container {
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
     ///
-    /// Initial states are placed where the wall is at the start. A blow of a disk changes when others meet the
-    /// wall, so each costs a look at all disks, and new ends for the flights that may meet it.
+    /// Initial states are placed where the wall is at the start. A blow of a disk changes when others meet
+    /// the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
     ///
     /// # Errors
     /// If the container has no such wall, or the motion of the piston has numbers that are not finite.
@@ -258,6 +258,21 @@ impl Container {
 }
 
 impl Container {
+    /// Returns the rectangle in which the center of a disk of this radius is free at a time.
+    pub(super) fn room(&self, radius: f64, time: f64) -> Region {
+        let mut room = Region::new(self.corner, self.corner + DVec2::new(self.width, self.height));
+        for plane in &self.planes {
+            let place = plane.place(time);
+            match plane.wall {
+                Wall::Left => room.min.x = place.x + radius,
+                Wall::Right => room.max.x = place.x - radius,
+                Wall::Floor => room.min.y = place.y + radius,
+                Wall::Lid => room.max.y = place.y - radius,
+            }
+        }
+        room
+    }
+
     /// Makes a rectangle periodic where the container has no walls.
     fn with_sides(&self, domain: Domain) -> Domain {
         let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };
@@ -354,6 +369,10 @@ impl Boundary for Container {
         let near =
             self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
         Overlap::deepest(near.map(|(wall, plane)| Overlap::new(wall, plane.depth(position, radius, time))))
+    }
+
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        Some(region.within(&self.room(radius, time)).area())
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

@@ -58,6 +58,11 @@ impl Domain {
         Self { periodic_ends: true, ..self }
     }
 
+    /// Returns the rectangle as a region, without its periods.
+    pub(crate) const fn region(&self) -> Region {
+        Region::new(DVec2::new(self.left, self.bottom), DVec2::new(self.right, self.top))
+    }
+
     /// Returns the width.
     pub fn width(&self) -> f64 {
         self.right - self.left
@@ -217,6 +222,12 @@ impl Region {
     /// Tells whether a place is in the rectangle. The right and the upper edge belong to its neighbors.
     pub(crate) fn contains(&self, place: DVec2) -> bool {
         place.cmpge(self.min).all() && place.cmplt(self.max).all()
+    }
+
+    /// Returns the part of the rectangle that lies in another one; it has no area if there is none.
+    pub(crate) fn within(&self, other: &Self) -> Self {
+        let min = self.min.max(other.min);
+        Self { min, max: self.max.min(other.max).max(min) }
     }
 
     /// Returns the area of the rectangle.

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
+use super::area::{Curve, Field, LOOKS, meet};
 use super::brick::Brick;
+use super::part::enclosing;
 use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
 use crate::{Disk, Fingerprint, Flight, ParameterError};
 
@@ -136,7 +138,10 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     }
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.boundary.wall_point(wall, time)
+        match wall.checked_sub(self.boundary.wall_count()) {
+            Some(index) => self.obstacles.get(index).map(Disk::position),
+            None => self.boundary.wall_point(wall, time),
+        }
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
@@ -150,6 +155,31 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn tight_fit(&self, radius: f64) -> Option<usize> {
         self.boundary.tight_fit(radius)
+    }
+
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        let all = self.boundary.area(region, radius, time)?;
+        let circles = self.obstacles.iter().flat_map(|obstacle| {
+            let contact = obstacle.radius() + radius;
+            self.images(obstacle).map(move |place| Curve::Circle(place, contact))
+        });
+        let region = region.within(&self.domain().region());
+        let curves: Vec<Curve> = circles.filter(|circle| meet(&circle.bounds(), &region)).collect();
+        let ends = curves.iter().map(|circle| (circle.bounds().min, circle.bounds().max));
+        let (low, high) = enclosing(ends);
+        let is_taken = |place: DVec2| {
+            let touches = |obstacle: &Disk| {
+                let apart = self.domain().separation(obstacle.position(), place);
+                apart.length() < obstacle.radius() + radius
+            };
+            self.obstacles.iter().any(touches)
+                && self.boundary.overlap(&Probe::new(place, radius, time)).is_none()
+        };
+        // Walls of the boundary among the obstacles are curves that only their overlaps show.
+        let is_near_wall = |circle: &Curve| self.boundary.may_touch(&circle.bounds(), radius);
+        let looks = if curves.iter().any(is_near_wall) { LOOKS } else { 1 };
+        let region = region.within(&Region::new(low, high));
+        Some(all - Field { region, curves, looks, is_free: &is_taken }.area())
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

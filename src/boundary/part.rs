@@ -56,6 +56,9 @@ pub struct Part {
     surface_speed: f64,
     /// Absolute time at which the motion has phase 0.
     start: f64,
+    /// The kinds of the disks that it stops, in order; all kinds if there are none.
+    #[cfg_attr(feature = "serde", serde(rename = "only_for"))]
+    kinds: Vec<Kind>,
 }
 
 /// Properties.
@@ -114,6 +117,31 @@ impl Part {
     #[must_use]
     pub fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }
+    }
+
+    /// Returns the same part for disks of these kinds only: all others pass through it, as through a sieve or
+    /// a membrane.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    ///
+    /// const SMALL: Kind = Kind::new(1);
+    /// let membrane = Part::polyline([(5.0, 0.0), (5.0, 4.0)].map(DVec2::from))?;
+    /// let vessel = Vessel::new(Container::closed(10.0, 4.0)?).with("membrane", membrane.only_for([SMALL]))?;
+    /// let disk = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5)?.with_velocity(DVec2::X);
+    /// let disks = [disk(1.0)?, disk(3.0)?.with_kind(SMALL)];
+    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+    /// run.run_until(4.0, &mut ())?;
+    /// assert_eq!(run.disks()[0].position().x, 6.0);
+    /// assert_eq!(run.disks()[1].position().x, 3.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn only_for(self, kinds: impl IntoIterator<Item = Kind>) -> Self {
+        let mut kinds: Vec<Kind> = kinds.into_iter().collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        Self { kinds, ..self }
     }
 
     /// Returns the same part with a surface that moves along itself at this speed, like a conveyor belt.
@@ -207,14 +235,15 @@ impl Part {
     /// If the time is not finite.
     ///
     /// ```
-    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
+    /// use granular_edmd::boundary::{Boundary, Part, Probe, Vessel};
     /// use granular_edmd::glam::DVec2;
     ///
     /// let wheel = Part::block([(0.0, 0.0), (8.0, 0.0), (8.0, 1.0), (0.0, 1.0)].map(DVec2::from))?;
     /// let wheel = wheel.with_rotation(DVec2::new(4.0, 0.5), 0.7)?.starting_at(30.0)?;
     /// let vessel = Vessel::around([("wheel", wheel)])?;
     /// // At time 30 the wheel lies as it was built.
-    /// let depth = |time| vessel.overlap(&Probe::new(DVec2::new(1.0, 1.25), 0.5, time)).map_or(0.0, |overlap| overlap.depth);
+    /// let probe = Probe::new(DVec2::new(1.0, 1.25), 0.5, 0.0);
+    /// let depth = |time| vessel.overlap(&probe.with_time(time)).map_or(0.0, |overlap| overlap.depth);
     /// assert!((depth(30.0) - 0.25).abs() < 1e-12);
     /// assert_eq!(depth(0.0), 0.0);
     /// # Ok::<(), granular_edmd::boundary::VesselError>(())
@@ -285,6 +314,19 @@ impl Part {
         matches!(self.conduct, Conduct::AbsorbingCenters)
     }
 
+    /// Returns whether disks of this kind touch the part.
+    #[inline]
+    pub(super) fn stops(&self, kind: Kind) -> bool {
+        self.kinds.is_empty() || self.kinds.contains(&kind)
+    }
+
+    /// Returns whether the part treats disks otherwise than a plain wall, so that it replaces the stretch of
+    /// a wall in which it lies.
+    pub(super) fn is_patch(&self) -> bool {
+        let is_plain = matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL;
+        !is_plain || self.surface_speed != 0.0
+    }
+
     /// Gives the part a motion along a direction, if the part can move in this way.
     fn moving(self, along: Along) -> Result<Self, VesselError> {
         Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()
@@ -302,6 +344,11 @@ impl Part {
     /// Iterates over all bricks: as given, then the corners.
     pub(super) fn all_bricks(&self) -> impl Iterator<Item = &Brick> {
         self.bricks.iter().chain(&self.corners)
+    }
+
+    /// Returns whether a place changes from free to not free only across bricks.
+    pub(super) fn is_closed(&self) -> bool {
+        corners::are_closed(&self.bricks)
     }
 
     pub(super) fn travel(&self) -> &Travel {
@@ -342,7 +389,9 @@ impl Part {
         let kind = f64::from(self.kind.number());
         let part = Fingerprint::of("Part").number(self.surface_speed).number(self.start).number(kind);
         let part = part.part(self.travel.fingerprint()?).part(self.conduct.fingerprint()?);
-        Some(self.all_bricks().fold(part, |part, brick| part.part(brick.fingerprint())))
+        let kinds =
+            self.kinds.iter().fold(part, |part, kind| part.text("only for").number(kind.number().into()));
+        Some(self.all_bricks().fold(kinds, |part, brick| part.part(brick.fingerprint())))
     }
 }
 

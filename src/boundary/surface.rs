@@ -87,8 +87,8 @@ impl<'a> Surface<'a> {
 
     /// Returns the same surface of a wall with this mass, which is guided along its normal.
     ///
-    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary takes the
-    /// opposite impulse in [`react`](super::Boundary::react).
+    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary takes
+    /// the opposite impulse in [`react`](super::Boundary::react).
     #[must_use]
     #[inline]
     pub const fn with_mass(self, mass: f64) -> Self {

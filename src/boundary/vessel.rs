@@ -4,6 +4,7 @@ mod answers;
 mod index;
 mod outline;
 mod overlap;
+mod room;
 mod search;
 
 use std::ops::Range;
@@ -77,6 +78,8 @@ pub struct Vessel {
     index: Index,
     /// The parts that move and that disks may not overlap.
     moving: Vec<u32>,
+    /// True if a part treats disks otherwise than a plain wall.
+    has_patches: bool,
     /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,
     /// The radii of all arcs with disks inside, in order, each with the index of its wall.
@@ -126,6 +129,7 @@ impl Vessel {
             walls: Vec::new(),
             index: Index::EMPTY,
             moving: Vec::new(),
+            has_patches: false,
             filled: Vec::new(),
             hollows: Vec::new(),
             origin: 0.0,
@@ -299,6 +303,7 @@ impl Vessel {
             !part.travel().is_at_rest() && !part.takes_centers()
         };
         self.moving = (0..self.parts.len() as u32).filter(moves).collect();
+        self.has_patches = self.parts.iter().any(|placed| placed.part.is_patch());
         self.filled = self.filled_cells();
         let hollows = self.walls.iter().enumerate().filter_map(|(number, wall)| {
             let hollow = wall.brick.hollow().filter(|_| !self.parts[wall.part].part.takes_centers())?;

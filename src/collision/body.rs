@@ -23,8 +23,8 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Returns the properties of a wall that resists as these masses do along its normal and along its surface;
-    /// with infinite masses, it takes any impulse without a change of its motion.
+    /// Returns the properties of a wall that resists as these masses do along its normal and along its
+    /// surface; with infinite masses, it takes any impulse without a change of its motion.
     pub(crate) const fn of_wall(kind: Kind, radius: f64, [normal, tangential]: [f64; 2]) -> Self {
         let (inverse_mass, tangential_compliance) = (1.0 / normal, 1.0 / tangential);
         let (spin_response, inverse_inertia) = (0.0, 0.0);

@@ -12,7 +12,10 @@ use crate::Fingerprint;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "crate::gate::Empty", into = "crate::gate::Empty"))]
 pub struct Elastic;
+
+crate::gate::without_fields!(Elastic);
 
 impl CollisionRule for Elastic {
     #[inline]

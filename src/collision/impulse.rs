@@ -19,6 +19,17 @@ pub enum Regime {
     ContactDuration,
     /// The contact was so slow that a remedy made it elastic.
     ElasticBelow,
+    /// The surfaces would have parted too slowly, so a remedy raised the speed.
+    LeastRebound,
+}
+
+impl Regime {
+    /// Returns whether a remedy decided the collision.
+    #[inline]
+    pub(crate) fn is_remedy(self) -> bool {
+        // The remedies come last, so that one comparison is enough.
+        self as u8 >= Self::ContactDuration as u8
+    }
 }
 
 /// The momentum that partner 1 receives along the normal and the tangent, and a couple.

@@ -1,6 +1,6 @@
 //! A least speed at which surfaces part: a remedy for matter at rest that keeps friction.
 
-use super::{CollisionRule, Contact, Impulse, KnownRule};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime};
 use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
@@ -62,7 +62,9 @@ impl<R> LeastRebound<R> {
 impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        self.rule.impulse(contact).parting_at_least(self.speed, contact)
+        let impulse = self.rule.impulse(contact);
+        let raised = impulse.parting_at_least(self.speed, contact);
+        if raised.normal() > impulse.normal() { raised.with_regime(Regime::LeastRebound) } else { raised }
     }
 
     /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.

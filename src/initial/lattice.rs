@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{CLOSE, PlacementError, countable, room, spacings};
+use super::{CLOSE, PlacementError, check_periods, countable, room, spacings};
 use crate::boundary::{Boundary, Domain, Probe};
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
@@ -13,6 +13,10 @@ const MOST_EMPTY_ROWS: usize = 1000;
 
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
+///
+/// Over a floor that moves only vertically, the columns would hop in line for ever, which a run
+/// [warns](crate::simulation::Warning::OneDirection) of. Give the disks small velocities
+/// ([`with_maxwellian_velocities`](super::with_maxwellian_velocities)).
 ///
 /// Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for that. Sites
 /// that overlap a wall ([`Boundary::overlap`]) are left out.
@@ -35,6 +39,7 @@ pub fn lattice<B: Boundary + ?Sized>(
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
     countable(count)?;
+    check_periods(&boundary.domain(), radius)?;
     let interior = boundary.interior();
     let room = room(&interior, radius);
     let mut most = 0;
@@ -73,6 +78,7 @@ pub fn even_lattice<B: Boundary + ?Sized>(
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
     countable(count)?;
+    check_periods(&boundary.domain(), radius)?;
     let interior = boundary.interior();
     accept(interior.top.is_finite(), "top of the interior", "finite", interior.top)?;
     if count == 0 {

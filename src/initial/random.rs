@@ -4,7 +4,7 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{PlacementError, countable, cut, room};
+use super::{PlacementError, check_periods, countable, cut, room};
 use crate::Disk;
 use crate::boundary::Squares;
 use crate::boundary::{Boundary, Domain, Probe};
@@ -76,6 +76,7 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
 ) -> Result<Vec<Disk>, PlacementError> {
     countable(disks.len())?;
     let interior = cut(boundary.interior(), below)?;
+    check_periods(&boundary.domain(), disks.iter().map(Disk::radius).fold(0.0, f64::max))?;
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut squares = Squares::new(&boundary.domain(), disks.iter().map(Disk::radius));
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));

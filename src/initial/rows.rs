@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{PlacementError, countable, spacings};
+use super::{PlacementError, check_periods, countable, spacings};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain, Probe};
 
@@ -33,6 +33,7 @@ pub fn placed_in_rows<B: Boundary + ?Sized>(
     disks: Vec<Disk>,
 ) -> Result<Vec<Disk>, PlacementError> {
     countable(disks.len())?;
+    check_periods(&boundary.domain(), disks.iter().map(Disk::radius).fold(0.0, f64::max))?;
     let mut most = 0;
     for spacing in spacings() {
         let mut rows = Rows::new(boundary, &disks, spacing);

@@ -26,6 +26,10 @@ use crate::{Disk, ParameterError};
 /// simulation with events that differs has velocities that are correlated, or a gas that is not homogeneous.
 /// With $`N\to\infty`$, the distribution of velocities is the solution of the equation, without an expansion.
 ///
+/// Waits between collisions have no memory, so each call of `run_until` draws the first wait anew. A gas that
+/// is run in pieces therefore has other collisions than one that is run in one piece, with the same
+/// statistics; a [`Simulation`](crate::Simulation) has the same bits.
+///
 /// The density with the contact value, $`n\chi`$, sets the unit of time alone. Disks of several radii have
 /// one $`\chi`$.
 ///

@@ -6,7 +6,8 @@ use crate::{Disk, Kind};
 /// A filter: an observable or observer that sees only disks of one kind.
 ///
 /// Its snapshots hold only these disks, in their order. It passes on the collisions in which a disk of the
-/// kind takes part. The start and the end of a run are passed on as they are, with all disks.
+/// kind takes part. The snapshots at the start and at the end of a run hold only disks of
+/// the kind, too.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -74,7 +75,7 @@ impl<T: Tabular> Tabular for OfKind<T> {
 
 impl<T: Observer> Observer for OfKind<T> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.inner.on_start(start);
+        self.inner.on_start(&start.with_disks(&self.chosen(start)));
     }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
@@ -91,8 +92,18 @@ impl<T: Observer> Observer for OfKind<T> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.inner.on_sample(&snapshot.with_disks(&self.chosen(snapshot)));
     }
+    fn on_insert(&mut self, disk: &Disk, time: f64) {
+        if disk.kind() == self.kind {
+            self.inner.on_insert(disk, time);
+        }
+    }
+    fn on_remove(&mut self, disk: &Disk, time: f64) {
+        if disk.kind() == self.kind {
+            self.inner.on_remove(disk, time);
+        }
+    }
     fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.inner.on_end(end);
+        self.inner.on_end(&end.with_disks(&self.chosen(end)));
     }
     #[inline]
     fn verdict(&mut self) -> Verdict {
@@ -157,6 +168,12 @@ impl<T: Observer> Observer for BetweenKinds<T> {
     }
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.inner.on_sample(snapshot);
+    }
+    fn on_insert(&mut self, disk: &Disk, time: f64) {
+        self.inner.on_insert(disk, time);
+    }
+    fn on_remove(&mut self, disk: &Disk, time: f64) {
+        self.inner.on_remove(disk, time);
     }
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.inner.on_end(end);

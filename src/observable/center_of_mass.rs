@@ -1,12 +1,22 @@
 //! The center of mass.
 
+use std::f64::consts::TAU;
+
 use glam::DVec2;
 
 use super::{Heading, Observable, Snapshot, Tabular};
+use crate::Disk;
 
 /// The position of the center of mass, or NaN without disks.
 ///
 /// It is $`\sum m_i\vec r_i/\sum m_i`$. Its `y` is the $`Y_{cm}`$ of the paper's Fig. 2.
+///
+/// In a periodic direction, the mean of positions depends on where the seam is. There, the value is the
+/// circular mean (Bai and Breen 2008): the direction of $`\sum m_i e^{2\pi i x_i/L}`$, as a place in the
+/// domain. It moves along with the disks, also across the seam, and is the center of mass if they are
+/// symmetric about it. It is NaN if the sum vanishes, as for disks that are spread evenly, and noise if it
+/// nearly does. For the way of a center, take displacements of
+/// [unwrapped](crate::boundary::Domain::unwrapped) positions.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -31,10 +41,41 @@ impl Observable for CenterOfMass {
     type Value = DVec2;
 
     fn measure(&self, snapshot: &Snapshot<'_>) -> DVec2 {
-        let mass: f64 = snapshot.disks().iter().map(crate::Disk::mass).sum();
+        let mass: f64 = snapshot.disks().iter().map(Disk::mass).sum();
         let moment: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * disk.position()).sum();
-        moment / mass
+        let (domain, mut center) = (snapshot.domain(), moment / mass);
+        if domain.periodic_sides {
+            center.x = circular_mean(snapshot, mass, domain.left, domain.width(), |place| place.x);
+        }
+        if domain.periodic_ends {
+            center.y = circular_mean(snapshot, mass, domain.bottom, domain.height(), |place| place.y);
+        }
+        center
     }
+}
+
+/// Returns the circular mean of a coordinate, from `low` on; NaN if the disks have no mean direction.
+fn circular_mean(
+    snapshot: &Snapshot<'_>,
+    mass: f64,
+    low: f64,
+    period: f64,
+    coordinate: impl Fn(DVec2) -> f64,
+) -> f64 {
+    /// Length of the mean direction that is rounding.
+    const ROUNDING: f64 = 1e-12;
+    let turns = |disk: &Disk| (coordinate(disk.position()) - low) / period;
+    let sum: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * direction(TAU * turns(disk))).sum();
+    if sum.length() > ROUNDING * mass {
+        low + (libm::atan2(sum.y, sum.x) / TAU).rem_euclid(1.0) * period
+    } else {
+        f64::NAN
+    }
+}
+
+fn direction(angle: f64) -> DVec2 {
+    let (sine, cosine) = libm::sincos(angle);
+    DVec2::new(cosine, sine)
 }
 
 impl Tabular for CenterOfMass {

@@ -24,6 +24,7 @@ pub struct CollisionCounts {
     sliding: u64,
     contact_duration: u64,
     elastic_below: u64,
+    least_rebound: u64,
 }
 
 impl CollisionCounts {
@@ -49,9 +50,11 @@ impl CollisionCounts {
             Regime::Sliding => self.sliding,
             Regime::ContactDuration => self.contact_duration,
             Regime::ElasticBelow => self.elastic_below,
+            Regime::LeastRebound => self.least_rebound,
             Regime::Unspecified => {
-                let told = self.sticking + self.sliding + self.contact_duration + self.elastic_below;
-                self.disks + self.wall_collisions() - told
+                let reported = self.sticking + self.sliding;
+                let remedies = self.contact_duration + self.elastic_below + self.least_rebound;
+                self.disks + self.wall_collisions() - reported - remedies
             }
         }
     }
@@ -81,6 +84,7 @@ impl Observer for CollisionCounts {
             Regime::Sliding => self.sliding += 1,
             Regime::ContactDuration => self.contact_duration += 1,
             Regime::ElasticBelow => self.elastic_below += 1,
+            Regime::LeastRebound => self.least_rebound += 1,
             Regime::Unspecified => {}
         }
     }
@@ -89,14 +93,16 @@ impl Observer for CollisionCounts {
 impl Table for CollisionCounts {
     fn headings(&self) -> Vec<Heading> {
         let partners = ["disk_collisions", "wall_collisions"].map(str::to_owned).into_iter();
-        let regimes = ["sticking", "sliding", "contact_duration", "elastic_below"].map(str::to_owned);
+        let regimes = ["sticking", "sliding", "contact_duration", "elastic_below", "least_rebound"];
+        let regimes = regimes.map(str::to_owned);
         let walls = self.walls.keys().map(|wall| format!("wall_{wall}"));
         partners.chain(regimes).chain(walls).map(|name| Heading::new(name, "1")).collect()
     }
 
     fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
         let partners = [self.disks, self.wall_collisions()].into_iter();
-        let regimes = [self.sticking, self.sliding, self.contact_duration, self.elastic_below];
+        let remedies = [self.contact_duration, self.elastic_below, self.least_rebound];
+        let regimes = [self.sticking, self.sliding].into_iter().chain(remedies);
         let counts = partners.chain(regimes).chain(self.walls.values().copied());
         let row = counts.map(|count| count as f64).collect();
         Box::new(std::iter::once(row))
@@ -106,14 +112,14 @@ impl Table for CollisionCounts {
 crate::gate::from_file! {
     CollisionCounts {
         disks: u64, walls: BTreeMap<usize, u64>, sticking: u64, sliding: u64, contact_duration: u64,
-        elastic_below: u64
+        elastic_below: u64, least_rebound: u64
      } => {
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
-        let regimes = sum(&[sticking, sliding, contact_duration, elastic_below]);
+        let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
-        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below })
+        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound })
     }
 }

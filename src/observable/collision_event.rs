@@ -40,6 +40,8 @@ pub struct Collision {
     pub time: f64,
     /// Index of the disk.
     pub disk: usize,
+    /// [Ids](crate::Disk::id) of the disk and of its partner; 0 for a wall.
+    pub ids: [u64; 2],
     /// Partner of the disk.
     pub partner: Partner,
     /// Unit vector from the partner to the disk.
@@ -52,6 +54,8 @@ pub struct Collision {
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,
+    /// Velocities of the disk and of its partner after the collision; the velocity of the surface for a wall.
+    pub velocities: [DVec2; 2],
     /// Change of the kinetic energy of the disk, and of its partner if that is a disk.
     ///
     /// A moving wall gives or takes energy. [`Impulse::energy_change`] is the change in the frame of the
@@ -65,8 +69,9 @@ impl Collision {
     /// The engine fills all fields itself.
     ///
     /// The other fields have simple values; set those that matter. The normal points up, the position is the
-    /// origin, and the disks have radius 1/2 (a `distance` of 1, or of 1/2 to a wall). The `energy_change`
-    /// follows from the impulse, which is right for two disks and for a wall at rest.
+    /// origin, the velocities and the ids are 0, and the disks have radius 1/2 (a `distance` of 1, or of 1/2
+    /// to a wall). The `energy_change` follows from the impulse, which is right for two disks and for a wall
+    /// at rest.
     pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
         let distance = match partner {
             Partner::Disk(_) => 1.0,
@@ -74,12 +79,26 @@ impl Collision {
         };
         let energy_change = impulse.energy_change(&contact);
         let (normal, position) = (DVec2::Y, DVec2::ZERO);
-        Self { time, disk, partner, normal, position, distance, contact, impulse, energy_change }
+        let (ids, velocities) = ([0; 2], [DVec2::ZERO; 2]);
+        Self {
+            time,
+            disk,
+            ids,
+            partner,
+            normal,
+            position,
+            distance,
+            contact,
+            impulse,
+            velocities,
+            energy_change,
+        }
     }
 
     /// Adds the impulse and the work of a push along the normal that changes the disk's velocity from
     /// `before` to `after`.
     pub(crate) fn add_push(&mut self, before: DVec2, after: DVec2, inverse_mass: f64) {
+        self.velocities[0] = after;
         let momentum = (after - before) / inverse_mass;
         self.energy_change += momentum.dot(0.5 * (before + after));
         let normal = self.impulse.normal() + momentum.dot(self.normal);

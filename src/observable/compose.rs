@@ -7,6 +7,7 @@
 use std::ops::ControlFlow;
 
 use super::{Collision, Heading, Observable, Observer, Snapshot, Tabular, Verdict};
+use crate::Disk;
 use crate::forward::forward;
 
 /// The observer that does nothing and costs nothing.
@@ -18,6 +19,8 @@ forward! { Observer for [&mut T, Box<T>] {
     fn on_start(&mut self, start: &Snapshot<'_>);
     fn on_collision(&mut self, collision: &Collision);
     fn on_sample(&mut self, snapshot: &Snapshot<'_>);
+    fn on_insert(&mut self, disk: &Disk, time: f64);
+    fn on_remove(&mut self, disk: &Disk, time: f64);
     fn on_end(&mut self, end: &Snapshot<'_>);
     fn verdict(&mut self) -> Verdict;
 }}
@@ -26,9 +29,9 @@ forward! { Observer for [&mut T, Box<T>] {
 macro_rules! compose_all {
     ($($holder:ty),+) => {
         $(impl<T: Observer> Observer for $holder {
-            fn on_start(&mut self, end: &Snapshot<'_>) {
+            fn on_start(&mut self, start: &Snapshot<'_>) {
                 for observer in self.iter_mut() {
-                    observer.on_start(end);
+                    observer.on_start(start);
                 }
             }
             #[inline]
@@ -43,6 +46,16 @@ macro_rules! compose_all {
             fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
                 for observer in self.iter_mut() {
                     sample_if_due(observer, snapshot);
+                }
+            }
+            fn on_insert(&mut self, disk: &Disk, time: f64) {
+                for observer in self.iter_mut() {
+                    observer.on_insert(disk, time);
+                }
+            }
+            fn on_remove(&mut self, disk: &Disk, time: f64) {
+                for observer in self.iter_mut() {
+                    observer.on_remove(disk, time);
                 }
             }
             fn on_end(&mut self, end: &Snapshot<'_>) {
@@ -97,6 +110,12 @@ macro_rules! compose_tuple {
             }
             fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
                 $(sample_if_due(&mut self.$index, snapshot);)+
+            }
+            fn on_insert(&mut self, disk: &Disk, time: f64) {
+                $(self.$index.on_insert(disk, time);)+
+            }
+            fn on_remove(&mut self, disk: &Disk, time: f64) {
+                $(self.$index.on_remove(disk, time);)+
             }
             fn on_end(&mut self, end: &Snapshot<'_>) {
                 $(self.$index.on_end(end);)+

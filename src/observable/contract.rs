@@ -2,7 +2,10 @@
 
 use std::ops::ControlFlow;
 
+use thiserror::Error;
+
 use super::{Collision, Snapshot};
+use crate::{Disk, ParameterError};
 
 /// A quantity that a snapshot determines.
 ///
@@ -26,8 +29,28 @@ pub trait Observable {
     fn measure(&self, snapshot: &Snapshot<'_>) -> Self::Value;
 }
 
-/// The error of an observer that makes a run fail.
-pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
+/// The error of an observer that makes a run fail: any error, or a text.
+///
+/// It is an error like any other, so `?` takes it into `Box<dyn Error>` and into the types of crates for
+/// errors.
+///
+/// ```
+/// use granular_edmd::observable::ObserverError;
+/// let full = ObserverError::new(std::io::Error::other("the disk is full"));
+/// assert_eq!(full.to_string(), ObserverError::from("the disk is full").to_string());
+/// ```
+#[derive(Debug, Error)]
+#[error(transparent)]
+pub struct ObserverError(Box<dyn std::error::Error + Send + Sync>);
+
+impl ObserverError {
+    /// Creates an error from its cause.
+    pub fn new(cause: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self(cause.into())
+    }
+}
+
+crate::error::from_causes! { ObserverError from &str, String, std::io::Error, ParameterError }
 
 /// An observer's decision on the run: go on, stop here, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
@@ -47,7 +70,9 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
 ///    or fails the run, no further event happens.
-/// 5. Whatever an observer does, the trajectory has the same bits as without it, as far as it goes.
+/// 5. `on_insert` and `on_remove` are called for each disk that an inlet lets in, or a sink takes out, at its
+///    time, so an observer knows all disks at all times.
+/// 6. Whatever an observer does, the trajectory has the same bits as without it, as far as it goes.
 ///
 /// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions only, and no start, samples
 /// or end. A verdict that fails ends it with an error. A verdict that stops has no effect, since the caller
@@ -91,6 +116,18 @@ pub trait Observer {
     /// Receives the sample that was asked for.
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let _ = snapshot;
+    }
+
+    /// Receives a disk that an inlet has let in during the run.
+    fn on_insert(&mut self, disk: &Disk, time: f64) {
+        let _ = (disk, time);
+    }
+
+    /// Receives a disk that a sink takes out during the run, after the collision with the sink.
+    ///
+    /// The last disk gets its index.
+    fn on_remove(&mut self, disk: &Disk, time: f64) {
+        let _ = (disk, time);
     }
 
     /// Receives the end of a run, also of one that fails.

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::system::System;
 use super::table::{ENERGY, Table, headings, row};
-use super::{Collision, Heading, Observer, Partner};
+use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
+use crate::ParameterError;
 use crate::statistics::BlockedMean;
 
 /// An observer of the mean change of kinetic energy per collision, ⟨dE⟩, for disk–disk collisions and for
@@ -12,6 +14,10 @@ use crate::statistics::BlockedMean;
 /// Collisions of one run are correlated, since the gas heats and cools. [`BlockedMean::estimate`] gives a
 /// mean whose error accounts for that. At a moving or thermal wall, the energy change is that of the disk,
 /// including the work of the wall.
+///
+/// A run ends with an error if it is of another system than the run before, or goes back in time: clear the
+/// observer, or take another one. For a mean over several systems, see
+/// [`repeats`](crate::statistics::repeats).
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;
@@ -24,11 +30,18 @@ use crate::statistics::BlockedMean;
 pub struct EnergyChange {
     disks: BlockedMean,
     walls: BTreeMap<usize, BlockedMean>,
+    /// The system that is measured, and the end of its latest run.
+    #[cfg_attr(feature = "serde", serde(default))]
+    system: System,
+    /// The reason why this run cannot be added.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
 }
 
 impl Default for EnergyChange {
     fn default() -> Self {
-        Self { disks: BlockedMean::with_room(), walls: BTreeMap::new() }
+        let (disks, system) = (BlockedMean::with_room(), System::default());
+        Self { disks, walls: BTreeMap::new(), system, fault: None }
     }
 }
 
@@ -45,9 +58,18 @@ impl EnergyChange {
     pub fn wall(&self, wall: usize) -> &BlockedMean {
         self.walls.get(&wall).unwrap_or(&NEVER_TOUCHED)
     }
+
+    /// Forgets all collisions so far.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
 }
 
 impl Observer for EnergyChange {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.fault = self.system.begin(start).err();
+    }
+
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         let mean = match collision.partner {
@@ -55,6 +77,15 @@ impl Observer for EnergyChange {
             Partner::Wall(wall) => self.walls.entry(wall).or_insert_with(BlockedMean::with_room),
         };
         mean.push(collision.energy_change);
+    }
+
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.system.pause(end);
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
     }
 }
 

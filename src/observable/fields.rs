@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::free_shares::{FreeShares, check_area};
 use super::grid::CellSums;
 use super::table::{ENERGY, Table, headings};
 use super::{Accumulator, Grid, Heading, Snapshot};
@@ -18,9 +19,9 @@ pub struct FieldCell {
     pub center: DVec2,
     /// Number of disks seen in the cell, over all samples.
     pub count: u64,
-    /// Disks per area.
+    /// Disks per area that walls leave free.
     pub number_density: f64,
-    /// Area of the disks per area.
+    /// Area of the disks per area that walls leave free.
     ///
     /// Each disk counts in the cell of its center.
     pub packing_fraction: f64,
@@ -36,7 +37,9 @@ pub struct FieldCell {
 
 /// Density, flow and temperatures on a grid, averaged over samples: for example, to show convection rolls.
 ///
-/// A disk counts in the cell of its center. Temperatures are taken about the mean velocity *of the cell*,
+/// A disk counts in the cell of its center. Densities are those in the free part of a cell, which
+/// [`Boundary::area`](crate::boundary::Boundary::area) gives at each sample; a run ends with an error if the
+/// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*,
 /// over all samples. A flow that changes between samples, such as a roll that reverses, counts as
 /// temperature. If $`n`$ disks are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$,
 /// for independent samples.
@@ -63,7 +66,11 @@ pub struct FieldCell {
 pub struct Fields {
     grid: Grid,
     sums: Vec<CellSums>,
+    /// Free shares of the cells, summed over the samples.
+    free: Vec<f64>,
     samples: u64,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    shares: FreeShares,
 }
 
 impl Fields {
@@ -72,7 +79,8 @@ impl Fields {
     /// Disks outside are left out. A run ends with an error if the whole grid is outside the
     /// domain.
     pub fn new(grid: Grid) -> Self {
-        Self { grid, sums: vec![CellSums::default(); grid.count()], samples: 0 }
+        let (sums, free) = (vec![CellSums::default(); grid.count()], vec![0.0; grid.count()]);
+        Self { grid, sums, free, samples: 0, shares: FreeShares::default() }
     }
 
     /// Returns the number of samples that were taken.
@@ -103,14 +111,17 @@ impl Fields {
     /// Forgets all samples so far.
     pub fn clear(&mut self) {
         self.sums.fill(CellSums::default());
+        self.free.fill(0.0);
         self.samples = 0;
     }
 
     fn averaged(&self, column: usize, row: usize) -> FieldCell {
         let size = self.grid.cell_size();
-        let CellSums { count, area, velocity: [x, y], angular_velocity } =
-            self.sums[row * self.grid.shape().0 + column];
-        let seen = size.x * size.y * self.samples.max(1) as f64;
+        let cell = row * self.grid.shape().0 + column;
+        let CellSums { count, area, velocity: [x, y], angular_velocity } = self.sums[cell];
+        // A cell without free area has no disks.
+        let free = if self.free[cell] == 0.0 { 1.0 } else { self.free[cell] };
+        let seen = size.x * size.y * free;
         let disks = count.max(1) as f64;
         FieldCell {
             center: self.grid.center(column, row),
@@ -132,11 +143,14 @@ impl Accumulator for Fields {
                 self.sums[cell].add(disk);
             }
         }
+        let shares = self.shares.of(snapshot, self.grid.cells());
+        self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         self.samples += 1;
     }
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
-        self.grid.check_against(&start.domain())
+        self.grid.check_against(&start.domain())?;
+        check_area(&start.domain().region(), self.grid.cells(), start)
     }
 }
 
@@ -167,11 +181,13 @@ impl Table for Fields {
 }
 
 crate::gate::from_file! {
-    Fields { grid: Grid, sums: Vec<CellSums>, samples: u64 } => {
-        let given = sums.len();
-        let requirement = "that of the cells";
-        crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
+    Fields { grid: Grid, sums: Vec<CellSums>, free: Vec<f64>, samples: u64 } => {
+        for given in [sums.len(), free.len()] {
+            let requirement = "that of the cells";
+            crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
+        }
         sums.iter().try_for_each(CellSums::check)?;
-        Ok(Self { grid, sums, samples })
+        free.iter().try_for_each(|&share| crate::quantity::non_negative("free share", share).map(drop))?;
+        Ok(Self { grid, sums, free, samples, shares: FreeShares::default() })
     }
 }

@@ -67,6 +67,14 @@ impl Grid {
         self.region.min + self.cell_size() * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
     }
 
+    /// Returns the regions of the cells, row by row from below.
+    pub(super) fn cells(&self) -> impl Iterator<Item = Region> + use<> {
+        let (grid, half) = (*self, 0.5 * self.cell_size());
+        let centers =
+            (0..grid.rows).flat_map(move |row| (0..grid.columns).map(move |column| grid.center(column, row)));
+        centers.map(move |center| Region::new(center - half, center + half))
+    }
+
     /// Returns the cell that holds this position, counted row by row from below.
     pub(super) fn find(&self, position: DVec2) -> Option<usize> {
         let scaled = (position - self.region.min) / self.cell_size();

@@ -2,10 +2,14 @@
 
 use std::f64::consts::PI;
 
+use glam::DVec2;
+
+use super::free_shares::{FreeShares, check_area};
 use super::grid::check_heights;
 use super::table::{Table, headings};
 use super::{Accumulator, Heading, Snapshot};
 use crate::ParameterError;
+use crate::boundary::{Domain, Region};
 use crate::statistics::Bins;
 
 /// The bin with the largest packing fraction, and the least packing fraction below it; made by
@@ -51,12 +55,17 @@ impl DenseLayer {
 
 /// The packing fraction by height, averaged over samples.
 ///
-/// The packing fraction $`\phi(y)`$ is the area of the disks between two heights, divided by the area of the
-/// box there,
+/// The packing fraction $`\phi(y)`$ is the area of the disks between two heights, divided by the area that
+/// walls leave free there,
 ///
 /// ```math
-/// \phi_k = \frac{1}{L_x\,\Delta y}\Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle.
+/// \phi_k = \Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle
+/// \Big/ \langle A(y_k, y_k + \Delta y)\rangle.
 /// ```
+///
+/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor,
+/// it is that of [`Boundary::area`](crate::boundary::Boundary::area). A bin without free area has the packing
+/// fraction 0. A run ends with an error if the boundary does not know its area.
 ///
 /// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins smaller than a
 /// diameter. In the paper's box, bins of one diameter resolve a compact layer and average over its rows.
@@ -80,9 +89,13 @@ impl DenseLayer {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HeightProfile {
     bins: Bins,
-    /// Packing fractions, summed over the samples.
+    /// Areas of disks over the area of the bin, summed over the samples.
     sums: Vec<f64>,
+    /// Free shares of the area of the bin, summed over the samples.
+    free: Vec<f64>,
     samples: u64,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    shares: FreeShares,
 }
 
 impl HeightProfile {
@@ -95,7 +108,8 @@ impl HeightProfile {
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
     pub fn new(bottom: f64, top: f64, bins: usize) -> Result<Self, ParameterError> {
         let bins = Bins::new(bottom, top, bins)?;
-        Ok(Self { bins, sums: vec![0.0; bins.count()], samples: 0 })
+        let (sums, free) = (vec![0.0; bins.count()], vec![0.0; bins.count()]);
+        Ok(Self { bins, sums, free, samples: 0, shares: FreeShares::default() })
     }
 
     /// Returns the number of samples that were taken.
@@ -106,8 +120,9 @@ impl HeightProfile {
     /// Iterates over the heights of the middles of the bins, with the mean packing fractions, which are 0
     /// before the first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
-        let samples = self.samples.max(1) as f64;
-        self.sums.iter().enumerate().map(move |(bin, sum)| (self.bins.middle(bin), sum / samples))
+        let fraction = |(sum, free): (&f64, &f64)| if *free == 0.0 { 0.0 } else { sum / free };
+        let fractions = self.sums.iter().zip(&self.free).map(fraction);
+        fractions.enumerate().map(|(bin, fraction)| (self.bins.middle(bin), fraction))
     }
 
     /// Returns the bin with the largest packing fraction, the lowest of equal ones, or `None` before the
@@ -119,6 +134,7 @@ impl HeightProfile {
     /// Forgets all samples so far.
     pub fn clear(&mut self) {
         self.sums.fill(0.0);
+        self.free.fill(0.0);
         self.samples = 0;
     }
 
@@ -141,8 +157,17 @@ fn area_below(height: f64, radius: f64) -> f64 {
     radius * radius * (0.5 * PI + libm::asin(sine) + sine * (1.0 - sine * sine).sqrt())
 }
 
+/// Returns the regions of the bins.
+fn layers(bins: Bins, domain: &Domain) -> impl Iterator<Item = Region> {
+    let Domain { left, right, .. } = *domain;
+    (0..bins.count())
+        .map(move |bin| Region::new(DVec2::new(left, bins.edge(bin)), DVec2::new(right, bins.edge(bin + 1))))
+}
+
 impl Accumulator for HeightProfile {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
+        let shares = self.shares.of(snapshot, layers(self.bins, &snapshot.domain()));
+        self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         let (width, period) = (snapshot.domain().width(), snapshot.domain().periods().y);
         // The images hold the area beyond a periodic end.
         let shifts = [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
@@ -155,7 +180,9 @@ impl Accumulator for HeightProfile {
     }
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
-        check_heights(&self.bins, &start.domain())
+        check_heights(&self.bins, &start.domain())?;
+        let domain = start.domain();
+        check_area(&domain.region(), layers(self.bins, &domain), start)
     }
 }
 
@@ -170,11 +197,12 @@ impl Table for HeightProfile {
 }
 
 crate::gate::from_file! {
-    HeightProfile { bins: Bins, sums: Vec<f64>, samples: u64 } => {
+    HeightProfile { bins: Bins, sums: Vec<f64>, free: Vec<f64>, samples: u64 } => {
         bins.check_count(sums.len())?;
-        for &sum in &sums {
+        bins.check_count(free.len())?;
+        for &sum in sums.iter().chain(&free) {
             crate::quantity::finite("sum of packing fractions", sum)?;
         }
-        Ok(Self { bins, sums, samples })
+        Ok(Self { bins, sums, free, samples, shares: FreeShares::default() })
     }
 }

@@ -2,10 +2,15 @@
 
 use std::collections::VecDeque;
 
-use super::SampleTimes;
-use crate::ParameterError;
+use glam::DVec2;
+
+use super::{PerDisk, SampleTimes, Snapshot};
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
+use crate::{Disk, ParameterError};
+
+/// Displacement between two runs that is rounding, relative to the radius of a disk.
+const ROUNDING: f64 = 1e-9;
 
 /// Largest number of lags.
 const MOST_LAGS: usize = 1 << 20;
@@ -24,6 +29,8 @@ pub(super) struct Lags<V> {
     past: VecDeque<V>,
     /// Means for the lags of 0, 1, 2, … intervals.
     means: Vec<BlockedMean>,
+    /// Places of the disks at the end of the latest run.
+    places: Option<PerDisk<DVec2>>,
 }
 
 impl<V> Lags<V> {
@@ -31,12 +38,29 @@ impl<V> Lags<V> {
     pub(super) fn new(times: SampleTimes, longest: usize) -> Result<Self, ParameterError> {
         accept((1..=MOST_LAGS).contains(&longest), "number of lags", "in 1..=2^20", longest as f64)?;
         let means = vec![BlockedMean::new(); longest + 1];
-        Ok(Self { sample_times: times, latest: None, past: VecDeque::new(), means })
+        Ok(Self { sample_times: times, latest: None, past: VecDeque::new(), means, places: None })
     }
 
     /// Returns the longest lag, as a number of intervals.
     pub(super) const fn longest(&self) -> usize {
         self.means.len() - 1
+    }
+
+    /// Notes the start of a run. If a disk is no longer where the previous run left it, it was put elsewhere,
+    /// and the samples so far are forgotten.
+    pub(super) fn begin(&mut self, start: &Snapshot<'_>) {
+        self.sample_times.start_at(start.time());
+        let Some(places) = self.places.take() else { return };
+        let rounding = ROUNDING * start.mean(Disk::radius);
+        let is_elsewhere = |before: &DVec2, now: &DVec2| f64::from(before.distance(*now) > rounding);
+        if places.mean_with(&places_in(start), is_elsewhere) > 0.0 {
+            self.forget_samples();
+        }
+    }
+
+    /// Notes the end of a run.
+    pub(super) fn pause(&mut self, end: &Snapshot<'_>) {
+        self.places = Some(places_in(end));
     }
 
     /// Adds a sample and its pairs with the earlier ones. It leaves out pairs whose value is NaN.
@@ -80,18 +104,25 @@ impl<V> Lags<V> {
     }
 }
 
+/// Returns the unwrapped places of all disks.
+pub(super) fn places_in(snapshot: &Snapshot<'_>) -> PerDisk<DVec2> {
+    let domain = snapshot.domain();
+    PerDisk::of(snapshot.disks(), |disk| domain.unwrapped(disk))
+}
+
 crate::gate::from_file! {
     Lags<V> {
         sample_times: SampleTimes,
         latest: Option<f64>,
         past: VecDeque<V>,
-        means: Vec<BlockedMean>
+        means: Vec<BlockedMean>,
+        #[serde(default)] places: Option<PerDisk<DVec2>>
     } => {
         crate::quantity::finite("time of the latest sample", latest.unwrap_or(0.0))?;
         let lags = means.len().saturating_sub(1);
         accept((1..=MOST_LAGS).contains(&lags), "number of lags", "in 1..=2^20", lags as f64)?;
         let fits = past.len() <= means.len();
         accept(fits, "number of samples that are kept", "at most that of the lags", past.len() as f64)?;
-        Ok(Self { sample_times, latest, past, means })
+        Ok(Self { sample_times, latest, past, means, places })
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::lags::Lags;
+use super::lags::{Lags, places_in};
 use super::table::{Table, headings, row};
 use super::{Heading, Observer, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
@@ -13,9 +13,8 @@ use crate::statistics::{BlockedMean, Estimate};
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. Each lag takes the disks that
-/// are there at both of its ends. If the periods of the domain change, or time jumps, the observer begins
-/// with new origins. Disks that are put elsewhere between two runs count as displaced: measure them with
-/// another observer. The errors come from blocks of origins.
+/// are there at both of its ends. If the periods of the domain change, time jumps, or disks are put
+/// elsewhere between two runs, the observer begins with new origins. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///
@@ -96,7 +95,7 @@ fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
 
 impl Observer for MeanSquaredDisplacement {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.lags.sample_times.start_at(start.time());
+        self.lags.begin(start);
     }
 
     fn next_sample(&self) -> f64 {
@@ -104,10 +103,9 @@ impl Observer for MeanSquaredDisplacement {
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        let domain = snapshot.domain();
-        let places = PerDisk::of(snapshot.disks(), |disk| domain.unwrapped(disk));
-        if self.periods != domain.periods() {
-            self.periods = domain.periods();
+        let (periods, places) = (snapshot.domain().periods(), places_in(snapshot));
+        if self.periods != periods {
+            self.periods = periods;
             self.lags.forget_samples();
         }
         self.lags.push(snapshot.time(), places, squared_displacement);
@@ -115,6 +113,10 @@ impl Observer for MeanSquaredDisplacement {
             self.diffusion.push(0.25 * slope);
         }
         self.lags.sample_times.advance_past(snapshot.time());
+    }
+
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.lags.pause(end);
     }
 }
 

@@ -2,18 +2,17 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec2;
-
 use super::grid::{checked_region, inside};
+use super::neighbors::{Neighbors, check_range};
 use super::table::{Table, headings, row};
 use super::{Accumulator, Heading, Snapshot};
-use crate::boundary::{Domain, Region, Squares};
+use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
 
-/// Number of walls that a domain can have at its sides and ends.
-const SIDES: usize = 4;
+/// Part of the range by which walls may come nearer than the range, which is rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// The pair correlation function g(r), also called radial distribution function.
 ///
@@ -25,13 +24,17 @@ const SIDES: usize = 4;
 /// {\langle N_i\rangle\langle N_j\rangle\,(1 - \delta_{ij}/N)\; 2\pi r\,\Delta r} .
 /// ```
 ///
+/// If the number of disks in the box varies, its mean square enters, too: the denominator has the factor
+/// $`\langle M_i(M_j - \delta_{ij})\rangle/\langle M_i\rangle\langle M_j - \delta_{ij}\rangle`$ with the
+/// numbers $`M`$ of disks in the whole box.
+///
 /// $`N_{ij}(r)`$ counts the pairs of a disk $`i`$ in a region and a partner $`j`$ anywhere, by the distance
 /// of their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area is
 /// $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners among
 /// the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
 /// the whole domain. The region keeps a distance of the range from the sides and ends of the domain, so that
-/// all shells lie inside. It knows of no walls between them: if there are parts, give a region by
-/// [`within`](Self::within) that keeps that distance from all walls. Where the density varies, under gravity
+/// all shells lie inside. In a vessel with walls inside, give a region by [`within`](Self::within) that keeps
+/// that distance from all walls. Where the density varies, under gravity
 /// for example, choose a thin layer.
 ///
 /// The errors are those of the numbers of pairs, from blocks of samples. The numbers of disks in the region
@@ -39,8 +42,7 @@ const SIDES: usize = 4;
 /// error from the scatter of several runs. The cost of a sample is proportional to the number of disks.
 ///
 /// A run ends with an error if the range is more than half of a period, if no finite region is left between
-/// the walls, if there are more walls than four and no region is given, or if the region is not inside the
-/// domain.
+/// the walls, or if a wall comes within the range of the region.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -71,6 +73,8 @@ pub struct PairCorrelation {
     centers: RunningMean,
     /// Number of partners in the region, over its area.
     partner_density: RunningMean,
+    /// Numbers of possible centers in the box, of possible partners of each, and of pairs.
+    numbers: [RunningMean; 3],
 }
 
 impl PairCorrelation {
@@ -88,6 +92,7 @@ impl PairCorrelation {
             pairs: vec![BlockedMean::new(); bins],
             centers: RunningMean::default(),
             partner_density: RunningMean::default(),
+            numbers: [RunningMean::default(); 3],
         })
     }
 
@@ -118,7 +123,9 @@ impl PairCorrelation {
     /// Iterates over the distances of the middles of the bins, with g(r) there, which is NaN as long as there
     /// are no disks.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
-        let scale = 1.0 / (self.centers.mean() * self.partner_density.mean());
+        let [centers, partners, pairs] = self.numbers.map(|number| number.mean());
+        let excess = pairs / (centers * partners);
+        let scale = 1.0 / (self.centers.mean() * self.partner_density.mean() * excess);
         self.pairs
             .iter()
             .enumerate()
@@ -129,26 +136,28 @@ impl PairCorrelation {
     pub fn clear(&mut self) {
         self.pairs.fill(BlockedMean::new());
         (self.centers, self.partner_density) = (RunningMean::default(), RunningMean::default());
+        self.numbers = [RunningMean::default(); 3];
     }
 
     /// Returns the region of the disks around which partners are counted.
-    fn counted(&self, domain: &Domain) -> Result<Region, ParameterError> {
-        let periods = domain.periods();
-        for period in [periods.x, periods.y].into_iter().filter(|&period| period > 0.0) {
-            let fits = 2.0 * self.range() <= period;
-            accept(fits, "range of the correlation", "at most half of the period", self.range())?;
-        }
-        if let Some(region) = self.region {
-            return inside(region, domain);
-        }
-        let inset = |periodic: bool| if periodic { 0.0 } else { self.range() };
-        let inset = DVec2::new(inset(domain.periodic_sides), inset(domain.periodic_ends));
-        let min = DVec2::new(domain.left, domain.bottom) + inset;
-        let max = DVec2::new(domain.right, domain.top) - inset;
-        let (is_left, requirement) =
-            (min.cmplt(max).all(), "less than half of the distance between walls, or have a region");
-        accept(is_left && max.is_finite(), "range of the correlation", requirement, self.range())?;
-        Ok(Region::new(min, max))
+    fn counted(&self, snapshot: &Snapshot<'_>) -> Result<Region, ParameterError> {
+        let domain = snapshot.domain();
+        check_range("range of the correlation", self.range(), &domain)?;
+        let room = snapshot.interior();
+        let region = match self.region {
+            Some(region) => inside(region, &domain)?,
+            None => grown(room.region(), -self.range(), &domain),
+        };
+        let (is_left, requirement) = (
+            region.min.cmplt(region.max).all() && region.max.is_finite(),
+            "less than half of the distance between walls, or have a region",
+        );
+        accept(is_left, "range of the correlation", requirement, self.range())?;
+        let shells = grown(region, self.range() * (1.0 - ROUNDING), &domain);
+        let is_inside = inside(shells, &room).is_ok() && snapshot.is_clear(&shells);
+        let requirement = "less than the distance of the region from all walls: give a region away from them";
+        accept(is_inside, "range of the correlation", requirement, self.range())?;
+        Ok(region)
     }
 
     fn is_of(&self, which: usize, disk: &Disk) -> bool {
@@ -156,28 +165,14 @@ impl PairCorrelation {
     }
 
     /// Counts the ordered pairs at the distances of each bin.
-    fn count(&self, disks: &[Disk], domain: &Domain, region: &Region) -> Vec<u64> {
-        let mut counts = vec![0; self.bins.count()];
-        let range = self.range();
-        let mut squares = Squares::with_side(domain, range);
-        for (index, disk) in disks.iter().enumerate().filter(|(_, disk)| self.is_of(1, disk)) {
-            squares.add(disk.position(), 0.0, index);
-        }
-        let periods = domain.periods();
-        let half = DVec2::select(periods.cmpgt(DVec2::ZERO), 0.5 * periods, DVec2::INFINITY);
+    fn count(&self, snapshot: &Snapshot<'_>, region: &Region) -> Vec<u64> {
+        let (mut counts, disks) = (vec![0; self.bins.count()], snapshot.disks());
+        let is_partner = |disk: &Disk| self.is_of(1, disk);
+        let neighbors = Neighbors::among(disks, snapshot.domain(), self.range(), is_partner);
         let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && region.contains(disk.position());
-        for (index, disk) in disks.iter().enumerate().filter(around) {
-            for other in squares.near(disk.position(), range).filter(|&other| other != index) {
-                let (from, to) = (disk.position(), disks[other].position());
-                // Most partners are nearer than their images, and need no division.
-                let is_near = (to - from).abs().cmple(half).all();
-                let separation = if is_near { to - from } else { domain.separation(from, to) };
-                let squared = separation.length_squared();
-                // Two pairs of three are too far apart, and need no root.
-                if squared > range * range {
-                    continue;
-                }
-                if let Some(bin) = self.bins.find(squared.sqrt()) {
+        for (index, _) in disks.iter().enumerate().filter(around) {
+            for neighbor in neighbors.of(index) {
+                if let Some(bin) = self.bins.find(neighbor.separation.length()) {
                     counts[bin] += 1;
                 }
             }
@@ -186,28 +181,41 @@ impl PairCorrelation {
     }
 }
 
+/// Returns a region that reaches further by a length on each side; in a periodic direction, the whole domain
+/// if it would reach across the seam.
+fn grown(region: Region, by: f64, domain: &Domain) -> Region {
+    let (whole, mut grown) = (domain.region(), Region::new(region.min - by, region.max + by));
+    for (axis, is_periodic) in [domain.periodic_sides, domain.periodic_ends].into_iter().enumerate() {
+        let is_within = grown.min[axis] >= whole.min[axis] && grown.max[axis] <= whole.max[axis];
+        if is_periodic && (by < 0.0 || !is_within) {
+            (grown.min[axis], grown.max[axis]) = (whole.min[axis], whole.max[axis]);
+        }
+    }
+    grown
+}
+
 impl Accumulator for PairCorrelation {
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
-        let (has_room, walls) = (self.region.is_some() || start.wall_count() <= SIDES, start.wall_count());
-        let requirement = "at most 4, or the correlation within a region away from them";
-        accept(has_room, "number of walls", requirement, walls as f64)?;
-        self.counted(&start.domain()).map(|_| ())
+        self.counted(start).map(drop)
     }
 
     fn add(&mut self, snapshot: &Snapshot<'_>) {
-        let (disks, domain) = (snapshot.disks(), snapshot.domain());
-        let Ok(region) = self.counted(&domain) else { return };
+        let Ok(region) = self.counted(snapshot) else { return };
+        let disks = snapshot.disks();
         let count = |which, is_counted: &dyn Fn(&Disk) -> bool| {
             disks.iter().filter(|disk| self.is_of(which, disk) && is_counted(disk)).count() as f64
         };
         let is_inside = |disk: &Disk| region.contains(disk.position());
-        let (centers, partners, all) = (count(0, &is_inside), count(1, &is_inside), count(1, &|_| true));
+        let (centers, partners) = (count(0, &is_inside), count(1, &is_inside));
+        let (possible, all) = (count(0, &|_| true), count(1, &|_| true));
         // A disk is not its own partner.
         let itself = if self.kinds.is_none_or(|[first, second]| first == second) { 1.0 } else { 0.0 };
         let others = if all > 0.0 { 1.0 - itself / all } else { 0.0 };
         self.centers.push(centers);
         self.partner_density.push(partners * others / region.area());
-        for (bin, count) in self.count(disks, &domain, &region).into_iter().enumerate() {
+        let numbers = [possible, all - itself, possible * (all - itself)];
+        self.numbers.iter_mut().zip(numbers).for_each(|(mean, number)| mean.push(number));
+        for (bin, count) in self.count(snapshot, &region).into_iter().enumerate() {
             let (low, high) = (self.bins.edge(bin), self.bins.edge(bin + 1));
             self.pairs[bin].push(count as f64 / (PI * (high - low) * (high + low)));
         }
@@ -228,15 +236,15 @@ crate::gate::from_file! {
     PairCorrelation {
         bins: Bins, kinds: Option<[Kind; 2]>,
         #[serde(deserialize_with = "super::grid::region_from_file")] region: Option<Region>,
-        pairs: Vec<BlockedMean>, centers: RunningMean, partner_density: RunningMean
+        pairs: Vec<BlockedMean>, centers: RunningMean, partner_density: RunningMean, numbers: [RunningMean; 3]
      } => {
         bins.check_count(pairs.len())?;
         let starts_at_zero = bins.edge(0) == 0.0;
         accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
-        for count in pairs.iter().map(BlockedMean::count).chain([partner_density.count()]) {
+        for count in pairs.iter().map(BlockedMean::count).chain([partner_density.count()]).chain(numbers.map(|number| number.count())) {
             let fits = count == centers.count();
             accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
         }
-        Ok(Self { bins, kinds, region, pairs, centers, partner_density })
+        Ok(Self { bins, kinds, region, pairs, centers, partner_density, numbers })
     }
 }

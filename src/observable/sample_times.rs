@@ -7,6 +7,10 @@ use crate::quantity::{finite, positive};
 /// rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Rounding of the same relative to the interval. The origin may be far larger than the time, as before time
+/// 0, and the time has its rounding.
+const PART: f64 = 1e-9;
+
 /// Smallest ratio of the interval to the time. Rounding then moves a beat by a sixteenth of the interval at
 /// most.
 const COARSEST: f64 = 16.0 * f64::EPSILON;
@@ -140,7 +144,7 @@ impl SampleTimes {
 
     /// Returns the difference up to which times near this one count as the same.
     pub(super) fn rounding(&self, time: f64) -> f64 {
-        ROUNDING * (time.abs() + self.interval)
+        ROUNDING * time.abs() + PART * self.interval
     }
 
     fn time_of(&self, beat: i64) -> f64 {

@@ -1,5 +1,6 @@
 //! Series of the values of an observable at set times.
 
+use super::system::System;
 use super::{Observable, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::accept;
@@ -7,9 +8,9 @@ use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
 ///
-/// The times increase. A run that starts before the last sample ends at once with an error: it is another
-/// run, for which the series must be [cleared](Self::clear), or the checkpoint from which it was resumed is
-/// older than the series.
+/// The times increase. A run that starts before the last sample, or that is of another system, ends at once
+/// with an error: clear the series for it, or take another one. The same happens if the checkpoint from which
+/// a run was resumed is older than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
 /// can. JSON knows no NaN, so a series with values that are not defined cannot be read back from it; from a
@@ -38,6 +39,8 @@ pub struct Series<Q: Observable> {
     sample_times: SampleTimes,
     times: Vec<f64>,
     values: Vec<Q::Value>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    system: System,
     /// The reason why this run cannot be added.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -46,7 +49,8 @@ pub struct Series<Q: Observable> {
 impl<Q: Observable> Series<Q> {
     /// Creates a series of `observable` at these times.
     pub const fn new(observable: Q, times: SampleTimes) -> Self {
-        Self { observable, sample_times: times, times: Vec::new(), values: Vec::new(), fault: None }
+        let (sample_times, system) = (times, System::NONE);
+        Self { observable, sample_times, times: Vec::new(), values: Vec::new(), system, fault: None }
     }
 
     /// Returns the observable.
@@ -97,15 +101,19 @@ impl<Q: Observable> Series<Q> {
     pub fn clear(&mut self) {
         self.times.clear();
         self.values.clear();
+        self.system = System::NONE;
     }
 }
 
 impl<Q: Observable> Observer for Series<Q> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
         let time = start.time();
-        let goes_on = self.times.last().is_none_or(|&last| time >= last);
+        // The run may have ended on the last sample, up to rounding.
+        let rounding = self.sample_times.rounding(time);
+        let goes_on = self.times.last().is_none_or(|&last| time >= last - rounding);
         let requirement = "not before the last sample of the series; clear it for another run";
-        self.fault = accept(goes_on, "start of the run", requirement, time).err();
+        let goes_on = accept(goes_on, "start of the run", requirement, time).map(drop);
+        self.fault = goes_on.and_then(|()| self.system.is_same(start)).err();
         self.sample_times.start_at(time);
     }
 
@@ -127,7 +135,7 @@ impl<Q: Observable> Observer for Series<Q> {
 
 #[cfg(feature = "serde")]
 mod serial {
-    use super::{Observable, SampleTimes, Series};
+    use super::{Observable, SampleTimes, Series, System};
     use crate::ParameterError;
     use crate::quantity::{accept, finite};
 
@@ -148,7 +156,7 @@ mod serial {
             let count = values.len() as f64;
             accept(values.len() == times.len(), "number of values", "that of the times", count)?;
             times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
-            Ok(Self { observable, sample_times, times, values, fault: None })
+            Ok(Self { observable, sample_times, times, values, system: System::NONE, fault: None })
         }
     }
 }

@@ -5,7 +5,8 @@ use std::fmt;
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, Region};
+use super::marks::Mark;
+use crate::boundary::{Boundary, Domain, Probe, Region};
 use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
@@ -20,6 +21,8 @@ pub struct Snapshot<'a> {
     gravity: Gravity,
     walls: Option<Walls<'a>>,
     wall_count: usize,
+    /// Marks of the run and of its walls.
+    marks: [Mark; 2],
 }
 
 /// The disks of a run as they move, which a snapshot copies if it is asked for them.
@@ -64,7 +67,8 @@ impl<'a> Snapshot<'a> {
     ///
     /// The engine creates snapshots, and tests may do so.
     pub fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: impl Into<Gravity>) -> Self {
-        Self { time, disks: Disks::Given(disks), domain, gravity: gravity.into(), walls: None, wall_count: 0 }
+        let (disks, gravity, marks) = (Disks::Given(disks), gravity.into(), [Mark::default(); 2]);
+        Self { time, disks, domain, gravity, walls: None, wall_count: 0, marks }
     }
 
     /// Creates a snapshot of disks as they move, at an absolute time and at its offset, with the walls around
@@ -75,13 +79,15 @@ impl<'a> Snapshot<'a> {
         source: &'a dyn Moving,
         boundary: &'a dyn Boundary,
         gravity: Gravity,
+        marks: [Mark; 2],
     ) -> Self {
         let disks = Disks::Moving { source, offset, copies: OnceCell::new() };
         let (domain, walls, wall_count) = (boundary.domain(), None, 0);
-        Self { time, disks, domain, gravity, walls, wall_count }.with_walls(boundary, offset)
+        Self { time, disks, domain, gravity, walls, wall_count, marks }.with_walls(boundary, offset)
     }
 
-    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time origin.
+    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time
+    /// origin.
     #[must_use]
     pub fn with_walls(self, boundary: &'a dyn Boundary, time: f64) -> Self {
         Self { walls: Some(Walls { boundary, time }), wall_count: boundary.wall_count(), ..self }
@@ -146,6 +152,44 @@ impl<'a> Snapshot<'a> {
         self.walls.and_then(|walls| walls.boundary.area(region, radius, walls.time))
     }
 
+    /// Returns the share of a region that matter can fill; `None` if it is not known. A snapshot without
+    /// walls knows of nothing that is not free.
+    pub(crate) fn free_share(&self, region: &Region) -> Option<f64> {
+        /// Share from which on all is free, but for rounding.
+        const WHOLE: f64 = 1.0 - 1e-12;
+        let Some(Walls { boundary, time }) = self.walls else { return Some(1.0) };
+        let Some(area) = boundary.area(region, 0.0, time) else {
+            return self.is_clear(region).then_some(1.0);
+        };
+        let share = area / region.area();
+        Some(if share > WHOLE { 1.0 } else { share })
+    }
+
+    /// Returns whether no wall ever comes into a region in which disks are free.
+    pub(crate) fn is_clear(&self, region: &Region) -> bool {
+        let middle = region.min + 0.5 * (region.max - region.min);
+        // Four walls are those at the sides and ends of the domain.
+        self.walls.map_or(self.wall_count <= 4, |Walls { boundary, time }| {
+            let is_free = |place| boundary.overlap(&Probe::new(place, 0.0, time)).is_none();
+            !boundary.may_touch(region, 0.0) && is_free(middle)
+        })
+    }
+
+    /// Returns the rectangle in which initial states are placed, or the domain if the walls are not known.
+    pub(crate) fn interior(&self) -> Domain {
+        self.walls.map_or(self.domain, |walls| walls.boundary.interior())
+    }
+
+    /// Returns the mark of the run.
+    pub(super) const fn system_mark(&self) -> Mark {
+        self.marks[0]
+    }
+
+    /// Returns the mark of the walls, which are others once others were set.
+    pub(super) const fn walls_mark(&self) -> Mark {
+        self.marks[1]
+    }
+
     /// Returns the rectangle that holds the centers of the disks.
     pub const fn domain(&self) -> Domain {
         self.domain
@@ -185,8 +229,8 @@ impl<'a> Snapshot<'a> {
     where
         'a: 'b,
     {
-        let Self { time, domain, gravity, walls, wall_count, .. } = *self;
-        Snapshot { time, disks: Disks::Given(disks), domain, gravity, walls, wall_count }
+        let Self { time, domain, gravity, walls, wall_count, marks, .. } = *self;
+        Snapshot { time, disks: Disks::Given(disks), domain, gravity, walls, wall_count, marks }
     }
 
     /// Returns the mean of a quantity over the disks; NaN without disks.

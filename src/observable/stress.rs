@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::free_shares::{FreeShares, check_area};
 use super::grid::{checked_region, inside};
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
@@ -44,9 +45,11 @@ pub struct StressTensor {
 /// the region counts. Each interval between two samples gives one value of the stress, and the errors come
 /// from blocks of these values.
 ///
-/// In a box without gravity, the normal stress is the pressure on the walls. Without a region, the area is
-/// that of the domain, which reaches to walls at rest and to the outermost positions of moving walls. A run
-/// ends with an error if that area is infinite.
+/// In a box without gravity, the normal stress is the pressure on the walls. The area $`A`$ is the area that
+/// walls leave free for matter in the region, or in the whole domain, at the time of the sample
+/// ([`Boundary::area`](crate::boundary::Boundary::area)). A run ends with an error if it is infinite, or if
+/// the boundary does not know it. Where a driving changes the number of disks or their velocities, the
+/// kinetic part is that of the samples, and the collisional part that of the collisions between them.
 ///
 /// Inside an [`OfKind`](super::OfKind), the kinetic part counts the disks of the kind, and the collisional
 /// part counts all collisions in which such a disk takes part.
@@ -78,6 +81,8 @@ pub struct Stress {
     region: Option<Region>,
     /// The domain of the run.
     domain: Option<Domain>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    shares: FreeShares,
     /// Sum of impulse times distance over the collisions since the latest sample.
     transferred: [f64; 4],
     kinetic: Tensor,
@@ -95,6 +100,7 @@ impl Stress {
             stretch: Stretch::new(times),
             region: None,
             domain: None,
+            shares: FreeShares::default(),
             transferred: [0.0; 4],
             kinetic: Tensor::default(),
             collisional: Tensor::default(),
@@ -150,8 +156,19 @@ impl Stress {
         self.domain.map_or_else(|| share(DVec2::ZERO), |domain| domain.images().map(share).sum())
     }
 
-    fn area(&self, domain: &Domain) -> f64 {
-        self.region.map_or_else(|| domain.width() * domain.height(), |region| region.area())
+    /// Returns the free area at the time of a snapshot.
+    fn area(&mut self, snapshot: &Snapshot<'_>) -> f64 {
+        let region = self.region.unwrap_or(snapshot.domain().region());
+        region.area() * self.shares.of(snapshot, std::iter::once(region))[0]
+    }
+
+    /// Checks that a run has a finite area that is known.
+    fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+        let domain = start.domain();
+        let region = self.region.map_or(Ok(domain.region()), |region| inside(region, &domain))?;
+        let (area, requirement) = (region.area(), "finite: choose a region");
+        accept(area.is_finite(), "area of the domain", requirement, area)?;
+        check_area(&region, [region], start)
     }
 }
 
@@ -180,11 +197,7 @@ impl Observer for Stress {
         if self.domain.replace(start.domain()) != Some(start.domain()) {
             self.stretch.forget();
         }
-        let area = self.area(&start.domain());
-        let requirement = "finite: choose a region";
-        let finite = accept(area.is_finite(), "area of the domain", requirement, area);
-        let within = self.region.map_or(Ok(()), |region| inside(region, &start.domain()).map(|_| ()));
-        self.fault = finite.and(within.map(|()| area)).err();
+        self.fault = self.check(start).err();
         if self.stretch.begin(start.time()) {
             self.transferred = [0.0; 4];
         }
@@ -207,7 +220,7 @@ impl Observer for Stress {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let transferred = std::mem::take(&mut self.transferred);
         let Some(duration) = self.stretch.finish(snapshot.time()) else { return };
-        let area = self.area(&snapshot.domain());
+        let area = self.area(snapshot);
         let collisional = transferred.map(|sum| sum / (area * duration));
         let mut kinetic = [0.0; 4];
         let inside = |place| self.region.is_none_or(|region| region.contains(place));

@@ -66,7 +66,8 @@ impl Observable for Velocities {
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
 /// [`InnerProduct`]: the dot product of vectors, and the mean over the disks for values of disks. No mean is
 /// subtracted. For fluctuations, subtract the mean in the observable if it is known, or else its square from
-/// the correlation. After a gap in time, the observer begins with new origins. Pairs without a product, such
+/// the correlation. After a gap in time, or if disks were put elsewhere between two runs, the observer begins
+/// with new origins. Pairs without a product, such
 /// as samples that have no disk in common, are left out. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
@@ -128,7 +129,7 @@ impl<Q: Observable> TimeCorrelation<Q> {
 
 impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.lags.sample_times.start_at(start.time());
+        self.lags.begin(start);
     }
 
     fn next_sample(&self) -> f64 {
@@ -139,6 +140,10 @@ impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
         let value = self.observable.measure(snapshot);
         self.lags.push(snapshot.time(), value, InnerProduct::inner_product);
         self.lags.sample_times.advance_past(snapshot.time());
+    }
+
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.lags.pause(end);
     }
 }
 

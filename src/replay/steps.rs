@@ -4,7 +4,7 @@ use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Collision, Partner, on_collision};
 use crate::scheduler::EventScheduler;
-use crate::simulation::{RunError, Simulation};
+use crate::simulation::{Inlet, RunError, Simulation};
 
 /// A collision that was played back.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,9 +70,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
     /// The same as for [`Simulation::step_until`].
     pub fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
         let mut last = None;
-        self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
+        // A disk that comes in gets its name before it collides, so each opening of an inlet is a step.
+        while last.is_none() {
+            let opening = self.run.inlets().iter().map(Inlet::next_opening).fold(end, f64::min);
+            self.run
+                .step_until(opening, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
+            if last.is_none() {
+                self.name();
+                if opening >= end {
+                    return Ok(None);
+                }
+            }
+        }
         let replayed = last.map(|collision| {
-            // A disk that came in since the last collision, and has gone already, has no name.
             let id = |disk: usize| self.ids.get(disk).copied().unwrap_or(0);
             let partner_id = match collision.partner {
                 Partner::Disk(partner) => Some(id(partner)),

@@ -6,12 +6,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cells::{CellSize, Cells};
 use super::lookahead::Lookahead;
-use super::state::{Bodies, Clock, Identities};
+use super::state::{Bodies, Clock, Identities, Ledger};
 use super::{BuildError, Counters, Scratch, Simulation};
 use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
 use crate::instructions::Instructions;
+use crate::observable::Mark;
 use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
@@ -129,6 +130,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         if !self.disks.is_empty() {
             check_epoch(&clock, 0.0)?;
         }
+        // Along a direction without an end, gravity puts energy in for ever.
+        let falls = gravity.acceleration() * boundary.domain().periods();
+        let ledger = Ledger::new(self.start_time, bodies.energy(0.0), falls != DVec2::ZERO);
         let mut simulation = Simulation {
             rule: self.rule,
             boundary,
@@ -143,6 +147,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
             inlets: Vec::new(),
+            ledger,
+            marks: [Mark::new(), Mark::new()],
         };
         simulation.predict_all();
         Ok(simulation)

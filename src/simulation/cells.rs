@@ -29,8 +29,7 @@ use division::classes;
 pub(super) use grid::{Grid, Place};
 pub(super) use layers::Layouts;
 use layers::{Layers, layouts};
-#[cfg(feature = "serde")]
-pub(super) use layout::FEWEST;
+pub(crate) use layout::FEWEST;
 pub(super) use layout::{CELLS_PER_DISK, Layout, SPARE_CELLS};
 pub(super) use size_class::SizeClass;
 use size_class::{class_of, count, together};

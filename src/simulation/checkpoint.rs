@@ -18,7 +18,7 @@ use thiserror::Error;
 pub use resumption::Resumption;
 
 use super::cells::{Layouts, Place};
-use super::state::{Clock, Forecast, Identities, Spin, Trajectory};
+use super::state::{Clock, Forecast, Identities, Ledger, Spin, Trajectory};
 use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
@@ -90,6 +90,7 @@ struct Saved {
     generator: Xoshiro256PlusPlus,
     clock: Clock,
     counters: Counters,
+    ledger: Ledger,
 }
 
 /// An error: a checkpoint cannot be written, read or resumed.
@@ -283,6 +284,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             // The next look is no part of the state.
             clock: Clock { events_to_look: 0, ..self.clock },
             counters: self.counters,
+            ledger: self.ledger,
         })
     }
 }

@@ -137,6 +137,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let name = self.name_of(Partner::Wall(wall));
             return Err(failed(&collision, name).into());
         }
+        let is_plain = matches!(surface.response, Response::Shared | Response::Rule(_));
+        self.ledger.has_source |= !is_plain || surface.velocity != DVec2::ZERO;
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
         }
@@ -192,6 +194,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let reaction = self.boundary.react(&impact_of(collision, wall, self.clock.now));
         observer.on_collision(collision);
         let gone = self.bodies.disk(disk, self.clock.now);
+        observer.on_remove(&gone, collision.time);
         self.take_out(disk);
         self.take_back(&gone);
         if reaction == Reaction::Moved {
@@ -200,9 +203,30 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Event::WallCollision { disk, wall }
     }
 
+    #[inline]
     fn count_regime(&mut self, collision: &Collision) {
-        let by_contact_duration = collision.impulse.regime() == Regime::ContactDuration;
-        self.counters.contact_duration_collisions += u64::from(by_contact_duration);
+        if collision.impulse.regime().is_remedy() {
+            self.count_remedy(collision);
+        }
+    }
+
+    /// Counts a collision that a remedy decided.
+    #[cold]
+    #[inline(never)]
+    fn count_remedy(&mut self, collision: &Collision) {
+        let Collision { contact, impulse, .. } = collision;
+        match impulse.regime() {
+            Regime::ContactDuration => {
+                self.counters.contact_duration_collisions += 1;
+                let longest = self.counters.longest_contact.max(contact.time_since_last_collision());
+                self.counters.longest_contact = longest;
+            }
+            Regime::LeastRebound => {
+                self.counters.least_rebound_collisions += 1;
+                self.counters.energy_of_rebounds += impulse.energy_change(contact).max(0.0);
+            }
+            _ => {}
+        }
     }
 
     /// Tells whether a disk is slow enough for this epoch after a kick. Nearly all disks are.

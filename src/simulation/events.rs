@@ -55,6 +55,14 @@ pub struct Counters {
     pub wall_collisions: u64,
     /// Collisions, with disks or walls, that a contact-duration model made elastic.
     pub contact_duration_collisions: u64,
+    /// The longest time since the last collision at which a contact-duration model acted, just below its
+    /// duration.
+    pub longest_contact: f64,
+    /// Collisions whose surfaces parted at the least speed of
+    /// [`LeastRebound`](crate::collision::LeastRebound).
+    pub least_rebound_collisions: u64,
+    /// Energy that those of them put in which gained energy.
+    pub energy_of_rebounds: f64,
     /// Passages of a disk from one neighbor cell to another.
     pub cell_crossings: u64,
     /// Predicted collisions that were out of date when they came up, since the partner had had another
@@ -83,7 +91,7 @@ pub struct Counters {
 impl Counters {
     /// Returns the counts since `earlier`.
     ///
-    /// The largest overlaps and the farthest jump are those of the whole run.
+    /// The largest overlaps, the longest contact and the farthest jump are those of the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {
@@ -92,6 +100,10 @@ impl Counters {
             contact_duration_collisions: self
                 .contact_duration_collisions
                 .saturating_sub(earlier.contact_duration_collisions),
+            least_rebound_collisions: self
+                .least_rebound_collisions
+                .saturating_sub(earlier.least_rebound_collisions),
+            energy_of_rebounds: self.energy_of_rebounds - earlier.energy_of_rebounds,
             cell_crossings: self.cell_crossings.saturating_sub(earlier.cell_crossings),
             repredictions: self.repredictions.saturating_sub(earlier.repredictions),
             horizons: self.horizons.saturating_sub(earlier.horizons),

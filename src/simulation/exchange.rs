@@ -5,6 +5,7 @@ use super::traffic::check_inlets;
 use super::{BuildError, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::observable::Mark;
 use crate::scheduler::EventScheduler;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -47,7 +48,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         check_inlets(&boundary, &self.inlets)?;
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
         self.count_jumps(&boundary);
-        (self.wall_count, self.cells) = (wall_count, cells);
+        (self.wall_count, self.cells, self.marks[1]) = (wall_count, cells, Mark::new());
+        self.ledger.has_source = true;
         let mut simulation = self.exchanged(|rule, _, scheduler| (rule, boundary, scheduler));
         simulation.predict_all();
         Ok(simulation)
@@ -56,7 +58,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Exchanges parts, and leaves the rest as it is.
     fn exchanged<R2, B2, S2>(self, new: impl FnOnce(R, B, S) -> (R2, B2, S2)) -> Simulation<R2, B2, S2> {
         let Self { wall_count, bodies, cells, clock, generator, .. } = self;
-        let Self { counters, lookahead, instructions, scratch, inlets, .. } = self;
+        let Self { counters, lookahead, instructions, scratch, inlets, ledger, marks, .. } = self;
         let (rule, boundary, scheduler) = new(self.rule, self.boundary, self.scheduler);
         Simulation {
             rule,
@@ -72,6 +74,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             instructions,
             scratch,
             inlets,
+            ledger,
+            marks,
         }
     }
 }

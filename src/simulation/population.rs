@@ -93,6 +93,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts all events anew after disks have come or gone.
     pub(super) fn begin_anew(&mut self) {
         self.lookahead = Lookahead::default();
+        self.ledger.has_source = true;
         self.clock.epoch_length = self.bodies.epoch_length();
         self.predict_all();
     }

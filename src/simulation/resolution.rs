@@ -72,15 +72,18 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
     let outcome = collide_bodies(rule, normal, since, (&first, &material), (&second, &other));
+    let (fallen, gained) = bodies.fall(offset);
     let collision = Collision {
         time: clock.time(),
         disk,
+        ids: [bodies.id(disk), bodies.id(partner)],
         partner: Partner::Disk(partner),
         normal,
-        position: here + bodies.fall(offset).0,
+        position: here + fallen,
         distance,
         contact: outcome.contact,
         impulse: outcome.impulse,
+        velocities: [outcome.first.velocity + gained, outcome.second.velocity + gained],
         energy_change: outcome.impulse.energy_change(&outcome.contact),
     };
     (collision, [Kick::between(&first, &outcome.first), Kick::between(&second, &outcome.second)])
@@ -131,12 +134,14 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let collision = Collision {
         time: clock.time(),
         disk,
+        ids: [bodies.id(disk), 0],
         partner: Partner::Wall(index),
         normal: surface.normal,
         position: bodies.position(disk, offset),
         distance: bodies.radius(disk),
         contact,
         impulse,
+        velocities: [leaving.velocity, surface.velocity],
         energy_change: kinetic_energy(&leaving, mass, inertia) - kinetic_energy(&arriving, mass, inertia),
     };
     let mut kick = Kick::between(&arriving, &leaving);

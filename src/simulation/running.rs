@@ -54,7 +54,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         limits: &Limits,
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {
-        self.watched_run(limits, observer).map_err(|error| *error)
+        self.guarded(|run| run.watched_run(limits, observer)).map_err(|error| *error)
+    }
+
+    /// Does a piece of work, unless a panic tore an earlier one. A part that panics in the midst of an event
+    /// leaves disks whose next events are not known.
+    #[inline]
+    fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Outcome<T>) -> Outcome<T> {
+        if std::mem::replace(&mut self.ledger.is_running, true) {
+            return Err(Box::new(RunError::Torn { time: self.time() }));
+        }
+        let done = work(self);
+        self.ledger.is_running = false;
+        done
     }
 
     fn watched_run<O: Observer + ?Sized>(&mut self, limits: &Limits, observer: &mut O) -> Outcome<RunEnd> {
@@ -110,7 +122,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         end: f64,
         observer: &mut O,
     ) -> Result<Option<Event>, RunError> {
-        self.watched_step(end, observer).map_err(|error| *error)
+        self.guarded(|run| run.watched_step(end, observer)).map_err(|error| *error)
     }
 
     fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
@@ -120,7 +132,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let reached = loop {
             let opening = self.next_opening()?;
             match self.collide_until(end.min(opening), &watch, observer)? {
-                Reached::Time if opening <= end => self.open_inlets(opening)?,
+                Reached::Time if opening <= end => self.open_inlets(opening, observer)?,
                 reached => break reached,
             }
         };
@@ -154,7 +166,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 }
             }
             if opening <= stop {
-                self.open_inlets(opening)?;
+                self.open_inlets(opening, observer)?;
                 continue;
             }
             if sample > stop {
@@ -208,7 +220,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (events, disks) = (effort(&self.counters), self.bodies.len());
         if self.clock.guard.left(events, disks) == 0 {
             let least = watch.least_progress(self.clock.epoch_length, disks);
-            if let Some(standstill) = self.clock.guard.end_window(due, events, least) {
+            if let Some(standstill) = self.clock.guard.end_window(due, events, least)
+                && self.is_stalled(disk, due)
+            {
                 return Err(self.stalled(&standstill, disk, due).into());
             }
         }

@@ -5,12 +5,21 @@ use super::resolution::{resolve_pair, resolve_wall};
 use super::state::{Clock, Exit, Forecast, Standstill};
 use super::{Remedy, RunError, Simulation};
 use crate::boundary::{Boundary, Response};
-use crate::collision::{CollisionRule, Contact, Regime};
+use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
 /// Least closing speed, relative to the speed of a typical disk, at which the diagnosis tries the rule.
 const SLOW: f64 = 1e-9;
+
+/// Number of windows in which a run without losses may hardly advance.
+const PATIENCE: u32 = 64;
+
+/// Time, relative to an epoch, over which the velocity of a wall is compared with the way of its surface.
+const MOMENT: f64 = 1e-6;
+
+/// Relative difference of these two that is rounding.
+const ALIKE: f64 = 1e-3;
 
 /// Share of the energy, or of the closing speed, that is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -25,6 +34,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
         let Standstill { events, elapsed } = *standstill;
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
+    }
+
+    /// Returns whether a run in which time hardly advances before this event will not go on.
+    ///
+    /// A lossless collision may be one of many that end by themselves: a light disk between a wall and a
+    /// heavy disk that comes near. Such a run has more time. If nothing loses energy, and yet it does not
+    /// end, a disk is squeezed.
+    #[cold]
+    pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
+        let (disk, due) = self.next_collider(disk, due);
+        let remedy = self.partner_of(disk).map(|partner| self.remedy(disk, partner, due));
+        remedy != Some(Remedy::FasterDisks) || self.clock.guard.slow >= PATIENCE
     }
 
     /// Returns the disk of the next collision and its time offset, or the arguments if there is no collision.
@@ -58,6 +79,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
             Partner::Wall(wall) => {
                 let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
+                if self.moves_otherwise(disk, wall, due) {
+                    return Remedy::WallVelocity;
+                }
                 let mut generator = self.generator.clone();
                 let (collision, _) =
                     resolve_wall(&self.bodies, &self.rule, &mut generator, &surface, &clock, disk, wall);
@@ -68,6 +92,22 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 }
             }
         }
+    }
+
+    /// Returns whether a wall's geometry comes toward a disk at another speed than the wall's surface says.
+    ///
+    /// The depth of a larger disk that stays where it is grows at the speed of the wall.
+    fn moves_otherwise(&self, disk: usize, wall: usize, due: f64) -> bool {
+        let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
+        let probe = self.probe(disk).with_position(self.bodies.position(disk, due));
+        let larger = probe.with_radius(1.01 * probe.radius());
+        let depth =
+            |time: f64| self.boundary.overlap(&larger.with_time(time)).filter(|found| found.with == wall);
+        let wait = MOMENT * self.clock.epoch_length;
+        let (Some(before), Some(after)) = (depth(due), depth(due + wait)) else { return false };
+        let (speed, told) = ((after.depth - before.depth) / wait, surface.velocity.dot(surface.normal));
+        let typical = self.bodies.typical_diameter / self.clock.epoch_length;
+        (speed - told).abs() > ALIKE * (speed.abs() + told.abs() + typical)
     }
 
     /// Returns the remedy that fits the rule's answer to a slower contact like this.
@@ -82,8 +122,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             .with_kinds(contact.kinds())
             .with_radii(contact.radii());
         let impulse = rule.impulse(&slow);
+        let fast = rule.impulse(contact);
+        let gains = |impulse: Impulse, contact: &Contact| {
+            impulse.regime() != Regime::LeastRebound
+                && impulse.energy_change(contact) > ROUNDING * contact.available_energy()
+        };
         if impulse.closing_speed_after(&slow) > ROUNDING * closing {
             Remedy::PushApart
+        } else if gains(impulse, &slow) || gains(fast, contact) {
+            Remedy::EnergyGain
         } else if impulse.energy_change(&slow) < -ROUNDING * slow.available_energy() {
             Remedy::ElasticWhenSlow
         } else if impulse.regime() == Regime::ContactDuration {

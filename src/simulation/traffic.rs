@@ -11,6 +11,7 @@ use super::{Inlet, Simulation};
 use crate::boundary::{Boundary, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::MOST_DISKS;
+use crate::observable::Observer;
 use crate::quantity::accept;
 use crate::scheduler::EventScheduler;
 use crate::{Disk, ParameterError};
@@ -65,7 +66,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Opens all inlets whose absolute time this is.
-    pub(super) fn open_inlets(&mut self, time: f64) -> Outcome<()> {
+    pub(super) fn open_inlets<O: Observer + ?Sized>(&mut self, time: f64, observer: &mut O) -> Outcome<()> {
         for number in 0..self.inlets.len() {
             if self.inlets[number].times.upcoming() > time {
                 continue;
@@ -77,6 +78,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 self.put_in(&placed)?;
                 self.inlets[number].waiting.pop_front();
                 self.counters.insertions += 1;
+                self.ledger.has_source = true;
+                observer.on_insert(&self.bodies.disk(self.len() - 1, self.clock.now), time);
             }
         }
         Ok(())

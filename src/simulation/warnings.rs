@@ -10,11 +10,20 @@ use super::{Counters, Inlet, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::error::Rounded;
-use crate::observable::Partner;
+use crate::observable::{Partner, Temperatures};
 use crate::scheduler::EventScheduler;
 
 /// Fewest collisions of which a share says something.
 const FEWEST: u64 = 1000;
+
+/// Contact duration, relative to the time between two collisions of a disk, that is long.
+const LONG: f64 = 0.05;
+
+/// Speed across an axis, relative to the speed along it, that is none.
+const STRAIGHT: f64 = 1e-9;
+
+/// Gain of energy, relative to the energy, that is no rounding.
+const GAIN: f64 = 1e-9;
 
 /// Fewest disks at an inlet that count as a jam.
 const JAM: usize = 1000;
@@ -24,8 +33,8 @@ const JUMP: f64 = 1e-6;
 
 /// A fact that a run noticed and survived, and that its caller may not have wanted.
 ///
-/// Warnings follow from the [`Counters`], so checkpoints and records of studies have them, too; only those
-/// about inlets come from the simulation itself.
+/// Some warnings follow from the [`Counters`] alone, so records of studies have them, too; the others come
+/// from the simulation itself ([`Simulation::warnings`]).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -41,14 +50,43 @@ pub enum Warning {
         /// Number of jumps of all walls.
         jumps: u64,
     },
-    /// More than half of the collisions were elastic, since they came within the contact duration of the last
-    /// ones. In matter at rest this is what a contact duration is for. In a flow, it is longer than the time
-    /// between collisions, and the rule hardly ever applies.
-    MostlyContactDuration {
+    /// The contact duration is not short compared with the time between the collisions of a disk: by Luding's
+    /// criterion, $`t_c\,\omega_c \ll 1`$, where $`\omega_c`$ is the rate of the collisions that the model
+    /// did not change. It removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a flow.
+    LongContactDuration {
+        /// The contact duration, as far as collisions showed it, times the rate of a disk's collisions.
+        share_of_time: f64,
         /// Number of collisions that the contact-duration model made elastic.
         elastic: u64,
         /// Number of all collisions, with disks or walls.
         collisions: u64,
+    },
+    /// More than half of the collisions parted at the least speed of
+    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow,
+    /// the speed is too high, and the energy that it puts in keeps the disks moving.
+    MostlyLeastRebound {
+        /// Number of collisions that the remedy decided.
+        raised: u64,
+        /// Number of all collisions, with disks or walls.
+        collisions: u64,
+        /// Energy that it put in.
+        energy: f64,
+    },
+    /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
+    /// them aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small
+    /// velocities at the start mend it, such as those of
+    /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
+    OneDirection {
+        /// Number of collisions, with disks or walls.
+        collisions: u64,
+    },
+    /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in:
+    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds out.
+    EnergyGained {
+        /// Energy when the run was built.
+        before: f64,
+        /// Energy now.
+        now: f64,
     },
     /// A thousand disks or more wait at an inlet. It may have no room at all, as inside of a part.
     DisksWait {
@@ -69,10 +107,29 @@ impl fmt::Display for Warning {
                 Rounded(*by),
                 named(Some(Partner::Wall(*wall)), name.as_deref())
             ),
-            Self::MostlyContactDuration { elastic, collisions } => write!(
+            Self::LongContactDuration { share_of_time, elastic, collisions } => write!(
                 formatter,
-                "{elastic} of {collisions} collisions lost nothing, since they came within the contact duration: \
-                 it is longer than the time between collisions, or matter is at rest"
+                "the contact duration is {} of the time between two collisions of a disk ({elastic} of {collisions} \
+                 collisions lost nothing), so it takes about {} % of the dissipation away; a shorter one is needed",
+                Rounded(*share_of_time),
+                Rounded((225.0 * share_of_time).min(100.0))
+            ),
+            Self::MostlyLeastRebound { raised, collisions, energy } => write!(
+                formatter,
+                "{raised} of {collisions} collisions parted at the least speed of LeastRebound, which put in the \
+                 energy {}: right for matter at rest, but in a flow the speed is too high",
+                Rounded(*energy)
+            ),
+            Self::OneDirection { collisions } => write!(
+                formatter,
+                "after {collisions} collisions all disks still move along one axis only: they started in line; give \
+                 them small velocities in all directions"
+            ),
+            Self::EnergyGained { before, now } => write!(
+                formatter,
+                "the energy grew from {} to {} without a source: a rule gains energy; see collision::laws::check",
+                Rounded(*before),
+                Rounded(*now)
             ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,
@@ -87,26 +144,27 @@ impl Counters {
     ///
     /// ```
     /// use granular_edmd::boundary::Container;
-    /// use granular_edmd::collision::{ContactDuration, Smooth};
+    /// use granular_edmd::collision::{LeastRebound, Smooth};
     /// use granular_edmd::simulation::Warning;
     /// use granular_edmd::{Simulation, initial};
     ///
     /// let container = Container::closed(20.0, 20.0)?;
     /// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 100, 0.5)?, 1.0, 1)?;
-    /// let rule = ContactDuration::new(Smooth::from_restitution(0.9)?, 1000.0)?;
+    /// let rule = LeastRebound::new(Smooth::from_restitution(0.9)?, 10.0)?;
     /// let mut run = Simulation::builder(rule, container).disks(disks).build()?;
     /// run.run_until(100.0, &mut ())?;
-    /// assert!(matches!(run.warnings()[..], [Warning::MostlyContactDuration { .. }]));
+    /// assert!(matches!(run.counters().warnings()[..], [Warning::MostlyLeastRebound { .. }]));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn warnings(&self) -> Vec<Warning> {
-        let Self { contact_duration_collisions: elastic, jumped_wall, farthest_jump: by, .. } = *self;
+        let Self { least_rebound_collisions: raised, jumped_wall, farthest_jump: by, .. } = *self;
         let (jumps, wall) = (self.wall_jumps, usize::from(jumped_wall));
         let jumped = (jumps > 0).then_some(Warning::WallJumped { wall, name: None, by, jumps });
         let collisions = self.collisions();
-        let is_mostly_elastic = collisions >= FEWEST && elastic > collisions / 2;
-        let elastic = is_mostly_elastic.then_some(Warning::MostlyContactDuration { elastic, collisions });
-        jumped.into_iter().chain(elastic).collect()
+        let is_mostly_raised = collisions >= FEWEST && raised > collisions / 2;
+        let energy = self.energy_of_rebounds;
+        let raised = is_mostly_raised.then_some(Warning::MostlyLeastRebound { raised, collisions, energy });
+        jumped.into_iter().chain(raised).collect()
     }
 }
 
@@ -123,7 +181,41 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let waiting = self.inlets.iter().map(Inlet::waiting).enumerate();
         let crowded = waiting.filter(|&(_, waiting)| waiting >= JAM);
         warnings.extend(crowded.map(|(inlet, waiting)| Warning::DisksWait { inlet, waiting }));
+        warnings.extend(self.long_contact_duration());
+        warnings.extend(self.one_direction());
+        warnings.extend(self.energy_gained());
         warnings
+    }
+
+    fn long_contact_duration(&self) -> Option<Warning> {
+        let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
+        let collisions = self.counters.collisions();
+        let elapsed = self.time() - self.ledger.start;
+        // Of a collision of two disks, both take part.
+        let rate = |count: u64| 2.0 * count as f64 / (self.len() as f64 * elapsed);
+        let free = longest_contact * rate(collisions - elastic);
+        // If the model decides nearly all collisions, few are left to count. Matter at rest is like that,
+        // too, but its disks go nowhere in the contact duration.
+        let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
+        let is_flow = elastic > collisions / 2 && way > LONG * self.bodies.typical_diameter;
+        let share_of_time = if is_flow { longest_contact * rate(collisions) } else { free };
+        let is_long = collisions >= FEWEST && (is_flow || free > LONG);
+        is_long.then_some(Warning::LongContactDuration { share_of_time, elastic, collisions })
+    }
+
+    fn one_direction(&self) -> Option<Warning> {
+        let collisions = self.counters.disk_collisions;
+        let speeds = (0..self.len()).map(|disk| self.bodies.velocity(disk, self.clock.now).abs());
+        let DVec2 { x, y } = speeds.fold(DVec2::ZERO, DVec2::max);
+        let is_one = collisions >= FEWEST && x.min(y) <= STRAIGHT * x.max(y);
+        is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })
+    }
+
+    fn energy_gained(&self) -> Option<Warning> {
+        let has_source = self.ledger.has_source || self.counters.least_rebound_collisions > 0;
+        let (before, now) = (self.ledger.energy, self.bodies.energy(self.clock.now));
+        let is_more = now - before > GAIN * (now.abs() + before.abs());
+        (!has_source && is_more).then_some(Warning::EnergyGained { before, now })
     }
 
     /// Counts the walls that are elsewhere in another boundary at this moment. Walls are the same if their

@@ -1,20 +1,28 @@
 //! The standard states: runs that have settled, always with the same bits.
 
-use std::error::Error;
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
+use thiserror::Error;
 
-use crate::boundary::{Boundary, Container, Part, Vessel, Wall};
+use crate::boundary::{Boundary, Container, Part, Vessel, VesselError, Wall, WallError};
 use crate::collision::{ContactDuration, Elastic, Frictional};
-use crate::initial::{even_lattice, homogeneous, lattice, placed_at_random, with_maxwellian_velocities};
+use crate::initial::{
+    PlacementError, even_lattice, homogeneous, lattice, placed_at_random, with_maxwellian_velocities,
+};
 use crate::quantity::accept;
-use crate::simulation::Limits;
+use crate::simulation::{BuildError, Limits, RunError};
 use crate::wall::BiParabolic;
-use crate::{Disk, Simulation};
+use crate::{Disk, ParameterError, Simulation};
 
-/// An error: a standard state cannot be made. Unless its parameters were changed, this does not happen.
-pub type StateError = Box<dyn Error + Send + Sync>;
+/// An error: a standard state cannot be made. Only [`gas`] has a parameter that can be wrong.
+#[derive(Debug, Error)]
+#[error(transparent)]
+pub struct StateError(Box<dyn std::error::Error + Send + Sync>);
+
+crate::error::from_causes! {
+    StateError from ParameterError, PlacementError, VesselError, WallError, BuildError, RunError
+}
 
 /// The paper's box in a standard state.
 pub type PaperBox = Simulation<ContactDuration<Frictional>>;

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use crate::ParameterError;
 use crate::error::{Readable, Rounded};
+use crate::observable::ObserverError;
 
 /// An error in recording a trajectory.
 ///
@@ -81,6 +82,12 @@ pub enum RecordError {
         /// Time at which the run begins.
         time: f64,
     },
+}
+
+impl From<RecordError> for ObserverError {
+    fn from(error: RecordError) -> Self {
+        Self::new(error)
+    }
 }
 
 impl RecordError {

@@ -107,7 +107,8 @@ impl Piston {
         [self.lowest, self.highest]
     }
 
-    /// Returns the energy of the wall, kinetic and potential: $`\tfrac12 M\dot z^2 - Fz + \tfrac12k(z-z_0)^2`$.
+    /// Returns the energy of the wall, kinetic and potential: $`\tfrac12 M\dot z^2 - Fz +
+    /// \tfrac12k(z-z_0)^2`$.
     ///
     /// ```
     /// use granular_edmd::wall::Piston;

@@ -24,8 +24,8 @@
 //!    of them. They need a file system whose locks all of them see, such as a local one, or NFS from version
 //!    4 on. Two runs of the same ramp ([`Study::run_ramp`]) may do it twice, with one result.
 //! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
-//! 5. All records of a study come from one code. `provenance.json` keeps the [`RESULTS`](granular_edmd::RESULTS) of
-//!    the crate and the [revision](Experiment::revision) of the experiment, and other code is refused by name
+//! 5. All records of a study come from one code. `provenance.json` keeps the
+//!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the experiment, and other code is refused by name
 //!    whatever it asks of the study ([`StudyError::Code`]), until [`Study::accept_changes`] lets it go on.
 //! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
 //!

@@ -3,8 +3,8 @@
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::wall::{
-    BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated, Triangular,
-    WallMotion,
+    BiParabolic, Delayed, Fixed, Piston, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
+    Triangular, WallMotion,
 };
 
 fn closed() -> Container {
@@ -52,6 +52,15 @@ fn every_motion_goes_round() {
     let ours = source.lines().filter_map(|line| line.strip_prefix("pub use ")?.strip_suffix(';'));
     let types = ours.filter_map(|path| path.rsplit("::").next()).filter(|name| !name.contains('{'));
     let types = types.filter(|name| name.starts_with(char::is_uppercase) && *name != "Violation");
-    assert_eq!(types.collect::<Vec<_>>(), tried);
+    // A piston is no motion that others could hold.
+    let lid = Piston::new(3.0, -0.5, 2.0).unwrap().with_force(1.0).unwrap().with_spring(2.0, 0.5).unwrap();
+    let piston = closed().with_piston(Wall::Lid, lid.starting_at(0.25, -1.0).unwrap()).unwrap();
+    goes_round(&piston, "Piston");
+    let text = serde_json::to_string(&piston).unwrap();
+    let motion = text.split_once("\"stroke\":").unwrap().1.split_once('}').unwrap().0;
+    let wrapped = format!("{{\"motion\":{{\"stroke\":{motion}}}}},\"start\":1.0}}");
+    let error = serde_json::from_str::<Delayed>(&wrapped).unwrap_err().to_string();
+    assert!(error.contains("a piston is a wall of a container"), "{error}");
+    assert_eq!(types.filter(|name| *name != "Piston").collect::<Vec<_>>(), tried);
     goes_round(&closed().shaken_sideways(Sinusoidal::new(0.1, 3.0).unwrap()).unwrap(), "shaken");
 }

@@ -1,6 +1,7 @@
 //! Boundaries: the container in exact numbers; the contract, which each planted fault breaks; names and
 //! fingerprints.
 
+mod areas;
 mod container;
 mod contract;
 mod fast_parts;
@@ -8,6 +9,7 @@ mod files;
 mod fingerprints;
 mod names;
 mod obstacles;
+mod patches;
 mod periodic_parts;
 mod planted;
 mod touches;

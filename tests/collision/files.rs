@@ -4,7 +4,7 @@ use granular_edmd::Kind;
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, KnownRule, LeastRebound,
-    Rough, RulesByKind, Smooth, SpeedDependent, TangentialResponse,
+    RollingFriction, Rough, RulesByKind, Smooth, SpeedDependent, TangentialResponse,
 };
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
@@ -49,6 +49,7 @@ proptest! {
         let below = ElasticBelow::new(frictional, duration).unwrap();
         prop_assert!(returns(&below) && returns(&below.with_tangential_response(unchanged)));
         prop_assert!(returns(&LeastRebound::new(frictional, duration).unwrap()));
+        prop_assert!(returns(&RollingFriction::new(frictional, duration).unwrap()));
         prop_assert!(returns(&SpeedDependent::from_restitution(ratio, duration).unwrap().with_friction(friction)));
     }
 }
@@ -88,6 +89,7 @@ fn every_rule_of_the_crate_returns_on_a_wall() {
         walls_return(lasting.with_tangential_response(TangentialResponse::Reversing)),
         walls_return(below),
         walls_return(LeastRebound::new(table.clone(), 0.2).unwrap()),
+        walls_return(RollingFriction::new(frictional, 0.1).unwrap()),
         walls_return(table),
         walls_return(ContactDuration::new(boxed, 1.0).unwrap()),
         walls_return(mixed.known().unwrap()),
@@ -115,7 +117,7 @@ fn rules_within_rules_are_bounded() {
     let error = postcard::from_bytes::<KnownRule>(&bytes).unwrap_err();
     assert_eq!(error, postcard::Error::SerdeDeCustom);
     let nested = |depth: usize| {
-        let rule = r#"{"least_rebound":{"rule":"#.repeat(depth) + r#"{"elastic":null}"#;
+        let rule = r#"{"least_rebound":{"rule":"#.repeat(depth) + r#"{"elastic":{}}"#;
         serde_json::from_str::<KnownRule>(&(rule + &r#","speed":1}}"#.repeat(depth)))
     };
     assert!(nested(15).unwrap().fingerprint().is_some());
@@ -134,10 +136,10 @@ fn the_names_in_a_file_are_stable() {
     let friction = r#"{"tangential_inelasticity":0.25,"static_friction":0.5,"dynamic_friction":0.5}"#;
     assert_eq!(serde_json::to_string(&Friction::from_inelasticity(0.25, 0.5).unwrap()).unwrap(), friction);
     let below = ElasticBelow::new(Elastic, 0.125).unwrap();
-    let text_below = r#"{"rule":null,"speed":0.125,"tangential_response":"Frictionless"}"#;
+    let text_below = r#"{"rule":{},"speed":0.125,"tangential_response":"Frictionless"}"#;
     assert_eq!(serde_json::to_string(&below).unwrap(), text_below);
     let rebound = LeastRebound::new(Elastic, 0.125).unwrap();
-    assert_eq!(serde_json::to_string(&rebound).unwrap(), r#"{"rule":null,"speed":0.125}"#);
+    assert_eq!(serde_json::to_string(&rebound).unwrap(), r#"{"rule":{},"speed":0.125}"#);
     let bizon = SpeedDependent::from_restitution(0.5, 2.0)
         .unwrap()
         .with_friction(Friction::from_inelasticity(0.25, 0.5).unwrap());
@@ -160,10 +162,10 @@ fn a_file_passes_the_constructors() {
     let frictional = format!(r#"{{"normal_inelasticity":0,"friction":{friction}}}"#);
     assert!(refusal::<Frictional>(&frictional).contains(&error.to_string()));
     assert!(refusal::<Friction>(friction).contains(&error.to_string()));
-    let model = r#"{"rule":null,"duration":0}"#;
+    let model = r#"{"rule":{},"duration":0}"#;
     let error = ContactDuration::new(Elastic, 0.0).unwrap_err();
     assert!(refusal::<ContactDuration<Elastic>>(model).contains(&error.to_string()));
-    let below = r#"{"rule":null,"speed":-1}"#;
+    let below = r#"{"rule":{},"speed":-1}"#;
     let error = ElasticBelow::new(Elastic, -1.0).unwrap_err();
     assert!(refusal::<ElasticBelow<Elastic>>(below).contains(&error.to_string()));
     let error = LeastRebound::new(Elastic, -1.0).unwrap_err();
@@ -191,12 +193,12 @@ fn unknown_missing_and_unreadable_fields_are_refused() {
         r#""dynamic_friction":0},"restitution":1}"#
     );
     assert!(refusal::<Frictional>(frictional).contains("unknown field `restitution`"));
-    let model = r#"{"rule":null,"duration":1,"response":0}"#;
+    let model = r#"{"rule":{},"duration":1,"response":0}"#;
     assert!(refusal::<ContactDuration<Elastic>>(model).contains("unknown field `response`"));
-    let below = r#"{"rule":null,"speed":1,"response":0}"#;
+    let below = r#"{"rule":{},"speed":1,"response":0}"#;
     assert!(refusal::<ElasticBelow<Elastic>>(below).contains("unknown field `response`"));
     let bizon = r#"{"least_restitution":0.5,"speed":1,"exponent":0.75}"#;
     assert!(refusal::<SpeedDependent>(bizon).contains("unknown field `exponent`"));
-    let response = r#"{"rule":null,"duration":1,"tangential_response":"Sticky"}"#;
+    let response = r#"{"rule":{},"duration":1,"tangential_response":"Sticky"}"#;
     assert!(refusal::<ContactDuration<Elastic>>(response).contains("unknown variant `Sticky`"));
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use granular_edmd::Fingerprint;
 use granular_edmd::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
-    LeastRebound, Rough, Smooth, SpeedDependent, TangentialResponse, from_fn,
+    LeastRebound, RollingFriction, Rough, Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 
 /// A rule that answers everything that it can be asked.
@@ -72,6 +72,8 @@ fn different_rules_have_different_fingerprints() {
         ),
         Box::new(LeastRebound::new(Elastic, 1e-4).unwrap()),
         Box::new(LeastRebound::new(Elastic, 1e-5).unwrap()),
+        Box::new(RollingFriction::new(Elastic, 1e-4).unwrap()),
+        Box::new(RollingFriction::new(Elastic, 1e-5).unwrap()),
         Box::new(SpeedDependent::from_restitution(0.1, 0.2).unwrap()),
         Box::new(SpeedDependent::from_restitution(0.2, 0.1).unwrap()),
         Box::new(

@@ -17,6 +17,7 @@ mod kinematics;
 mod least_rebound;
 mod parameters;
 mod planted;
+mod rolling;
 mod rules;
 mod separation;
 mod speed_dependent;

@@ -20,6 +20,7 @@ mod layer;
 mod measured;
 mod mixtures;
 mod order_parameters;
+mod piston;
 mod plate;
 mod reversal;
 mod rough_transport;

@@ -2,12 +2,19 @@
 //! files.
 
 mod chance;
+mod crossings;
 #[cfg(feature = "serde")]
 mod measurements;
 mod measures;
 mod observables;
 mod observers;
 mod profiles_and_fields;
+#[path = "../support/report.rs"]
+mod report;
+mod right;
+mod settings;
 mod stress_and_velocities;
+#[path = "../support/table.rs"]
+mod table;
 mod tables;
 mod transport;

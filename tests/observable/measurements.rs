@@ -39,6 +39,7 @@ fn watchers() -> Result<Watchers, ParameterError> {
     let observables = ((OrderParameters, CenterOfMass), (Energies, Temperatures));
     let region = region(DVec2::ZERO, DVec2::new(10.0, 20.0));
     let grid = Grid::new(region, 2, 2)?;
+    let bulk = Region::new(DVec2::splat(2.5), DVec2::new(7.5, 17.5));
     Ok((
         Series::new(observables, times),
         (EnergyChange::default(), CollisionCounts::default()),
@@ -50,7 +51,7 @@ fn watchers() -> Result<Watchers, ParameterError> {
             CollisionHistograms::new(5.0, 5.0, 6)?,
         ),
         (
-            Sampled::new(PairCorrelation::new(2.0, 8)?.within(region)?, times),
+            Sampled::new(PairCorrelation::new(2.0, 8)?.within(bulk)?, times),
             MeanSquaredDisplacement::new(5, times)?,
             TimeCorrelation::new(Velocities, 5, times)?,
         ),

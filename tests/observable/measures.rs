@@ -84,7 +84,7 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
     assert!(reason(Container::open(20.0)?, &mut pairs).contains("or have a region, but is 7"));
     let moment = Snapshot::new(0.0, &[], Container::periodic(20.0, 20.0)?.domain(), 0.0).with_wall_count(5);
     let said = PairCorrelation::new(1.0, 3)?.check(&moment).unwrap_err().to_string();
-    assert!(said.contains("number of walls must be at most 4, or the correlation within"), "{said}");
+    assert!(said.contains("range of the correlation must be less than the distance of the region"), "{said}");
     let large = Region::new(DVec2::new(-1.0, 0.0), DVec2::new(5.0, 5.0));
     let said = reason(
         Container::closed(20.0, 12.0)?,

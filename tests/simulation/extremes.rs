@@ -81,7 +81,7 @@ impl Random {
             3 => -self.decade(-30.0, 30.0),
             _ => self.decade(-30.0, 30.0),
         };
-        if self.chance(4) { Gravity::tilted(strength, 0.7) } else { strength.into() }
+        if self.chance(4) { Gravity::tilted(strength, 0.7).unwrap() } else { strength.into() }
     }
 }
 

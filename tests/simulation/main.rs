@@ -42,4 +42,5 @@ mod stopping;
 mod thermal;
 mod traffic;
 #[cfg(feature = "serde")]
+mod warned;
 mod whole_files;

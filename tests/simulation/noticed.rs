@@ -306,9 +306,9 @@ fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
     assert_eq!(warnings(1e-4), []);
     let long = warnings(1000.0);
     assert!(
-        matches!(long[..], [Warning::MostlyContactDuration { elastic, collisions }] if elastic < collisions)
+        matches!(long[..], [Warning::LongContactDuration { elastic, collisions, .. }] if elastic < collisions)
     );
-    assert!(long[0].to_string().contains("longer than the time between collisions"), "{}", long[0]);
+    assert!(long[0].to_string().contains("of the time between two collisions"), "{}", long[0]);
 }
 
 /// A gravity of −0 is a gravity of 0, however it is set.

@@ -20,7 +20,7 @@ fn gas(container: &Container, count: usize, seed: u64) -> Outcome<Vec<Disk>> {
 /// A disk that meets nobody flies straight, or falls, through as many periods as its time allows.
 #[test]
 fn a_lonely_disk_is_where_its_flight_leads() -> Outcome {
-    let tilted = [0.4, -2.0].map(|angle| Gravity::tilted(0.3, angle));
+    let tilted = [0.4, -1.4].map(|angle| Gravity::tilted(0.3, angle).unwrap());
     for gravity in [0.0, 0.3, -0.3].map(Gravity::from).into_iter().chain(tilted) {
         let container = Container::periodic(7.0, 5.0)?;
         let (start, velocity) = (DVec2::new(1.0, 2.0), DVec2::new(-1.3, 0.7));

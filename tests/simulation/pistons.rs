@@ -22,7 +22,7 @@ fn lid(snapshot: &Snapshot<'_>, height: f64) -> (f64, f64) {
 }
 
 fn energy(snapshot: &Snapshot<'_>, piston: &Piston, height: f64) -> f64 {
-    let disks: f64 = snapshot.disks().iter().map(|disk| disk.translational_energy()).sum();
+    let disks: f64 = snapshot.disks().iter().map(Disk::translational_energy).sum();
     let pull = snapshot.gravity().acceleration();
     let fallen: f64 = snapshot.disks().iter().map(|disk| -disk.mass() * pull.dot(disk.position())).sum();
     let (displacement, velocity) = lid(snapshot, height);
@@ -125,7 +125,7 @@ fn a_slow_compression_heats_as_the_inverse_volume() -> Outcome {
     let disks = initial::random(&container, 200, 0.05, 20.0, 5)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 6)?;
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
-    let kinetic = |snapshot: &Snapshot<'_>| snapshot.mean(|disk| disk.translational_energy());
+    let kinetic = |snapshot: &Snapshot<'_>| snapshot.mean(Disk::translational_energy);
     let before = kinetic(&run.snapshot());
     run.run_until(5000.0, &mut ())?;
     let volume = |height: f64| (height - 0.1) * 19.9;

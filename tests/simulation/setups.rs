@@ -44,7 +44,7 @@ pub(crate) fn setup() -> impl Strategy<Value = Setup> {
         Just(0.05.into()),
         Just((-0.05).into()),
         Just(1.0.into()),
-        Just(Gravity::tilted(0.3, 0.7))
+        Just(Gravity::tilted(0.3, 0.7).unwrap())
     ];
     let flags = any::<[bool; 3]>();
     let rule = (0.0..0.1f64, 0.0..0.5f64);

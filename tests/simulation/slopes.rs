@@ -25,7 +25,7 @@ fn a_tilted_box_is_one_that_is_turned() -> Outcome {
         disk.with_position(turned(disk.position()))?.with_velocity(velocity)
     };
     let also = disks.iter().map(turn).collect::<Result<Vec<_>, _>>()?;
-    let gravity = Gravity::tilted(0.5, ANGLE);
+    let gravity = Gravity::tilted(0.5, ANGLE).unwrap();
     let mut tilted = Simulation::builder(rule, container).disks(disks).gravity(gravity).build()?;
     let mut upright = Simulation::builder(rule, vessel).disks(also).gravity(0.5).build()?;
     for time in [2.0, 4.0] {
@@ -36,7 +36,7 @@ fn a_tilted_box_is_one_that_is_turned() -> Outcome {
             assert!(error < 1e-8, "{error:e} at {time}");
         }
         // Gravity that changes during a run changes in both.
-        tilted.set_gravity(Gravity::tilted(-0.3, ANGLE))?;
+        tilted.set_gravity(Gravity::tilted(-0.3, ANGLE).unwrap())?;
         upright.set_gravity(-0.3)?;
     }
     assert!(tilted.counters().disk_collisions > 40, "{:?}", tilted.counters());
@@ -68,7 +68,10 @@ fn chute(angle: f64) -> Outcome<Run> {
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps);
     let disks = initial::random(&ground, GRAINS, 0.5, 8.0, 3)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.6, 0.0, 0.5)?, 0.05)?;
-    Ok(Simulation::builder(rule, ground).disks(disks).gravity(Gravity::tilted(1.0, angle)).build()?)
+    Ok(Simulation::builder(rule, ground)
+        .disks(disks)
+        .gravity(Gravity::tilted(1.0, angle).unwrap())
+        .build()?)
 }
 
 fn momentum(disks: &[Disk]) -> DVec2 {

@@ -24,7 +24,7 @@ impl Part {
         accept(!bricks.is_empty(), "number of bricks", "at least 1", 0.0)?;
         let (corners, travel) = (corners::corners(&bricks), Travel::default());
         let (conduct, kind) = (Conduct::Shared, Kind::WALL);
-        Ok(Self { bricks, corners, travel, conduct, kind, surface_speed: 0.0, start: 0.0 })
+        Ok(Self { bricks, corners, travel, conduct, kind, surface_speed: 0.0, start: 0.0, kinds: Vec::new() })
     }
 
     /// Creates a closed polygon with the disks inside.
@@ -123,9 +123,10 @@ impl Part {
 
 crate::gate::from_file! {
     Part {
-        bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64
+        bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64,
+        #[serde(default)] only_for: Vec<Kind>
     } => {
-        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct) };
+        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct).only_for(only_for) };
         let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
         if let Some(super::Turning { about, angular_velocity, .. }) = travel.turning {
             part = part.with_rotation(about, angular_velocity)?;

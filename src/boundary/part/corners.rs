@@ -40,10 +40,8 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
         let [start, end] = brick.ends();
         for (end, is_start) in [(start, true), (end, false)] {
             let Some((place, direction)) = end else { continue };
-            // Ends meet if their coordinates are equal. Ends that are only close get a point each, and these
-            // points close the gap.
-            // The sum turns a negative zero into a positive one: the two are equal, but their bits differ.
-            let key = [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()];
+            // Ends that are only close get a point each, and these points close the gap.
+            let key = key(place);
             if !joints.contains_key(&key) {
                 places.push((key, place));
             }
@@ -58,4 +56,33 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     }
     let is_exposed = |key| joints.get(key).is_some_and(Joint::is_exposed);
     places.iter().filter(|(key, _)| is_exposed(key)).map(|(_, place)| Brick::corner(*place)).collect()
+}
+
+/// Returns whether a place changes from free to not free only across bricks: if all bricks are thin, or if
+/// none is and they form closed lines.
+///
+/// At the free end of other bricks, the nearest of them decides on which side a place is.
+pub(super) fn are_closed(bricks: &[Brick]) -> bool {
+    let mut more_starts: HashMap<[u64; 2], i32> = HashMap::new();
+    let walls = || bricks.iter().filter(|brick| !brick.is_point());
+    for brick in walls() {
+        let [start, end] = brick.ends();
+        if start.is_some() != end.is_some() {
+            return walls().all(Brick::is_two_sided);
+        }
+        for (end, sign) in [(start, 1), (end, -1)] {
+            if let Some((place, _)) = end {
+                *more_starts.entry(key(place)).or_default() += sign;
+            }
+        }
+    }
+    let are_lines_closed =
+        walls().all(|brick| !brick.is_two_sided()) && more_starts.values().all(|&n| n == 0);
+    are_lines_closed || walls().all(Brick::is_two_sided)
+}
+
+/// Returns the bits of a place. Ends of bricks meet if their coordinates are equal.
+fn key(place: DVec2) -> [u64; 2] {
+    // The sum turns a negative zero into a positive one: the two are equal, but their bits differ.
+    [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()]
 }

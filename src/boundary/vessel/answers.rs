@@ -61,7 +61,8 @@ impl Boundary for Vessel {
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
-        self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until))
+        let first = self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until));
+        if self.has_patches { first.map(|touch| self.on_patch(touch, flight)) } else { first }
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
@@ -83,6 +84,10 @@ impl Boundary for Vessel {
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let parts = self.overlap_with_parts(probe);
         Overlap::deepest(self.container.overlap(probe).into_iter().chain(parts))
+    }
+
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        Some(self.free_area(region, radius, time))
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

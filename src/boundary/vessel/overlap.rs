@@ -17,8 +17,11 @@ impl Vessel {
         let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
         let filled = self.filled.get(self.index.cell(position)).into_iter().flatten();
         let whole = self.moving.iter().chain(filled);
+        let stops = |part: usize| self.parts[part].part.stops(probe.kind());
+        let whole = whole.filter(|&&part| stops(part as usize));
         let whole = whole.filter_map(|&part| self.depth(part as usize, position, radius, time));
-        let mut near: Vec<(usize, Entry)> = self.near_at_rest(position, radius).collect();
+        let near = self.near_at_rest(position, radius).filter(|(part, _)| stops(*part));
+        let mut near: Vec<(usize, Entry)> = near.collect();
         near.sort_by_key(|(part, _)| *part);
         let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {

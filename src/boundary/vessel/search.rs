@@ -23,6 +23,9 @@ const STEPS_IN_A_ROUND: u32 = 16;
 /// Gap below which surfaces count as touching, relative to the lengths whose difference the gap is.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Gap, relative to the radius, and deviation of the normal, up to which a patch lies in a wall.
+const IN_WALL: f64 = 1e-9;
+
 /// Margin of the strip that a brick sweeps, relative to the lengths in the search.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
@@ -56,6 +59,9 @@ impl Vessel {
                 continue;
             }
             let (wall, travel) = self.wall(entry.wall as usize);
+            if !self.parts[wall.part].part.stops(flight.kind()) {
+                continue;
+            }
             if !travel.is_at_rest() {
                 if !moving.contains(&entry) {
                     moving.push(entry);
@@ -114,6 +120,42 @@ impl Vessel {
                 _ => return first,
             }
         }
+    }
+
+    /// Returns the touch of the patch that lies in a touched wall at the place of the touch, or the touch as
+    /// it is.
+    ///
+    /// A sink in a wall, a belt or a thermal stretch is what people build as a part on the line of the wall.
+    /// Rounding would decide which of both is touched first.
+    pub(super) fn on_patch(&self, touch: Touch, flight: &Flight) -> Touch {
+        let (place, radius, count) =
+            (flight.position(touch.time), flight.radius(), self.container.wall_count());
+        let is_patch = |brick: usize| self.parts[self.walls[brick].part].part.is_patch();
+        if touch.wall.checked_sub(count).is_some_and(is_patch) {
+            return touch;
+        }
+        let normal = self.surface(touch.wall, place, touch.time).normal;
+        let mut near = self.index.near(place - 2.0 * radius, place + 2.0 * radius).filter(|entry| {
+            let brick = entry.wall as usize;
+            let stops = self.parts[self.walls[brick].part].part.stops(flight.kind());
+            let is_there = || self.gap(brick, flight, touch.time).abs() <= IN_WALL * radius;
+            let is_along =
+                || self.surface_of_brick(brick, place, touch.time).normal.dot(normal) >= 1.0 - IN_WALL;
+            is_patch(brick) && stops && is_there() && is_along()
+        });
+        near.next().map_or(touch, |entry| self.touch(entry, touch.time))
+    }
+
+    /// Returns the gap between a disk and a brick at a time.
+    fn gap(&self, brick: usize, flight: &Flight, time: f64) -> f64 {
+        let Wall { part, brick } = &self.walls[brick];
+        let placed = &self.parts[*part];
+        let travel = placed.part.travel();
+        let (pose, place) = (travel.pose(placed.phase.after(time)), flight.position(time));
+        let (low, high) = travel.bounds(brick);
+        let distances = self.container.domain().images_of(low, high);
+        let distances = distances.map(|image| brick.nearest(pose.inward(place - image)).distance);
+        distances.fold(f64::INFINITY, f64::min) - flight.radius()
     }
 
     /// Returns the surface of a brick that a disk at this place touches.

@@ -16,7 +16,7 @@ pub(super) const LEAST_PITCH: f64 = 1.000_001;
 
 /// Fewest columns at periodic sides, and rows at periodic ends. With fewer, a disk could meet a neighbor on
 /// both sides.
-pub(in crate::simulation) const FEWEST: f64 = 4.0;
+pub(crate) const FEWEST: f64 = 4.0;
 
 /// The dimensions of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]

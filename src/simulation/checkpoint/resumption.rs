@@ -6,6 +6,7 @@ use crate::Gravity;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::instructions::Instructions;
+use crate::observable::Mark;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::simulation::builder::count_walls;
 use crate::simulation::cells::Cells;
@@ -133,6 +134,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
             inlets: saved.inlets.clone(),
+            ledger: saved.ledger,
+            // The observers that are read with it have lost the mark of the run that was saved.
+            marks: [Mark::default(), Mark::new()],
         }
     }
 }

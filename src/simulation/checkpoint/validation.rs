@@ -162,12 +162,19 @@ fn are_counted(counters: &Counters) -> bool {
     let Counters { disk_collisions, wall_collisions, contact_duration_collisions, .. } = *counters;
     let Counters { cell_crossings, repredictions, horizons, cell_resizes, removals, insertions, .. } =
         *counters;
-    let physics = [disk_collisions, wall_collisions, contact_duration_collisions];
+    let physics =
+        [disk_collisions, wall_collisions, contact_duration_collisions, counters.least_rebound_collisions];
     let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes, removals, insertions];
     physics.iter().chain(&bookkeeping).chain([&counters.wall_jumps]).all(|&count| count <= MOST_COUNTED)
-        && [counters.max_overlap, counters.max_wall_overlap, counters.farthest_jump]
-            .iter()
-            .all(|&way| way >= 0.0)
+        && [
+            counters.max_overlap,
+            counters.max_wall_overlap,
+            counters.farthest_jump,
+            counters.longest_contact,
+            counters.energy_of_rebounds,
+        ]
+        .iter()
+        .all(|&way| way >= 0.0)
 }
 
 fn are_forecasts(saved: &Saved, walls: usize) -> bool {

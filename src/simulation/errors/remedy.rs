@@ -18,6 +18,10 @@ pub enum Remedy {
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
+    /// The surface of the wall says another velocity than its geometry has, so disks are hit again at once.
+    WallVelocity,
+    /// The rule gains energy, so disks become ever faster.
+    EnergyGain,
     /// No collision is in sight: the boundary or the scheduler names events that lead nowhere.
     OtherParts,
 }
@@ -37,6 +41,10 @@ impl fmt::Display for Remedy {
                  room, or the rule LeastRebound with a higher speed; for walls of your own see boundary::laws::check"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
+            Self::WallVelocity => {
+                "the wall moves otherwise than the velocity of its surface says; boundary::laws::check compares both"
+            }
+            Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
             Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
         })
     }

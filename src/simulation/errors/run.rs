@@ -159,6 +159,15 @@ pub enum RunError {
         /// The cause.
         source: ParameterError,
     },
+    /// A rule, a boundary, a scheduler or an observer panicked in an earlier run, in the midst of an event.
+    #[error(
+        "a part of the simulation panicked in the midst of an event at time {}, so the next events are not known; \
+         resume the run from an earlier checkpoint", Rounded(*.time)
+    )]
+    Torn {
+        /// The present.
+        time: f64,
+    },
     /// An observer failed.
     #[error("an observer failed at time {}", Rounded(*.time))]
     Observer {

@@ -273,6 +273,16 @@ impl Bodies {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }
 
+    /// Returns the kinetic and potential energy of all disks.
+    pub(in crate::simulation) fn energy(&self, offset: f64) -> f64 {
+        let pull = self.gravity.acceleration();
+        let of = |disk: Disk| {
+            let kinetic = disk.translational_energy() + disk.rotational_energy();
+            kinetic - disk.mass() * pull.dot(disk.position())
+        };
+        (0..self.len()).map(|disk| of(self.disk(disk, offset))).sum()
+    }
+
     /// Moves the epoch on by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         let (fallen, gained) = self.fall(by);

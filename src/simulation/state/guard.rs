@@ -34,6 +34,8 @@ pub(in crate::simulation) struct Guard {
     pub(in crate::simulation) since: f64,
     /// Number of all events before the window.
     pub(in crate::simulation) before: u64,
+    /// Number of windows in a row in which time hardly advanced.
+    pub(in crate::simulation) slow: u32,
 }
 
 /// A window in which time has hardly advanced.
@@ -69,10 +71,11 @@ impl Guard {
         events: u64,
         least_progress: f64,
     ) -> Option<Standstill> {
-        let last = std::mem::replace(self, Self { since: offset, before: events });
+        let last = std::mem::replace(self, Self { since: offset, before: events, slow: 0 });
         let standstill =
             Standstill { events: events.saturating_sub(last.before), elapsed: offset - last.since };
         let is_slow = standstill.elapsed < least_progress * standstill.events as f64;
+        self.slow = if is_slow { last.slow + 1 } else { 0 };
         is_slow.then_some(standstill)
     }
 
@@ -94,7 +97,7 @@ mod tests {
             [200_200, 200_199, 1, 0, 0]
         );
         assert_eq!(guard.end_window(3.0, 200_200, 1e-5), None);
-        assert_eq!(guard, Guard { since: 3.0, before: 200_200 });
+        assert_eq!(guard, Guard { since: 3.0, before: 200_200, slow: 0 });
         let slow = guard.end_window(3.5, 400_400, 1e-5).unwrap();
         assert_eq!((slow.events, slow.elapsed), (200_200, 0.5));
         assert_eq!(guard.left(400_400, 10), 200_200);

@@ -176,12 +176,13 @@ struct Swing {
 }
 
 impl Swing {
-    /// Returns the angle, in one turn, at which the swing rises through a height above the middle; `None` if it
-    /// does not come so far.
+    /// Returns the angle, in one turn, at which the swing rises through a height above the middle; `None` if
+    /// it does not come so far.
     ///
-    /// The angle of the turning point is $`\varphi`$, with $`\tan\varphi = b/a`$. The crossing is before it by
-    /// $`\arccos(h/C)`$. Written as an arc tangent, the difference is exact for a piston that has just left the
-    /// stop: an arc cosine near 1 would lose half of the digits, and the piston would come to the stop at once.
+    /// The angle of the turning point is $`\varphi`$, with $`\tan\varphi = b/a`$. The crossing is before it
+    /// by $`\arccos(h/C)`$. Written as an arc tangent, the difference is exact for a piston that has just
+    /// left the stop: an arc cosine near 1 would lose half of the digits, and the piston would come to the
+    /// stop at once.
     fn rises_through(&self, height: f64) -> Option<f64> {
         let square = (self.a - height) * (self.a + height) + self.b * self.b;
         if square.is_nan() || square <= 0.0 {

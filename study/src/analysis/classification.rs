@@ -161,8 +161,8 @@ impl StateCriteria {
 
     /// Finds the states of these samples above the thermal noise `noise`.
     ///
-    /// `layer` is the [densest layer](granular_edmd::observable::HeightProfile::densest_layer) of the height profile.
-    /// Without it no state is collapsed.
+    /// `layer` is the [densest layer](granular_edmd::observable::HeightProfile::densest_layer) of the height
+    /// profile. Without it no state is collapsed.
     ///
     /// # Errors
     /// If there is no sample, a sample is not finite or above 1e100 in size, or the noise is negative or not

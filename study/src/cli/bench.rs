@@ -52,7 +52,7 @@ pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<E
     if let Some(earlier) = earlier.as_ref().filter(|earlier| !is_comparable(&earlier.circumstances)) {
         say(&format!("the earlier table is of another machine or build: {}", earlier.circumstances))?;
     }
-    let table = measured(rounds, collisions).map_err(|error| -> Failure { error })?;
+    let table = measured(rounds, collisions)?;
     if json {
         say(&serde_json::to_string_pretty(&table)?)?;
     } else {

@@ -1,0 +1,233 @@
+//! Areas in which the centers of disks are free, as integrals over horizontal lines.
+//!
+//! A horizontal line crosses the curves at which the freedom of a center may change: the surfaces of bricks,
+//! moved outward by the radius. Between two crossings, a center is free everywhere or nowhere. Between the
+//! heights at which curves end, turn or cross, the free length of a line is a smooth function of its height,
+//! but for square roots at these heights, which a substitution removes. Gaussian quadrature is then exact to
+//! rounding on each piece; where it is not, pieces are halved.
+
+use glam::DVec2;
+
+use super::Region;
+
+/// Error of the area of a piece, relative to the area of the region, at which it is not halved further.
+const TOLERANCE: f64 = 1e-12;
+
+/// Largest number of times that a piece is halved. A jump at an unknown height is then lost in rounding.
+const MOST_HALVINGS: u32 = 44;
+
+/// Number of places between two crossings at which a line is examined if there may be curves that are not
+/// known.
+pub(super) const LOOKS: u32 = 16;
+
+/// Distance of the first and the last of these places from the ends, relative to the interval.
+const NEAR_END: f64 = 1e-8;
+
+/// Nodes and weights of Gauss and Legendre's rule of ten points on [-1, 1]: the positive half.
+const GAUSS: [(f64, f64); 5] = [
+    (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
+    (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
+    (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
+    (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
+    (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
+];
+
+/// A curve at which the freedom of a center may change.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Curve {
+    Line(DVec2, DVec2),
+    Circle(DVec2, f64),
+}
+
+impl Curve {
+    /// Returns the same curve with its points moved.
+    pub(super) fn moved(self, to: impl Fn(DVec2) -> DVec2) -> Self {
+        match self {
+            Self::Line(from, end) => Self::Line(to(from), to(end)),
+            Self::Circle(center, radius) => Self::Circle(to(center), radius),
+        }
+    }
+
+    /// Returns the rectangle around the curve.
+    pub(super) fn bounds(&self) -> Region {
+        match *self {
+            Self::Line(from, to) => Region::new(from.min(to), from.max(to)),
+            Self::Circle(center, radius) => Region::new(center - radius, center + radius),
+        }
+    }
+
+    /// Returns the places at which a horizontal line crosses the curve.
+    fn crossings(&self, height: f64) -> impl Iterator<Item = f64> + use<> {
+        let none = [f64::NAN; 2];
+        let places = match *self {
+            Self::Line(from, to) if (from.y > height) != (to.y > height) => {
+                [from.x + (to.x - from.x) * ((height - from.y) / (to.y - from.y)), f64::NAN]
+            }
+            Self::Line(..) => none,
+            Self::Circle(center, radius) => {
+                let above = (height - center.y).abs();
+                let half = ((radius - above) * (radius + above)).sqrt();
+                [center.x - half, center.x + half]
+            }
+        };
+        places.into_iter().filter(|place| !place.is_nan())
+    }
+
+    /// Returns the places at which two curves may cross; NaN for those that do not exist.
+    fn meetings(&self, other: &Self) -> [DVec2; 2] {
+        match (*self, *other) {
+            (Self::Line(from, to), Self::Line(start, end)) => {
+                let (way, others) = (to - from, end - start);
+                let share = (start - from).perp_dot(others) / way.perp_dot(others);
+                [from + share * way, DVec2::NAN]
+            }
+            (Self::Line(from, to), Self::Circle(center, radius))
+            | (Self::Circle(center, radius), Self::Line(from, to)) => {
+                let way = (to - from).normalize_or_zero();
+                let (along, beside) = ((center - from).dot(way), way.perp_dot(center - from).abs());
+                let half = ((radius - beside) * (radius + beside)).sqrt();
+                [from + (along - half) * way, from + (along + half) * way]
+            }
+            (Self::Circle(one, first), Self::Circle(two, second)) => {
+                let apart = two - one;
+                let along = 0.5 + 0.5 * (first - second) * (first + second) / apart.length_squared();
+                let half = (first * first / apart.length_squared() - along * along).sqrt();
+                [one + along * apart + half * apart.perp(), one + along * apart - half * apart.perp()]
+            }
+        }
+    }
+}
+
+/// Returns whether two rectangles have a point in common.
+pub(super) fn meet(one: &Region, other: &Region) -> bool {
+    one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
+}
+
+/// A region, and whether centers in it are free.
+pub(super) struct Field<'a> {
+    pub(super) region: Region,
+    /// The curves at which freedom may change.
+    pub(super) curves: Vec<Curve>,
+    /// Number of places between two crossings at which a line is examined: 1 if no other curves exist.
+    pub(super) looks: u32,
+    pub(super) is_free: &'a dyn Fn(DVec2) -> bool,
+}
+
+impl Field<'_> {
+    /// Returns the free area.
+    pub(super) fn area(mut self) -> f64 {
+        let size = self.region.max - self.region.min;
+        if !(size.x > 0.0 && size.y > 0.0) {
+            return 0.0;
+        }
+        let region = self.region;
+        self.curves.retain(|curve| meet(&curve.bounds(), &region));
+        if self.curves.is_empty() && self.looks == 1 {
+            // A region without an upper end has no middle.
+            let middle = region.min + 0.5 * size.min(DVec2::splat(1e300));
+            return if (self.is_free)(middle) { region.area() } else { 0.0 };
+        }
+        let top = self.curves.iter().map(|curve| curve.bounds().max.y).fold(region.min.y, f64::max);
+        if region.max.y.is_infinite() {
+            if self.length(top + 1.0, &self.curves) > 0.0 {
+                return f64::INFINITY;
+            }
+            self.region.max.y = top;
+        }
+        let heights = self.heights();
+        heights.windows(2).map(|ends| self.piece(ends[0], ends[1])).sum()
+    }
+
+    /// Returns the heights between which the free length is smooth, in their order.
+    fn heights(&self) -> Vec<f64> {
+        let Region { min, max, .. } = self.region;
+        let mut heights = vec![min.y, max.y];
+        let edges = [min.x, max.x].map(|x| Curve::Line(DVec2::new(x, min.y), DVec2::new(x, max.y)));
+        let mut curves: Vec<(Region, Curve)> =
+            self.curves.iter().chain(&edges).map(|curve| (curve.bounds(), *curve)).collect();
+        curves.sort_by(|one, other| one.0.min.x.total_cmp(&other.0.min.x));
+        for (index, (bounds, curve)) in curves.iter().enumerate() {
+            heights.extend([bounds.min.y, bounds.max.y]);
+            let later = curves[index + 1..].iter().take_while(|(other, _)| other.min.x <= bounds.max.x);
+            for (_, other) in later.filter(|(other, _)| meet(other, bounds)) {
+                heights.extend(curve.meetings(other).map(|place| place.y));
+            }
+        }
+        heights.retain(|&height| height >= min.y && height <= max.y);
+        heights.sort_by(f64::total_cmp);
+        heights.dedup();
+        heights
+    }
+
+    fn piece(&self, low: f64, high: f64) -> f64 {
+        let reaches = |curve: &&Curve| curve.bounds().min.y < high && curve.bounds().max.y > low;
+        let curves: Vec<Curve> = self.curves.iter().filter(reaches).copied().collect();
+        let whole = self.quadrature(low, high, &curves);
+        self.refined(low, high, &curves, whole, MOST_HALVINGS)
+    }
+
+    /// Returns the area between two heights, of which `whole` is a first estimate.
+    fn refined(&self, low: f64, high: f64, curves: &[Curve], whole: f64, halvings: u32) -> f64 {
+        let middle = low + 0.5 * (high - low);
+        let halves = [(low, middle), (middle, high)].map(|(low, high)| self.quadrature(low, high, curves));
+        let sum = halves[0] + halves[1];
+        if halvings == 0 || (sum - whole).abs() <= TOLERANCE * self.region.area() {
+            return sum;
+        }
+        self.refined(low, middle, curves, halves[0], halvings - 1)
+            + self.refined(middle, high, curves, halves[1], halvings - 1)
+    }
+
+    /// Integrates the free length by a rule of ten points. Its variable $`s`$ in [0, 1] gives the height
+    /// $`3s^2 - 2s^3`$, in which square roots at both ends are smooth.
+    fn quadrature(&self, low: f64, high: f64, curves: &[Curve]) -> f64 {
+        let mut sum = 0.0;
+        for (node, weight) in GAUSS {
+            // From the nearer end, so that heights near the upper end lose no digits.
+            let s = 0.5 * (1.0 - node);
+            let from_end = (high - low) * s * s * (3.0 - 2.0 * s);
+            let lengths = self.length(low + from_end, curves) + self.length(high - from_end, curves);
+            sum += 0.5 * weight * 6.0 * s * (1.0 - s) * lengths;
+        }
+        sum * (high - low)
+    }
+
+    /// Returns the length of a horizontal line on which centers are free.
+    fn length(&self, height: f64, curves: &[Curve]) -> f64 {
+        let Region { min, max, .. } = self.region;
+        let mut ends: Vec<f64> = curves.iter().flat_map(|curve| curve.crossings(height)).collect();
+        ends.retain(|&end| end > min.x && end < max.x);
+        ends.extend([min.x, max.x]);
+        ends.sort_unstable_by(f64::total_cmp);
+        ends.windows(2).map(|ends| self.free_between(ends[0], ends[1], height)).sum()
+    }
+
+    /// Returns the free length between two crossings. It bisects for changes of freedom at unknown curves.
+    fn free_between(&self, low: f64, high: f64, height: f64) -> f64 {
+        if low == high {
+            return 0.0;
+        }
+        let is_free = |place: f64| (self.is_free)(DVec2::new(place, height));
+        // An unknown curve that crosses a known one cuts off the end of an interval: both ends are examined.
+        let last = self.looks - 1;
+        let place = |look: u32| match look {
+            0 if last > 0 => low + NEAR_END * (high - low),
+            look if look == last && last > 0 => high - NEAR_END * (high - low),
+            look => low + (f64::from(look) + 0.5) / f64::from(self.looks) * (high - low),
+        };
+        let (mut start, mut was_free, mut length) = (low, is_free(place(0)), 0.0);
+        for look in 1..self.looks {
+            if is_free(place(look)) == was_free {
+                continue;
+            }
+            let (mut before, mut after) = (place(look - 1), place(look));
+            while after - before > 1e-15 * (high - low) && before.next_up() < after {
+                let middle = 0.5 * (before + after);
+                if is_free(middle) == was_free { before = middle } else { after = middle }
+            }
+            length += if was_free { after - start } else { 0.0 };
+            (start, was_free) = (after, !was_free);
+        }
+        length + if was_free { high - start } else { 0.0 }
+    }
+}

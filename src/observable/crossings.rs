@@ -1,0 +1,258 @@
+//! The crossings of a line by the centers of disks.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::stretch::Stretch;
+use super::table::Table;
+use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot};
+use crate::quantity::accept;
+use crate::statistics::{Estimate, block_average};
+use crate::{Disk, ParameterError};
+
+/// An observer that counts how often centers of disks cross a segment, by direction, over intervals of time:
+/// the flux through the throat of a silo, or through any line of a gas. The disks do not notice it.
+///
+/// A crossing is *forward* if it goes from the right to the left of the direction from `start` to `end`:
+/// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
+/// is found exactly, also if a disk turns back between two samples. An interval counts only if it was watched
+/// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count.
+///
+/// ```
+/// use granular_edmd::observable::{Crossings, SampleTimes};
+/// use granular_edmd::prelude::*;
+///
+/// // A disk is thrown up through a line of height 4, comes down again, and bounces up.
+/// let disk = Disk::new(DVec2::new(2.0, 3.5), 0.5)?.with_velocity(DVec2::new(0.0, 2.0))?;
+/// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk]).gravity(1.0).build()?;
+/// let line = [DVec2::new(0.0, 4.0), DVec2::new(4.0, 4.0)];
+/// let mut crossings = Crossings::new(line, SampleTimes::every(6.0)?)?;
+/// run.run_until(12.0, &mut crossings)?;
+/// assert_eq!((crossings.forward(), crossings.backward()), (&[1, 1][..], &[1, 1][..]));
+/// assert_eq!(crossings.flux()?.mean(), 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Crossings {
+    line: [DVec2; 2],
+    stretch: Stretch,
+    pull: DVec2,
+    periods: DVec2,
+    /// The flight of each disk by its id.
+    flights: BTreeMap<u64, Free>,
+    present: [u64; 2],
+    times: Vec<f64>,
+    forward: Vec<u64>,
+    backward: Vec<u64>,
+}
+
+/// The free flight of a center since this time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct Free {
+    time: f64,
+    position: DVec2,
+    velocity: DVec2,
+}
+
+impl Crossings {
+    /// Creates a counter on the segment between two points, with the intervals of this clock.
+    ///
+    /// In a periodic domain, the images of the segment count, too.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, or both points are the same.
+    pub fn new(line: [DVec2; 2], times: SampleTimes) -> Result<Self, ParameterError> {
+        let length = (line[1] - line[0]).length();
+        accept(length.is_finite() && length > 0.0, "length of a line", "finite and positive", length)?;
+        Ok(Self {
+            line,
+            stretch: Stretch::new(times),
+            pull: DVec2::ZERO,
+            periods: DVec2::ZERO,
+            flights: BTreeMap::new(),
+            present: [0; 2],
+            times: Vec::new(),
+            forward: Vec::new(),
+            backward: Vec::new(),
+        })
+    }
+
+    /// Returns the ends of the intervals.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Returns the number of forward crossings in each interval.
+    pub fn forward(&self) -> &[u64] {
+        &self.forward
+    }
+
+    /// Returns the number of backward crossings in each interval.
+    pub fn backward(&self) -> &[u64] {
+        &self.backward
+    }
+
+    /// Returns the mean of forward less backward crossings for each unit of time, with its error.
+    ///
+    /// # Errors
+    /// If no interval is complete yet.
+    pub fn flux(&self) -> Result<Estimate, ParameterError> {
+        block_average(&self.fluxes().collect::<Vec<_>>())
+    }
+
+    /// Forgets all crossings.
+    pub fn clear(&mut self) {
+        self.stretch.forget();
+        self.times.clear();
+        self.forward.clear();
+        self.backward.clear();
+        self.present = [0; 2];
+    }
+
+    fn fluxes(&self) -> impl Iterator<Item = f64> {
+        let counts = self.forward.iter().zip(&self.backward);
+        counts.map(|(&there, &back)| (there as f64 - back as f64) / self.stretch.sample_times.interval())
+    }
+
+    /// Ends the flight of a disk at this time, counts its crossings, and begins the next one.
+    fn go_on(&mut self, id: u64, next: Free) {
+        // A filter by kind shows collisions with disks of other kinds, which are not watched.
+        if let Some(flight) = self.flights.get_mut(&id) {
+            let flight = std::mem::replace(flight, next);
+            self.count(&flight, next.time);
+        }
+    }
+
+    /// Counts the crossings of a flight after its start and up to a time.
+    fn count(&mut self, flight: &Free, end: f64) {
+        for shift in self.images(flight, end) {
+            let [start, stop] = self.line.map(|point| point + shift);
+            let along = stop - start;
+            let across = along.perp();
+            // The distance from the line, times its length, as a parabola of the elapsed time.
+            let gap = [
+                (flight.position - start).dot(across),
+                flight.velocity.dot(across),
+                0.5 * self.pull.dot(across),
+            ];
+            for (wait, is_forward) in sign_changes(gap, end - flight.time) {
+                let fallen = (flight.velocity + 0.5 * self.pull * wait) * wait;
+                let place = (flight.position + fallen - start).dot(along) / along.length_squared();
+                if (0.0..1.0).contains(&place) {
+                    self.present[usize::from(!is_forward)] += 1;
+                }
+            }
+        }
+    }
+
+    /// Returns the displacements of the images of the line that a flight may cross.
+    fn images(&self, flight: &Free, end: f64) -> Vec<DVec2> {
+        if self.periods == DVec2::ZERO {
+            return vec![DVec2::ZERO];
+        }
+        let elapsed = end - flight.time;
+        let reach = (flight.velocity.abs() + 0.5 * self.pull.abs() * elapsed) * elapsed;
+        let (low, high) = (self.line[0].min(self.line[1]), self.line[0].max(self.line[1]));
+        let range = |period: f64, from: f64, to: f64| {
+            let ends = if period > 0.0 { [(from / period).ceil(), (to / period).floor()] } else { [0.0; 2] };
+            ends[0] as i64..=ends[1] as i64
+        };
+        let (from, to) = (flight.position - reach - high, flight.position + reach - low);
+        let columns = range(self.periods.x, from.x, to.x);
+        let rows = |column: i64| range(self.periods.y, from.y, to.y).map(move |row| (column, row));
+        let shift = |(column, row): (i64, i64)| self.periods * DVec2::new(column as f64, row as f64);
+        columns.flat_map(rows).map(shift).collect()
+    }
+
+    /// Counts all flights up to a snapshot, and takes its disks as they are.
+    fn look(&mut self, snapshot: &Snapshot<'_>) {
+        for disk in snapshot.disks() {
+            self.go_on(disk.id(), Free::of(disk, snapshot.time()));
+        }
+    }
+}
+
+/// Returns the times, after 0 and up to `end`, at which `c + b t + a t²` changes its sign, and whether it
+/// then becomes positive.
+fn sign_changes([c, b, a]: [f64; 3], end: f64) -> impl Iterator<Item = (f64, bool)> {
+    let discriminant = b * b - 4.0 * a * c;
+    let root = discriminant.max(0.0).sqrt();
+    // Both zeros in the forms in which nothing cancels.
+    let sum = -0.5 * (b + root.copysign(b));
+    let (first, second) = (sum / a, c / sum);
+    let zeros = if a == 0.0 { [-c / b, f64::NAN] } else { [first.min(second), first.max(second)] };
+    let is_simple = a == 0.0 || discriminant > 0.0;
+    let zeros = zeros.into_iter().filter(move |&zero| is_simple && zero > 0.0 && zero <= end);
+    zeros.map(move |zero| (zero, b + 2.0 * a * zero > 0.0))
+}
+
+impl Free {
+    fn of(disk: &Disk, time: f64) -> Self {
+        Self { time, position: disk.position(), velocity: disk.velocity() }
+    }
+}
+
+impl Observer for Crossings {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        (self.pull, self.periods) = (start.gravity().acceleration(), start.domain().periods());
+        let disks = start.disks().iter();
+        self.flights = disks.map(|disk| (disk.id(), Free::of(disk, start.time()))).collect();
+        if self.stretch.begin(start.time()) {
+            self.present = [0; 2];
+        }
+    }
+
+    fn on_collision(&mut self, collision: &Collision) {
+        let Collision { time, ids, velocities, position, .. } = *collision;
+        self.go_on(ids[0], Free { time, position, velocity: velocities[0] });
+        if let Partner::Disk(_) = collision.partner {
+            let position = collision.partner_position();
+            self.go_on(ids[1], Free { time, position, velocity: velocities[1] });
+        }
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.stretch.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.look(snapshot);
+        let [forward, backward] = std::mem::take(&mut self.present);
+        if self.stretch.finish(snapshot.time()).is_some() {
+            self.times.push(snapshot.time());
+            self.forward.push(forward);
+            self.backward.push(backward);
+        }
+    }
+
+    fn on_insert(&mut self, disk: &Disk, time: f64) {
+        self.flights.insert(disk.id(), Free::of(disk, time));
+    }
+
+    fn on_remove(&mut self, disk: &Disk, time: f64) {
+        if let Some(flight) = self.flights.remove(&disk.id()) {
+            self.count(&flight, time);
+        }
+    }
+
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.look(end);
+        self.stretch.pause(end.time());
+    }
+}
+
+/// The columns are the end of each interval, the crossings in both directions, and their flux.
+impl Table for Crossings {
+    fn headings(&self) -> Vec<Heading> {
+        [("time", "time"), ("forward", "1"), ("backward", "1"), ("flux", "1/time")].map(Heading::from).into()
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        let counts = self.forward.iter().zip(&self.backward).zip(self.fluxes());
+        let rows = self.times.iter().zip(counts);
+        Box::new(rows.map(|(&time, ((&there, &back), flux))| vec![time, there as f64, back as f64, flux]))
+    }
+}

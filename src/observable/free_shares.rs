@@ -1,0 +1,56 @@
+//! The shares of regions that walls leave free.
+
+use glam::DVec2;
+
+use super::Snapshot;
+use super::marks::Mark;
+use crate::ParameterError;
+use crate::boundary::Region;
+use crate::quantity::accept;
+
+/// The free shares of some regions. They are kept as long as no wall has moved.
+///
+/// They are no part of what was measured: they go into no file, and all are equal.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FreeShares {
+    walls: Mark,
+    points: Vec<DVec2>,
+    shares: Vec<f64>,
+}
+
+impl FreeShares {
+    /// Returns the share of each region that matter can fill at the time of a snapshot; NaN where it is not
+    /// known. The regions must always be the same ones.
+    pub(super) fn of(&mut self, snapshot: &Snapshot<'_>, regions: impl Iterator<Item = Region>) -> &[f64] {
+        let walls = 0..snapshot.wall_count();
+        let points: Option<Vec<DVec2>> = walls.map(|wall| snapshot.wall_point(wall)).collect();
+        let stays = self.walls.is_same(snapshot.walls_mark()) && points.as_ref() == Some(&self.points);
+        if !stays {
+            self.walls = if points.is_some() { snapshot.walls_mark() } else { Mark::default() };
+            self.points = points.unwrap_or_default();
+            self.shares = regions.map(|region| snapshot.free_share(&region).unwrap_or(f64::NAN)).collect();
+        }
+        &self.shares
+    }
+}
+
+/// Checks that the free area of a region is known, or else that of each part of it.
+///
+/// # Errors
+/// If not. The error names what to take instead.
+pub(super) fn check_area(
+    region: &Region,
+    parts: impl IntoIterator<Item = Region>,
+    start: &Snapshot<'_>,
+) -> Result<(), ParameterError> {
+    let is_known = |region: &Region| start.free_share(region).is_some();
+    let all_are_known = is_known(region) || parts.into_iter().all(|part| is_known(&part));
+    let requirement = "known: implement Boundary::area, or measure in a region to which no wall comes";
+    accept(all_are_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)
+}
+
+impl PartialEq for FreeShares {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}

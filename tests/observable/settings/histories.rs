@@ -1,0 +1,126 @@
+//! Measures of pairs of times: displacements, correlations, transport.
+
+use std::collections::BTreeMap;
+
+use granular_edmd::Disk;
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{
+    MeanSquaredDisplacement, Partner, TimeCorrelation, TransportCoefficients, Velocities,
+};
+
+use super::log::{Log, Occasion};
+use super::systems::{Setting, every};
+use super::{Cell, far, told};
+
+/// Largest number of intervals between two samples.
+const LAGS: usize = 4;
+
+/// Values of the disks, by their ids.
+type Values = BTreeMap<u64, DVec2>;
+
+/// Returns groups of consecutive samples between which no disk was put elsewhere, with the displacements of
+/// the disks since the start, and their velocities.
+fn groups(setting: &Setting, log: &Log) -> Vec<Vec<[Values; 2]>> {
+    let domain = setting.domain();
+    let (mut groups, mut ways, mut before) = (vec![Vec::new()], Values::new(), Values::new());
+    let mut last = Occasion::Start;
+    for state in &log.states {
+        let mut was_put_elsewhere = false;
+        for disk in &state.disks {
+            let step = before
+                .get(&disk.id())
+                .map_or(DVec2::ZERO, |&place| domain.separation(place, disk.position()));
+            was_put_elsewhere |= step.length() > 1e-9;
+            *ways.entry(disk.id()).or_default() += step;
+        }
+        if state.occasion == Occasion::Start && last == Occasion::End && was_put_elsewhere {
+            groups.push(Vec::new());
+        }
+        last = state.occasion;
+        before = state.disks.iter().map(|disk| (disk.id(), disk.position())).collect();
+        if state.is_sampled() {
+            let here: Values = state.disks.iter().map(|disk| (disk.id(), ways[&disk.id()])).collect();
+            let velocities = state.disks.iter().map(|disk| (disk.id(), disk.velocity())).collect();
+            if let Some(group) = groups.last_mut() {
+                group.push([here, velocities]);
+            }
+        }
+    }
+    groups
+}
+
+/// Returns the mean over pairs of samples of the mean over the disks that are in both, for each lag.
+fn means(groups: &[Vec<[Values; 2]>], which: usize, pair: impl Fn(DVec2, DVec2) -> f64) -> Vec<f64> {
+    let mean = |lag: usize| {
+        let pairs = groups.iter().flat_map(|group| group.iter().zip(group.iter().skip(lag)));
+        let values: Vec<f64> = pairs
+            .filter_map(|(earlier, later)| {
+                let common = earlier[which]
+                    .iter()
+                    .filter_map(|(id, &value)| Some(pair(value, *later[which].get(id)?)));
+                let all: Vec<f64> = common.collect();
+                (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+            })
+            .collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    (0..=LAGS).map(mean).collect()
+}
+
+pub(super) fn displacements(setting: &Setting) -> Cell {
+    let mut displacement = MeanSquaredDisplacement::new(LAGS, every(1.0)).map_err(told)?;
+    let log = setting.run(&mut displacement)?;
+    let truth = means(&groups(setting, &log), 0, DVec2::distance_squared);
+    let measured: Vec<f64> = displacement.iter().map(|(_, value)| value.mean()).collect();
+    Ok(far(&measured, &truth))
+}
+
+pub(super) fn correlations(setting: &Setting) -> Cell {
+    let mut correlation = TimeCorrelation::new(Velocities, LAGS, every(1.0)).map_err(told)?;
+    let log = setting.run(&mut correlation)?;
+    let truth = means(&groups(setting, &log), 1, DVec2::dot);
+    let measured: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
+    Ok(far(&measured, &truth))
+}
+
+/// The moment of shear, followed collision by collision from the velocities at the start.
+pub(super) fn transport(setting: &Setting) -> Cell {
+    let mut transport = TransportCoefficients::new(LAGS, every(1.0)).map_err(told)?;
+    let log = setting.run(&mut transport)?;
+    let start = &log.states[0].disks;
+    let mass: f64 = start.iter().map(Disk::mass).sum();
+    let frame = start.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
+    let mut velocities: Vec<DVec2> = start.iter().map(|disk| disk.velocity() - frame).collect();
+    let rate = |velocities: &[DVec2]| -> DVec2 {
+        let of =
+            |(disk, v): (&Disk, &DVec2)| disk.mass() * DVec2::new(v.x * v.y, 0.5 * (v.x * v.x - v.y * v.y));
+        start.iter().zip(velocities).map(of).sum()
+    };
+    let (mut moment, mut time, mut moments) = (DVec2::ZERO, 0.0, Vec::new());
+    for (state, collisions) in log.intervals() {
+        for collision in collisions {
+            let Partner::Disk(partner) = collision.partner else { continue };
+            moment += rate(&velocities) * (collision.time - time);
+            time = collision.time;
+            let tangential = collision.normal.perp() * collision.impulse.tangential();
+            let kick = collision.normal * collision.impulse.normal() + tangential;
+            let way = collision.normal * collision.distance;
+            velocities[collision.disk] += kick / start[collision.disk].mass();
+            velocities[partner] -= kick / start[partner].mass();
+            let shear = 0.5 * (kick.x * way.y + kick.y * way.x);
+            moment += DVec2::new(shear, 0.5 * (kick.x * way.x - kick.y * way.y));
+        }
+        moment += rate(&velocities) * (state.time - time);
+        time = state.time;
+        moments.push(moment);
+    }
+    // The first samples only find the pressure.
+    let used = &moments[LAGS..];
+    let mean = |lag: usize| {
+        let pairs = used.iter().zip(&used[lag..]).map(|(one, other)| 0.5 * one.distance_squared(*other));
+        pairs.sum::<f64>() / (used.len() - lag) as f64
+    };
+    let truth: Vec<f64> = (0..=LAGS).map(mean).collect();
+    let measured: Vec<f64> = transport.iter().map(|(_, [shear, _])| shear.mean()).collect();
+    Ok(far(&measured, &truth))
+}

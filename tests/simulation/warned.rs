@@ -1,0 +1,181 @@
+//! Warnings, stalls and panics point at their cause: each cause is planted.
+
+use std::borrow::Cow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch, Wall,
+};
+use granular_edmd::collision::{
+    CollisionRule, Contact, ContactDuration, Elastic, Frictional, Impulse, LeastRebound, Smooth, from_fn,
+};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Temperatures, on_collision};
+use granular_edmd::simulation::{Limits, Remedy, RunError, Warning};
+use granular_edmd::wall::Sinusoidal;
+use granular_edmd::{Disk, Flight, Simulation, initial};
+
+type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
+
+fn walls() -> Outcome<Container> {
+    Ok(Container::closed(20.0, 20.0)?)
+}
+
+fn gas(container: &Container) -> Outcome<Vec<Disk>> {
+    Ok(initial::with_maxwellian_velocities(initial::lattice(container, 100, 0.5)?, 1.0, 1)?)
+}
+
+/// A square lattice at rest over a shaken floor hops in columns for ever; the least motion aside mends it.
+#[test]
+fn columns_that_hop_in_line_are_a_warning() -> Outcome {
+    let container = Container::open(20.0)?.with_motion(Wall::Floor, Sinusoidal::new(0.3, 5.0)?)?;
+    let after = |disks: Vec<Disk>| -> Outcome<Vec<Warning>> {
+        let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.3)?, 1e-5)?;
+        let mut run = Simulation::builder(rule, container.clone()).disks(disks).gravity(1.0).build()?;
+        run.run_until(100.0, &mut ())?;
+        Ok(run.warnings())
+    };
+    let columns = initial::lattice(&container, 60, 0.5)?;
+    let warned = after(columns.clone())?;
+    assert!(matches!(warned[..], [Warning::OneDirection { .. }]), "{warned:?}");
+    assert!(warned[0].to_string().contains("small velocities"), "{}", warned[0]);
+    assert_eq!(after(initial::with_maxwellian_velocities(columns, 1e-20, 1)?)?, []);
+    Ok(())
+}
+
+/// A least speed far above the speeds of the flow drives it, and says so with the energy that it put in.
+#[test]
+fn a_least_rebound_that_drives_is_a_warning() -> Outcome {
+    let warned = |speed: f64| -> Outcome<(Vec<Warning>, f64)> {
+        let rule = LeastRebound::new(Smooth::from_restitution(0.9)?, speed)?;
+        let mut run = Simulation::builder(rule, walls()?).disks(gas(&walls()?)?).gravity(1.0).build()?;
+        run.run_until(30.0, &mut ())?;
+        Ok((run.warnings(), run.measure(&Temperatures).translational()))
+    };
+    let (loud, temperature) = warned(10.0)?;
+    let [Warning::MostlyLeastRebound { energy, .. }] = loud[..] else { panic!("{loud:?}") };
+    assert!(energy > 100.0 && temperature > 10.0, "{energy} {temperature}");
+    assert_eq!(warned(1e-3)?.0, []);
+    Ok(())
+}
+
+/// Energy that grows without a source is a warning: under gravity, too, and not with a moving wall.
+#[test]
+fn energy_without_a_source_is_a_warning() -> Outcome {
+    let gaining = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(1.001), 0.0));
+    let mut run = Simulation::builder(gaining, walls()?).disks(gas(&walls()?)?).gravity(0.1).build()?;
+    run.run_until(30.0, &mut ())?;
+    let warned = run.warnings();
+    assert!(matches!(warned[..], [Warning::EnergyGained { before, now }] if now > before), "{warned:?}");
+    let mut honest = Simulation::builder(Elastic, walls()?).disks(gas(&walls()?)?).gravity(0.1).build()?;
+    honest.run_until(300.0, &mut ())?;
+    assert_eq!(honest.warnings(), []);
+    let shaken = walls()?.with_motion(Wall::Floor, Sinusoidal::new(0.5, 5.0)?)?;
+    let mut heated =
+        Simulation::builder(Elastic, shaken.clone()).disks(gas(&shaken)?).gravity(0.1).build()?;
+    heated.run_until(30.0, &mut ())?;
+    assert_eq!(heated.warnings(), []);
+    Ok(())
+}
+
+/// The criterion of the contact duration is the time between the collisions that it leaves, not their share.
+#[test]
+fn a_contact_duration_is_judged_by_the_rate_of_collisions() -> Outcome {
+    let warned = |duration: f64, end: f64| -> Outcome<(Vec<Warning>, f64)> {
+        let rule = ContactDuration::new(Smooth::from_restitution(0.9)?, duration)?;
+        let mut run = Simulation::builder(rule, walls()?).disks(gas(&walls()?)?).gravity(1.0).build()?;
+        run.run_until(end, &mut ())?;
+        let counters = run.counters();
+        let share = counters.contact_duration_collisions as f64 / counters.collisions() as f64;
+        Ok((run.warnings(), share))
+    };
+    // Matter at rest: nearly all collisions are those of the model, and nothing is wrong.
+    let (rest, share) = warned(1e-4, 60.0)?;
+    assert!(rest.is_empty() && share > 0.5, "{rest:?} {share}");
+    // A flow: a quarter of them are, and the model takes a large part of the dissipation.
+    let (flow, share) = warned(0.1, 5.0)?;
+    assert!(matches!(flow[..], [Warning::LongContactDuration { .. }]) && share < 0.9, "{flow:?} {share}");
+    Ok(())
+}
+
+/// A floor that claims to rise while it stays.
+struct Lying(Container, f64);
+
+impl Boundary for Lying {
+    fn domain(&self) -> Domain {
+        self.0.domain()
+    }
+    fn wall_count(&self) -> usize {
+        self.0.wall_count()
+    }
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        self.0.wall_name(wall)
+    }
+    fn set_time_origin(&mut self, origin: f64) {
+        self.0.set_time_origin(origin);
+    }
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        self.0.may_touch(region, radius)
+    }
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        self.0.first_touch(flight, until)
+    }
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let surface = self.0.surface(wall, position, time);
+        Surface::new(surface.normal, surface.velocity + self.1 * surface.normal)
+    }
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        self.0.overlap(probe)
+    }
+}
+
+fn stall_of<R: CollisionRule, B: Boundary>(rule: R, boundary: B, disks: Vec<Disk>) -> Outcome<Remedy> {
+    let mut run = Simulation::builder(rule, boundary).disks(disks).gravity(1.0).build()?;
+    match run.run_until(1e4, &mut ()) {
+        Err(RunError::Stalled { remedy, .. }) => Ok(remedy),
+        other => Err(format!("{other:?}").into()),
+    }
+}
+
+/// Each cause of a stall is named, with a remedy around the rule and without.
+#[test]
+fn a_stall_names_its_cause() -> Outcome {
+    let disk = || -> Outcome<Vec<Disk>> { Ok(vec![Disk::new(DVec2::new(5.0, 3.0), 0.5)?]) };
+    let lossy = Smooth::from_restitution(0.5)?;
+    let short = ContactDuration::new(lossy, 1e-12)?;
+    assert_eq!(stall_of(lossy, walls()?, disk()?)?, Remedy::ElasticWhenSlow);
+    assert_eq!(stall_of(short, walls()?, disk()?)?, Remedy::LongerContactDuration);
+    let sinking = || -> Outcome<Lying> { Ok(Lying(walls()?, -0.2)) };
+    assert_eq!(stall_of(lossy, sinking()?, disk()?)?, Remedy::WallVelocity);
+    assert_eq!(stall_of(short, sinking()?, disk()?)?, Remedy::WallVelocity);
+    Ok(())
+}
+
+/// A light disk between a wall and a disk of 10¹² times its mass: 3 141 592 collisions, and no stall.
+#[test]
+fn an_elastic_run_that_ends_by_itself_goes_on() -> Outcome {
+    let light = Disk::new(DVec2::new(3.0, 5.0), 0.05)?.with_mass(1.0)?;
+    let heavy = Disk::new(DVec2::new(15.0, 5.0), 0.5)?.with_mass(1e12)?.with_velocity(DVec2::NEG_X)?;
+    let mut run = Simulation::builder(Elastic, walls()?).disks([light, heavy]).build()?;
+    let most = 3_141_592;
+    run.run(&Limits::until(17.0), &mut ())?;
+    assert_eq!(run.counters().collisions(), most);
+    Ok(())
+}
+
+/// After a panic in a part, the simulation refuses to go on, and so does a copy of it.
+#[test]
+fn a_run_that_a_panic_tore_refuses_to_go_on() -> Outcome {
+    let mut run = Simulation::builder(Elastic, walls()?).disks(gas(&walls()?)?).build()?;
+    let mut count = 0;
+    let mut bomb = on_collision(|_| {
+        count += 1;
+        assert!(count < 57, "the observer panics");
+    });
+    let torn = catch_unwind(AssertUnwindSafe(|| run.run_until(10.0, &mut bomb)));
+    assert!(torn.is_err());
+    let error = run.run_until(20.0, &mut ()).unwrap_err();
+    assert!(matches!(error, RunError::Torn { .. }) && error.to_string().contains("panicked"), "{error}");
+    assert!(matches!(run.clone().step_until(20.0, &mut ()), Err(RunError::Torn { .. })));
+    Ok(())
+}
