@@ -21,7 +21,8 @@ const START: u64 = 12;
 /// A log: a file to which one process appends, while any number of others may read.
 ///
 /// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or a
-/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be alone.
+/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be
+/// alone.
 ///
 /// ```
 /// use granular_edmd::file::{Log, Seal, read_piece};
@@ -125,8 +126,8 @@ impl Log {
         Ok(Pieces { pieces, end, is_damaged })
     }
 
-    /// Shows the pieces of a log from a place on, one by one, as [`read`](Self::read) finds them; returns the end
-    /// of the last one, and whether something that is no piece stands before a piece.
+    /// Shows the pieces of a log from a place on, one by one, as [`read`](Self::read) finds them; returns the
+    /// end of the last one, and whether something that is no piece stands before a piece.
     ///
     /// # Errors
     /// The same as for [`read`](Self::read).
@@ -239,8 +240,8 @@ mod tests {
         found.iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
     }
 
-    /// However a log is cut, its whole pieces stay, and the next piece follows them. Whatever byte is changed,
-    /// no other piece is lost, and none is read as what it is not.
+    /// However a log is cut, its whole pieces stay, and the next piece follows them. Whatever byte is
+    /// changed, no other piece is lost, and none is read as what it is not.
     #[test]
     fn whole_pieces_survive_cuts_and_damage() {
         let path = std::env::temp_dir().join(format!("granular-edmd-pieces-{}", std::process::id()));

@@ -29,7 +29,8 @@ impl<E: Experiment> Study<E> {
     /// Returns the record of a value; `None` if it is not finished.
     ///
     /// # Errors
-    /// If there is no such ramp, or the record is damaged, of another study, of other code, or cannot be read.
+    /// If there is no such ramp, or the record is damaged, of another study, of other code, or cannot be
+    /// read.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
         if let Some(record) = self.known_record(ramp, value)? {
@@ -188,7 +189,8 @@ impl<E: Experiment> Study<E> {
         Ok((0..self.plan.ramp_count()).all(|ramp| entries.is_done(ramp)))
     }
 
-    /// Returns ramp and value of those values that were not finished: they stalled, failed or reached a limit.
+    /// Returns ramp and value of those values that were not finished: they stalled, failed or reached a
+    /// limit.
     ///
     /// # Errors
     /// If files cannot be read.

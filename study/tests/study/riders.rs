@@ -1,4 +1,5 @@
-//! Experiments that are driven, refilled, or have walls that move between steps, and values that come to a limit.
+//! Experiments that are driven, refilled, or have walls that move between steps, and values that come to a
+//! limit.
 
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
