@@ -29,8 +29,8 @@ fn main() -> anyhow::Result<()> {
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, 0.07)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
 
-    // Watch the order parameters of one roll and of two, and the height of the center of mass. Samples a whole
-    // number of oscillations apart would always see the base at the same phase; these see ten phases.
+    // Watch the order parameters of one roll and of two, and the height of the center of mass. Samples a
+    // whole number of oscillations apart would always see the base at the same phase; these see ten phases.
     let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(99.9 * oscillation)?);
     simulation.run_until(2000.0 * oscillation, &mut series)?;
 
