@@ -104,6 +104,7 @@ pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;
 pub mod trajectory;
+mod violation;
 pub mod wall;
 
 /// The number of the results of this version.
@@ -121,3 +122,4 @@ pub use glam;
 pub use gravity::Gravity;
 pub use kind::Kind;
 pub use simulation::Simulation;
+pub use violation::Violation;

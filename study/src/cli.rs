@@ -15,7 +15,7 @@
 //! ```
 //!
 //! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
-//! and waiting, ramp and value of those values that stalled or failed, whether there are tables of all, and
+//! and waiting, ramp and value of those values that were not finished, whether there are tables of all, and
 //! about how many seconds of one processor the finished values took and the others will take.
 //! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units of all
 //! columns.
@@ -25,10 +25,12 @@
 //! | 0 | all that was asked for is done |
 //! | 1 | the command failed; standard error says why |
 //! | 2 | the command line or the plan cannot be used |
-//! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
+//! | 3 | other processes do the rest (`--no-wait`), also from `status` |
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
 //! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
 //! | 6 | from `diff`: the two runs differ |
+//! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
+//! | 8 | from `status`: not all ramps are done, and no process does any |
 //! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
 //!
 //! `replay` and `diff` have nothing to save: stopped, they leave no file.
@@ -72,6 +74,10 @@ enum End {
     Slower = 5,
     /// Two runs differ.
     Different = 6,
+    /// All is done, and some values were not finished.
+    Unfinished = 7,
+    /// Nobody does the rest.
+    Idle = 8,
     Interrupted = 130,
 }
 
@@ -186,7 +192,7 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     watch::listen()?;
     let watch = Watch::new();
     let show = |progress: &Progress| watch.show(progress);
-    let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()));
+    let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()))?;
     let summary = pool.install(|| match ramp {
         Some(ramp) => study.run_ramp(ramp, &control),
         None => study.run(&control),
@@ -206,6 +212,7 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         }
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
+        (true, _) if summary.failed > 0 => End::Unfinished,
         (true, _) => End::Done,
         (false, false) if !watch::is_stopped() => End::Elsewhere,
         _ => End::Interrupted,
@@ -244,12 +251,14 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
             let first: Vec<String> =
                 failed.iter().take(LISTED).map(|[r, v]| format!("{r:04}/{v:04}")).collect();
             let more = if failed.len() > LISTED { " …" } else { "" };
-            say(&format!("{} values stalled or failed: {}{more}", failed.len(), first.join(" ")))?;
+            say(&format!("{} values were not finished: {}{more}", failed.len(), first.join(" ")))?;
         }
     }
     Ok(match (found[0].1.len() == ramps, has_tables) {
-        (true, true) => End::Done,
+        (true, true) if failed.is_empty() => End::Done,
+        (true, true) => End::Unfinished,
         (true, false) => End::NoTables,
+        (false, _) if found[1].1.is_empty() => End::Idle,
         (false, _) => End::Elsewhere,
     })
 }

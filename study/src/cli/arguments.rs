@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use granular_edmd::ParameterError;
+
 use crate::Control;
 
 /// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
@@ -12,7 +14,8 @@ const MOST_THREADS: i64 = 4096;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 5
-/// slower than before, 6 the runs differ, 130 stopped with all saved.
+/// slower than before, 6 the runs differ, 7 done but some values were not finished, 8 nobody does the rest,
+/// 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(version)]
 pub(super) struct Arguments {
@@ -127,6 +130,9 @@ pub(super) struct Manner {
     /// Ends as soon as other processes do all that is left.
     #[arg(long)]
     no_wait: bool,
+    /// Ends each value that takes more than this number of seconds.
+    #[arg(long)]
+    most_seconds: Option<f64>,
     /// Writes no tables when all ramps are done; `tables` does so later.
     #[arg(long)]
     no_tables: bool,
@@ -137,10 +143,11 @@ pub(super) struct Manner {
 
 impl Manner {
     /// Returns a control with these wishes.
-    pub(super) fn of<'a>(&'a self, control: Control<'a>) -> Control<'a> {
+    pub(super) fn of<'a>(&'a self, control: Control<'a>) -> Result<Control<'a>, ParameterError> {
         let control = control.with_earlier_studies(&self.from);
         let control = if self.no_wait { control.without_waiting() } else { control };
         let control = if self.no_tables { control.without_tables() } else { control };
-        if self.verify { control.with_verification() } else { control }
+        let control = if self.verify { control.with_verification() } else { control };
+        self.most_seconds.map_or(Ok(control), |most| control.with_most_seconds(most))
     }
 }

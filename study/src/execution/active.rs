@@ -174,7 +174,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let walls = before.last_boundary(self.plan.protocol());
+        let walls = before.last_boundary(&self.plan.protocol().last_of(before.contents.steps));
         let run = walls.and_then(|walls| Self::resume(state, &before.experiment, walls));
         let mut run = run.map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;

@@ -10,7 +10,7 @@ use granular_edmd::statistics::{BlockedMean, Estimate};
 
 use crate::maker::Maker;
 use crate::parameters;
-use crate::{Experiment, ExperimentError, Leg, Protocol, Scalar};
+use crate::{Experiment, ExperimentError, Interval, Leg, Scalar};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -231,21 +231,20 @@ impl<E: Experiment> Record<E> {
     }
 
     /// Returns the walls at the end of the value. One that was not finished ends where it began.
-    pub(crate) fn last_boundary(&self, protocol: &Protocol) -> Result<E::Boundary, ExperimentError> {
-        if self.outcome().reason().is_some() {
-            return self.experiment.boundary();
+    pub(crate) fn last_boundary(&self, last: &Interval) -> Result<E::Boundary, ExperimentError> {
+        match self.outcome().reason() {
+            Some(_) => self.experiment.boundary(),
+            None => self.experiment.boundary_in(last, self.observer()),
         }
-        let last = protocol.steps().saturating_sub(1).min(self.contents.steps);
-        self.experiment.boundary_in(&protocol.interval(last), self.observer())
     }
 
     /// Returns the name of the rule or the walls if they are not those with which the value was run. Rules
     /// and walls without fingerprints cannot be told apart.
-    pub(crate) fn changed_part(&self, protocol: &Protocol) -> Option<&'static str> {
+    pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
             Some("rule")
-        } else if self.last_boundary(protocol).is_ok_and(|now| now.fingerprint() != boundary) {
+        } else if self.last_boundary(last).is_ok_and(|now| now.fingerprint() != boundary) {
             Some("boundary")
         } else {
             None

@@ -79,8 +79,8 @@ impl Protocol {
 
     /// Returns the same protocol with at most this number of collisions in a value, with disks or walls.
     ///
-    /// A value that reaches it ends with [`Outcome::Limited`](super::Outcome::Limited), so that one value of a
-    /// sweep cannot take as long as all others together.
+    /// A value that reaches it ends with [`Outcome::Limited`](super::Outcome::Limited), so that one value of
+    /// a sweep cannot take as long as all others together.
     ///
     /// # Errors
     /// If the number is 0, or above 2^63 − 1, the largest one that a plan can hold.
@@ -152,6 +152,11 @@ impl Protocol {
     /// Returns whether a step ends with a sample.
     pub(crate) const fn is_sampled(&self, step: u64) -> bool {
         step >= self.settling_steps()
+    }
+
+    /// Returns the last step of a value of which these steps are done.
+    pub(crate) fn last_of(&self, steps: u64) -> Interval {
+        self.interval(self.steps().saturating_sub(1).min(steps))
     }
 
     /// Returns the step of this index.

@@ -1,14 +1,13 @@
 //! Random studies, interrupted and damaged at random.
 
-use std::fs;
-
 use granular_edmd_study::vibrated_box::{Base, Sides, VibratedBox};
 use granular_edmd_study::{Axis, Control, Course, Plan, PlanError, Protocol, Ramp, Study};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
 use crate::cases::config;
-use crate::support::{BASE, Scratch, assert_same, contents, done, run_with_interruptions};
+use crate::logs;
+use crate::support::{BASE, Scratch, assert_same, done, run_with_interruptions};
 
 fn plan() -> impl Strategy<Value = Plan<VibratedBox>> {
     let base = select(vec![BASE, Base::Thermal { temperature: 1.0, slip: true }]);
@@ -62,14 +61,16 @@ proptest! {
         run_with_interruptions(&scratch.0, &plan, steps, |_| ());
         assert_same(&scratch.0, &expected.0);
 
-        let records: Vec<_> =
-            contents(&scratch.0).into_keys().filter(|name| name.extension().is_some_and(|end| end == "record")).collect();
-        let record = scratch.0.join(hit.get(&records));
+        let names: Vec<_> = logs::records(&scratch.0).into_keys().collect();
+        let number = |name: &std::ffi::OsStr| name.to_str().unwrap().parse::<u32>().unwrap();
+        let record = hit.get(&names);
+        let value = number(record.file_name().unwrap());
+        let ramp = number(record.parent().and_then(std::path::Path::file_name).unwrap());
         if lost {
-            fs::remove_file(&record)?;
+            logs::forget(&scratch.0, ramp, value);
         } else {
-            let bytes = fs::read(&record)?;
-            fs::write(&record, &bytes[..left.index(bytes.len())])?;
+            let contents = logs::record(&scratch.0, ramp, value);
+            logs::replace(&scratch.0, ramp, value, &contents[..left.index(contents.len())]);
         }
         let summary = Study::open_or_create(&scratch.0, &plan)?.run(&Control::default().with_verification())?;
         prop_assert!(summary.is_complete());
