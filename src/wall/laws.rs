@@ -1,6 +1,6 @@
 //! Checks of a wall motion's contract, for custom motions.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`](super::check_finite) tests only
+//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only
 //! that all answers are finite and that pieces advance; a container does this with every motion that it is
 //! given. [`check_fingerprints`] compares two motions.
 
