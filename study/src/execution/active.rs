@@ -228,6 +228,11 @@ impl<E: Experiment> Study<E> {
 }
 
 impl<E: Experiment> Active<'_, E> {
+    /// Returns what the simulation noticed and survived.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        self.run.warnings().iter().map(ToString::to_string).collect()
+    }
+
     /// Returns the number of steps that are done.
     pub(super) const fn steps(&self) -> u64 {
         self.work.steps
