@@ -51,7 +51,7 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_ramp(ramp)?;
-        self.run_blocks(ramp..ramp + 1, vec![ramp..ramp + 1], control)
+        self.run_blocks(ramp..ramp + 1, std::iter::once(ramp..ramp + 1).collect(), control)
     }
 
     fn run_blocks(

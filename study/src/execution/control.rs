@@ -154,7 +154,7 @@ pub struct Summary {
     /// Number of values that were not finished: they stalled, failed, or reached a limit. They have fewer
     /// samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
-    /// Number of values whose runs have [warnings](granular_edmd::simulation::Counters::warnings). The files
+    /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The files
     /// `logs/*.jsonl` of the study say of what.
     pub warned: usize,
     /// Number of values of the study, or of the ramps that were to be run.

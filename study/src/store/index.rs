@@ -114,10 +114,9 @@ impl Entries {
     pub(super) fn settle(&mut self, sorted: usize) {
         let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
         // A stable sort takes a time in proportion to the entries that are in order, and memory.
-        if sorted == 0 {
-            self.0.sort_unstable_by_key(key)
-        } else {
-            self.0.sort_by_key(key)
+        match sorted {
+            0 => self.0.sort_unstable_by_key(key),
+            _ => self.0.sort_by_key(key),
         }
         self.0.dedup_by_key(|entry| entry.place());
     }

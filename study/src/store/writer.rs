@@ -65,7 +65,9 @@ impl Writer {
         if self.at_risk > AT_RISK {
             self.sync()?;
         }
-        line.into_iter().for_each(|line| self.note(line));
+        if let Some(line) = line {
+            self.note(line);
+        }
         Ok(())
     }
 
