@@ -243,6 +243,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
 
     /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
+        if length < SHORT * (1.0 + start.abs()) {
+            return Ok(());
+        }
         let end = start + (1.0 - LAST) * length;
         for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
             let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);

@@ -104,7 +104,7 @@ impl Around<'_, '_> {
         let speed = surface.velocity.dot(surface.normal);
         let scale = speed.abs().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
-        let slack = EXACT + 8.0 * f64::EPSILON * time.abs() * scale / step;
+        let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
         // A step is the length that the wall goes at most. No question is about a time before the origin.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_rate = *time < 2.0 * step / scale || self.has_slope(speed / scale, step, slack, depth);
