@@ -1,11 +1,11 @@
-//! A boundary of one's own: a drum whose rim is hot on one side and cold on the other.
+//! A custom boundary: a drum whose rim is hot on one side and cold on the other.
 //!
 //! ```text
 //! cargo run --release --example own_boundary
 //! ```
 //!
-//! A moment. You learn what a boundary answers (where it is, when a disk touches it, what its surface is
-//! like), and that its geometry is made of the same bricks as the vessels of the library.
+//! It takes less than a second. You learn which questions a boundary answers (where it is, when a disk
+//! touches it, how its surface moves), and that you can build it from the bricks of the library's vessels.
 
 use granular_edmd::boundary::{Overlap, Probe, laws};
 use granular_edmd::prelude::*;

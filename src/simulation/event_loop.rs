@@ -14,7 +14,7 @@ use super::resolution::{Kick, failed, impact_of, is_parting, is_possible, resolv
 use super::state::{Clock, Earliest, Exit, Forecast};
 use super::{Event, Simulation};
 use crate::boundary::{Boundary, Reaction, Response};
-use crate::collision::{CollisionRule, Regime};
+use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::observable::{Collision, Observer, Partner};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
@@ -207,15 +207,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     fn count_regime(&mut self, collision: &Collision) {
         if collision.impulse.regime().is_remedy() {
-            self.count_remedy(collision);
+            // By value: if the collision itself were lent, all of it would be written to memory each time.
+            self.count_remedy(collision.contact, collision.impulse);
         }
     }
 
     /// Counts a collision that a remedy decided.
     #[cold]
     #[inline(never)]
-    fn count_remedy(&mut self, collision: &Collision) {
-        let Collision { contact, impulse, .. } = collision;
+    fn count_remedy(&mut self, contact: Contact, impulse: Impulse) {
         match impulse.regime() {
             Regime::ContactDuration => {
                 self.counters.contact_duration_collisions += 1;
@@ -224,7 +224,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
             Regime::LeastRebound => {
                 self.counters.least_rebound_collisions += 1;
-                self.counters.energy_of_rebounds += impulse.energy_change(contact).max(0.0);
+                self.counters.energy_of_rebounds += impulse.energy_change(&contact).max(0.0);
             }
             _ => {}
         }

@@ -31,7 +31,7 @@ mod tests {
     const SIDE: f64 = 9.0;
     const DISKS: usize = 24;
 
-    /// Returns disks of diameter 1 anywhere. Half of them have coordinates and velocities of few values, so
+    /// Returns disks of diameter 1. Half of them have coordinates and velocities of few values, so
     /// that many touch, overlap, rest, move alike, or meet others at the same time.
     fn bodies(generator: &mut Xoshiro256PlusPlus, gravity: f64) -> Bodies {
         let mut number = |few: bool, most: i32| {
@@ -40,8 +40,9 @@ mod tests {
         };
         let mut disk = |k: usize| {
             let middle = DVec2::splat(0.5 * SIDE);
-            let position = middle + DVec2::new(number(k % 2 == 0, 4), number(k % 2 == 0, 4));
-            let velocity = DVec2::new(number(k % 4 < 2, 1), number(k % 4 < 2, 1));
+            let (near, alike) = (k.is_multiple_of(2), k % 4 < 2);
+            let position = middle + DVec2::new(number(near, 4), number(near, 4));
+            let velocity = DVec2::new(number(alike, 1), number(alike, 1));
             Disk::new(position, 0.5).and_then(|disk| disk.with_velocity(velocity)).unwrap()
         };
         let disks: Vec<Disk> = (0..DISKS).map(&mut disk).collect();

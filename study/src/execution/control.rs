@@ -101,9 +101,9 @@ impl<'a> Control<'a> {
     /// [`Outcome::Limited`](crate::Outcome::Limited).
     ///
     /// Whether a value ends so depends on the machine. It counts as one that failed: its record stays until
-    /// [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result everywhere is
-    /// [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a value that was
-    /// interrupted counts from its resumption.
+    /// [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result everywhere
+    /// is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a value that
+    /// was interrupted counts from its resumption.
     ///
     /// # Errors
     /// If the time is not positive.

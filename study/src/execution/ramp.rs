@@ -127,8 +127,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(record)
     }
 
-    /// Runs the next value from a record, or takes it over from an earlier study, which the flag tells; `None`
-    /// if it was interrupted.
+    /// Runs the next value from a record, or takes it over from an earlier study, which the flag tells;
+    /// `None` if it was interrupted.
     fn new_value(
         &mut self,
         step: Step,

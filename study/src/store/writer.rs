@@ -33,7 +33,8 @@ impl Writer {
         let mut known = logs(folder)?;
         known.sort();
         let count = known.len();
-        // The standard library seeds its hash tables from the system: a random number that needs no dependency.
+        // The standard library seeds its hash tables from the system: a random number that needs no
+        // dependency.
         let start =
             RandomState::new().build_hasher().finish().checked_rem(count as u64).unwrap_or(0) as usize;
         known.rotate_left(start);
