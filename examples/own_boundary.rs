@@ -46,7 +46,8 @@ impl Boundary for Drum {
 
     fn surface(&self, wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
         let surface = Surface::new(self.rim.normal(position), DVec2::ZERO);
-        surface.with_response(Response::Thermal(self.temperatures[wall]))
+        // The rim is hollow for rules that ask for its radius.
+        surface.with_radius(-self.radius).with_response(Response::Thermal(self.temperatures[wall]))
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {

@@ -131,7 +131,7 @@ impl Random {
     /// Returns a time origin, and a flight that begins at a free place soon after it.
     fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
-        let late = self.between(-7.0 * 5.0, 5.0).max(0.0);
+        let late = self.between(-21.0, 3.0).max(0.0);
         let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let time = self.between(0.0, crossing);
         trial.begin(origin)?;

@@ -37,6 +37,9 @@ const SLOPE: f64 = 3e-4;
 const PHASES: u32 = 4000;
 const INTERVAL: f64 = 400.0;
 
+/// Number of later phases, each by a fifth later than the one before.
+const LATE: i32 = 40;
+
 /// Checks that a motion keeps its contract between two phases.
 ///
 /// The check samples each piece that begins between the phases. The state must be finite and within the
@@ -95,7 +98,7 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
 /// Checks that two motions which answer differently have different fingerprints, and that two which answer
 /// alike have the same. Motions without a fingerprint are not compared.
 ///
-/// The motions are compared at four thousand phases from −1 to 399.
+/// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
 ///
 /// # Errors
 /// If the fingerprints tell something else than the answers.
@@ -112,7 +115,8 @@ where
 {
     let differ = |&phase: &f64| first.state(phase) != second.state(phase);
     let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
-    let mut difference = phases.into_iter().find(differ).map(|phase| format!("at phase {phase:?}"));
+    let late = (0..LATE).map(|k| INTERVAL * 1.2_f64.powi(k));
+    let mut difference = phases.chain(late).find(differ).map(|phase| format!("at phase {phase:?}"));
     if (first.reach(), first.period()) != (second.reach(), second.period()) {
         difference = Some("in reach or period".to_owned());
     }
@@ -243,6 +247,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
 
     /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
+        if length < SHORT * (1.0 + start.abs()) {
+            return Ok(());
+        }
         let end = start + (1.0 - LAST) * length;
         for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
             let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);

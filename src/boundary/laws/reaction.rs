@@ -22,10 +22,14 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
         let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
         check_blow(trial, touch, place, [-share, sign * share, 0.0])?;
         check_blow(trial, touch, place, [0.0, 0.0, sign * share])?;
+        let (changed, after) = (trial.boundary.state(), answers(trial, touch, place));
         check_state(trial, &state)?;
-        let after = answers(trial, touch, place);
-        require!(PART, "state", before == after;
-            "wall {wall} is {after:?} at {time:?} when its state is set, and was {before:?}");
+        for (state, expected) in [(&state, before), (&changed, after), (&state, before)] {
+            trial.take_state(state)?;
+            let found = answers(trial, touch, place);
+            require!(PART, "state", found == expected;
+                "wall {wall} is {found:?} at {time:?} when its state {state:?} is set, and was {expected:?}");
+        }
     }
     Ok(())
 }
@@ -78,13 +82,12 @@ fn check_blow(
     Ok(())
 }
 
-/// Checks that the boundary takes its state, and no other numbers.
+/// Checks that the boundary takes no state of another length.
 fn check_state(trial: &mut Trial<'_>, state: &[f64]) -> Result<(), Violation> {
     let longer = [state, &[0.0]].concat();
     for wrong in [&longer[..], &longer[..state.len().saturating_sub(1)], &[]] {
         let is_refused = wrong.len() == state.len() || trial.boundary.set_state(wrong).is_err();
-        require!(PART, "state", is_refused;
-            "{} numbers are accepted as a state of {}", wrong.len(), state.len());
+        require!(PART, "state", is_refused; "{} numbers are accepted as a state of {}", wrong.len(), state.len());
     }
-    trial.take_state(state)
+    Ok(())
 }

@@ -53,7 +53,7 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
         around.check_normal(normal)?;
         around.check_velocity(&surface)?;
         around.check_radius(normal, radius)?;
-        around.check_tip(&surface)?;
+        around.check_point(&surface)?;
     }
     let [touched, named] = &mut trial.touches[wall];
     (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
@@ -104,7 +104,7 @@ impl Around<'_, '_> {
         let speed = surface.velocity.dot(surface.normal);
         let scale = speed.abs().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
-        let slack = EXACT + 8.0 * f64::EPSILON * time.abs() * scale / step;
+        let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
         // A step is the length that the wall goes at most. No question is about a time before the origin.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_rate = *time < 2.0 * step / scale || self.has_slope(speed / scale, step, slack, depth);
@@ -114,23 +114,29 @@ impl Around<'_, '_> {
         Ok(())
     }
 
-    /// Checks that a disk that touches the same point from another side finds the same velocity there, since
-    /// it is the velocity of the material. Only at a tip do two disks touch the same point.
-    fn check_tip(&self, surface: &Surface<'_>) -> Result<(), Violation> {
-        let Self { wall, place, time, .. } = self;
-        let (normal, size) = (surface.normal, self.trial.radius);
+    /// Checks that other disks that touch the same point find the same velocity there, since it is the velocity
+    /// of the material: a larger one, and at a tip one from another side. A belt that runs around a tip has
+    /// the same speed on either side.
+    fn check_point(&self, surface: &Surface<'_>) -> Result<(), Violation> {
+        let Self { wall, place, time, .. } = *self;
+        let (normal, size, velocity) = (surface.normal, self.trial.radius, surface.velocity);
+        let slack = EXACT * (velocity.length() + self.trial.speed);
+        let larger = self.trial.boundary.surface(wall, place + 0.5 * size * normal, time);
+        let is_same = larger.normal.distance(normal) > UNIT || larger.velocity.distance(velocity) <= slack;
+        let other = larger.velocity;
+        require!(PART, "velocity", is_same;
+            "wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} for a larger one");
         for turn in [DVec2::new(1.0, ANGLE), DVec2::new(1.0, -ANGLE)] {
-            let moved = size * (turn.normalize().rotate(normal) - normal);
-            let deeper = self.at(moved, 0.0).0 - self.at(DVec2::ZERO, 0.0).0;
+            let step = turn.normalize().rotate(normal) - normal;
+            let deeper = self.at(size * step, 0.0).0 - self.at(DVec2::ZERO, 0.0).0;
             if deeper.abs() > self.trial.rounding() {
                 continue;
             }
-            let (velocity, other) =
-                (surface.velocity, self.trial.boundary.surface(*wall, *place + moved, *time).velocity);
-            let is_same = velocity.distance(other) <= EXACT * (velocity.length() + self.trial.speed);
+            let other = self.trial.boundary.surface(wall, place + size * step, time).velocity;
+            let is_same = (other - velocity).dot(step.normalize()).abs() <= slack;
             require!(PART, "velocity", is_same;
-                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at \
-                 {other:?} for one moved by {moved:?}");
+                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} for \
+                 one beside it");
         }
         Ok(())
     }
