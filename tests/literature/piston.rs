@@ -5,7 +5,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{SampleTimes, Series, Snapshot, WallStress, from_fn};
 use granular_edmd::statistics::BlockedMean;
 use granular_edmd::wall::Piston;
-use granular_edmd::{Simulation, initial};
+use granular_edmd::{Disk, Simulation, initial};
 
 use crate::{Outcome, agrees};
 
@@ -38,7 +38,7 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
         let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
         run.run_until(1000.0, &mut ())?;
         let look = from_fn(|snapshot: &Snapshot<'_>| {
-            let kinetic = snapshot.mean(|disk| disk.translational_energy());
+            let kinetic = snapshot.mean(Disk::translational_energy);
             let height = snapshot.wall_point(LID).map_or(f64::NAN, |point| point.y);
             let speed = snapshot.wall_velocity(LID).map_or(f64::NAN, |velocity| velocity.y);
             // The middle third, far from the layers at lid and floor.
