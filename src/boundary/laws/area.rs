@@ -11,11 +11,7 @@ use crate::violation::require;
 /// Number of places along a side of a region: one at random in each cell of a grid.
 const PLACES: u32 = 128;
 
-<<<<<<< HEAD
 /// Largest error of an area, relative to the region: ten times the scatter in the worst case.
-=======
-/// Largest error of an area, relative to the region: five times the scatter, if walls cut a thousand cells.
->>>>>>> u
 const SCATTER: f64 = 5e-3;
 
 /// Checks the free areas of the domain, and of a region at random.
