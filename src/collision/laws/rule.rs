@@ -39,6 +39,7 @@ const STRIDE: usize = 7919;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each promise is given or not")]
 pub struct Promises {
     energy_gain: bool,
     opposed_slip: bool,
