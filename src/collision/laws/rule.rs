@@ -104,7 +104,8 @@ impl Promises {
         Self { mirror: false, ..self }
     }
 
-    /// Returns the same promises for disks of these kinds only; the default are 0 to 19 and three larger ones.
+    /// Returns the same promises for disks of these kinds only; the default are 0 to 19 and three larger
+    /// ones.
     ///
     /// ```
     /// use granular_edmd::Kind;
@@ -140,7 +141,8 @@ impl Promises {
         if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
     }
 
-    /// Checks the answer of a rule to a contact, to the same with partners exchanged, and to its mirror image.
+    /// Checks the answer of a rule to a contact, to the same with partners exchanged, and to its mirror
+    /// image.
     fn check_answer<R: CollisionRule + ?Sized>(
         &self,
         rule: &R,
