@@ -109,9 +109,9 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    at the same absolute time.
 /// 8. The same questions get the same answers, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple: its velocity changes by
-///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface over
-///    the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a mass m
-///    counts as the impulse C/R. No wall moves in an instant. The answer is [`Reaction::Moved`] if the
+///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
+///    over the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a
+///    mass m counts as the impulse C/R. No wall moves in an instant. The answer is [`Reaction::Moved`] if the
 ///    velocity changes. A wall of infinite masses does not react.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
@@ -137,13 +137,14 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
-/// `docs/validation.md` tells which planted faults they find. The engine notices many faults, too. At each collision with a wall, a disk
-/// enlarged by 1e-9 of its radius must overlap a wall, and it must be no deeper in one than 1e-6 of its
-/// radius. So an early or late touch is an error of the run. So is a disk that has left the domain, or that
-/// overlaps a wall at the end of a search that found no touch. A missed touch with a thin wall that disks
-/// meet from both sides stays unseen. A touch with a wall that the disk is leaving comes again at once, until
-/// the run fails for lack of progress. A velocity or a normal that is not finite is an error of the run.
+/// [`laws::check`] tests 1 to 12, except for points of walls, and
+/// [`laws::check_fingerprints`] tests 13; `docs/validation.md` tells which planted faults they find. The
+/// engine notices many faults, too. At each collision with a wall, a disk enlarged by 1e-9 of its radius must
+/// overlap a wall, and it must be no deeper in one than 1e-6 of its radius. So an early or late touch is an
+/// error of the run. So is a disk that has left the domain, or that overlaps a wall at the end of a search
+/// that found no touch. A missed touch with a thin wall that disks meet from both sides stays unseen. A touch
+/// with a wall that the disk is leaving comes again at once, until the run fails for lack of progress. A
+/// velocity or a normal that is not finite is an error of the run.
 ///
 /// ```
 /// use std::borrow::Cow;

@@ -17,9 +17,9 @@ const PART: &str = "scheduler";
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
 /// have from none to some ten thousand disks, and up to fifty thousand operations. They contain times that
-/// advance, go back, or are before the last answer; ties and times that differ by their last bits, both zeros,
-/// negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as many
-/// and no disks. Each question is asked twice. Now and then the scripts ask for
+/// advance, go back, or are before the last answer; ties and times that differ by their last bits, both
+/// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
+/// many and no disks. Each question is asked twice. Now and then the scripts ask for
 /// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" tells
 /// which planted faults the check finds. The scripts never change within a version.
 ///

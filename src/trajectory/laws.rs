@@ -39,7 +39,7 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
     let frames: Vec<Vec<u8>> = frames.collect::<Result<_, _>>()?;
     for round in 1..ROUNDS {
         for (number, once) in frames.iter().enumerate() {
-            for _ in 0..1 + round % 2 {
+            for _ in 0..=round % 2 {
                 let is_same = *once == written(format, number, &snapshots[number])?;
                 require!(PART, "alike", is_same;
                     "frame {number} of {} bytes is another when written again", once.len());

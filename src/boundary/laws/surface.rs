@@ -76,8 +76,8 @@ impl Around<'_, '_> {
         found.map_or((-larger, self.wall), |found| (found.depth - larger, found.with))
     }
 
-    /// Returns whether a function of a step has this slope at 0: from both sides, or from one, since the other
-    /// may lie beyond a corner or beyond a change of the motion.
+    /// Returns whether a function of a step has this slope at 0: from both sides, or from one, since the
+    /// other may lie beyond a corner or beyond a change of the motion.
     fn has_slope(&self, slope: f64, step: f64, slack: f64, depth: impl Fn(f64) -> f64) -> bool {
         let slack = slack + 16.0 * f64::EPSILON * self.trial.extent() / step;
         let [low, below, here, above, high] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|count| depth(count * step));
@@ -114,9 +114,9 @@ impl Around<'_, '_> {
         Ok(())
     }
 
-    /// Checks that other disks that touch the same point find the same velocity there, since it is the velocity
-    /// of the material: a larger one, and at a tip one from another side. A belt that runs around a tip has
-    /// the same speed on either side.
+    /// Checks that other disks that touch the same point find the same velocity there, since it is the
+    /// velocity of the material: a larger one, and at a tip one from another side. A belt that runs around a
+    /// tip has the same speed on either side.
     fn check_point(&self, surface: &Surface<'_>) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = *self;
         let (normal, size, velocity) = (surface.normal, self.trial.radius, surface.velocity);
@@ -141,8 +141,8 @@ impl Around<'_, '_> {
         Ok(())
     }
 
-    /// Checks that the radius is that of the curvature, if the wall is smooth near the touch. At a corner or a
-    /// tip it may be any.
+    /// Checks that the radius is that of the curvature, if the wall is smooth near the touch. At a corner or
+    /// a tip it may be any.
     fn check_radius(&self, normal: DVec2, radius: f64) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
         let size = self.trial.radius;

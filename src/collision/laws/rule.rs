@@ -39,6 +39,7 @@ const STRIDE: usize = 7919;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each promise is given or not")]
 pub struct Promises {
     energy_gain: bool,
     opposed_slip: bool,
@@ -103,7 +104,8 @@ impl Promises {
         Self { mirror: false, ..self }
     }
 
-    /// Returns the same promises for disks of these kinds only; the default are 0 to 19 and three larger ones.
+    /// Returns the same promises for disks of these kinds only; the default are 0 to 19 and three larger
+    /// ones.
     ///
     /// ```
     /// use granular_edmd::Kind;
@@ -139,7 +141,8 @@ impl Promises {
         if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
     }
 
-    /// Checks the answer of a rule to a contact, to the same with partners exchanged, and to its mirror image.
+    /// Checks the answer of a rule to a contact, to the same with partners exchanged, and to its mirror
+    /// image.
     fn check_answer<R: CollisionRule + ?Sized>(
         &self,
         rule: &R,

@@ -93,7 +93,7 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
             "kick {number} is at {time:?}, and at {other:?} if the run is cut");
         let before = first.clone();
         whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(failed)?;
-        check_kick(&before, &first, promises, number)?;
+        check_kick(&before, &first, *promises, number)?;
         require!(PART, "repeatable", first == second; "kick {number} of two equal drivings differs");
         let kicks = squares_of(&before, &first);
         let energy: f64 = before.iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
@@ -136,7 +136,7 @@ fn upcoming<D: Driving>(driving: &mut D, last: f64, again: usize) -> Result<f64,
 }
 
 /// Checks a kick by the disks before and after it.
-fn check_kick(before: &[Disk], after: &[Disk], promises: &Promises, number: usize) -> Result<(), Violation> {
+fn check_kick(before: &[Disk], after: &[Disk], promises: Promises, number: usize) -> Result<(), Violation> {
     for (old, new) in before.iter().zip(after) {
         let (mut place, mut angle, mut image) = (old.position(), old.angle(), old.image());
         if promises.moves {
