@@ -2,11 +2,16 @@
 
 use std::fmt;
 
+use crate::Violation;
+use crate::violation::require;
+
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
 /// others. A part of your own makes its fingerprint from its name and from all numbers on which its answers
 /// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be told apart.
+/// The checks of fingerprints, such as [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints),
+/// compare two parts with their answers: parts that differ in a number must differ, and equal parts agree.
 /// The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
@@ -65,4 +70,21 @@ impl fmt::Display for Fingerprint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:016x}", self.0)
     }
+}
+
+/// Checks that two parts have different fingerprints if their answers differ somewhere, and the same
+/// fingerprint otherwise.
+pub(crate) fn check_pair(
+    part: &'static str,
+    fingerprints: [Option<Fingerprint>; 2],
+    difference: Option<String>,
+) -> Result<(), Violation> {
+    let [Some(one), Some(other)] = fingerprints else { return Ok(()) };
+    if let Some(difference) = difference {
+        require!(part, "fingerprint", one != other;
+            "two parts have the fingerprint {one}, but differ {difference}");
+    } else {
+        require!(part, "fingerprint", one == other; "equal parts have the fingerprints {one} and {other}");
+    }
+    Ok(())
 }

@@ -3,17 +3,25 @@
 //! A build for any x86-64 processor can rely only on instructions for two numbers at a time, but nearly all
 //! of these processors can take four. So the hot code is compiled for each level, and [`Instructions`] names
 //! the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses a
-//! product and a sum into one instruction. So the bits do not depend on the level. A build for a processor
-//! with AVX2 or for another architecture has one copy only.
+//! product and a sum into one instruction. So the bits do not depend on the level.
+//!
+//! What the compiler does not find by itself is written in vector instructions: the tournament of the
+//! scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions (`simulation/prediction/vector.rs`).
+//! Each such function has a plain one of the same name beside it, which runs where there are no such
+//! instructions. Builds for other architectures have the plain functions only.
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod load;
 
 /// A level of instructions that this processor has. Values for other levels cannot be made.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Instructions(Level);
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[allow(dead_code, reason = "not all are chosen from in all builds")]
 pub(crate) enum Level {
     /// The instructions on which the build relies.
+    #[default]
     Built,
     /// Four numbers at a time.
     Avx2,
@@ -21,7 +29,20 @@ pub(crate) enum Level {
     Avx512,
 }
 
+impl Level {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Built => "those of the build",
+            Self::Avx2 => "AVX2",
+            Self::Avx512 => "AVX-512",
+        }
+    }
+}
+
 impl Instructions {
+    /// Those that every processor has for which the crate is built.
+    pub(crate) const BUILT: Self = Self(Level::Built);
+
     /// Returns the best level that this processor has.
     pub(crate) fn detected() -> Self {
         [Level::Avx512, Level::Avx2].into_iter().find(|&level| has(level)).map_or(Self(Level::Built), Self)
@@ -40,7 +61,7 @@ impl Instructions {
     ///
     /// `work` and all hot functions that it calls must be `#[inline(always)]`, since other code is compiled
     /// for the level of the build.
-    #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+    #[cfg(target_arch = "x86_64")]
     #[allow(unsafe_code)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
@@ -62,7 +83,7 @@ impl Instructions {
     }
 
     /// Runs a piece of work. The function is not inlined, so that all callers share one copy.
-    #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+    #[cfg(not(target_arch = "x86_64"))]
     #[allow(clippy::unused_self, reason = "there is no choice here")]
     #[inline(never)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
@@ -77,8 +98,8 @@ impl Instructions {
     }
 }
 
-/// Tells whether this processor has the instructions for which the copy of a level is compiled.
-#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+/// Returns whether this processor has the instructions for which the copy of a level is compiled.
+#[cfg(target_arch = "x86_64")]
 fn has(level: Level) -> bool {
     use std::arch::is_x86_feature_detected as has;
     let avx2 = has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt");
@@ -91,37 +112,46 @@ fn has(level: Level) -> bool {
     }
 }
 
-#[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+#[cfg(not(target_arch = "x86_64"))]
 fn has(level: Level) -> bool {
     level == Level::Built
 }
 
-/// Makes a function that runs the copy of `$body` for the [`Instructions`] in its first argument.
+/// Makes a function that runs one of three others, by the [`Instructions`] in its first argument: that for any
+/// processor, that for AVX2, or that for AVX-512.
 ///
-/// `$body` and all hot functions that it calls must be `#[inline(always)]`, since other code is compiled for
-/// the level of the build. The constant parameter of `$body`, the number of the copy, makes the copies
-/// different functions. The compiler then inlines the functions that a copy calls as if this copy were their
-/// only caller. The attributes are those of the copy for the level of the build. [`Instructions::run`] would
-/// be slower here, since so many captures would go through memory.
-#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+/// The three can be copies of a plain function for each level. This and all hot functions that it calls must
+/// then be `#[inline(always)]`, since other code is compiled for the level of the build. A constant parameter,
+/// the number of the copy, makes the copies different functions. The compiler then inlines the functions that
+/// a copy calls as if this copy were their only caller. A function of vector instructions, or a closure that
+/// calls one, can take the place of a copy. [`Instructions::run`] would be slower here, since so many captures
+/// would go through memory.
+#[cfg(target_arch = "x86_64")]
 macro_rules! compiled_for_each {
-    ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
-        #[inline]
+    (
+        $(#[$attribute:meta])* $visibility:vis $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
+            = $built:expr, $avx2:expr, $avx512:expr
+    ) => {
+        #[inline(always)]
         #[allow(unsafe_code, clippy::too_many_arguments)]
-        pub(super) fn $name(instructions: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
+        $visibility fn $name$(<const $number: usize>)?(
+            instructions: $crate::instructions::Instructions, $($argument: $type),*
+        ) -> $output {
             $(#[$attribute])*
-            fn built($($argument: $type),*) -> $output {
-                $body::<0>($($argument),*)
+            fn built$(<const $number: usize>)?($($argument: $type),*) -> $output {
+                $built($($argument),*)
             }
 
+            $(#[$attribute])*
             #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-            fn avx2($($argument: $type),*) -> $output {
-                $body::<1>($($argument),*)
+            fn avx2$(<const $number: usize>)?($($argument: $type),*) -> $output {
+                $avx2($($argument),*)
             }
 
+            $(#[$attribute])*
             #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw,avx512cd")]
-            fn avx512($($argument: $type),*) -> $output {
-                $body::<2>($($argument),*)
+            fn avx512$(<const $number: usize>)?($($argument: $type),*) -> $output {
+                $avx512($($argument),*)
             }
 
             match instructions.level() {
@@ -134,13 +164,18 @@ macro_rules! compiled_for_each {
     };
 }
 
-#[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+#[cfg(not(target_arch = "x86_64"))]
 macro_rules! compiled_for_each {
-    ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
+    (
+        $(#[$attribute:meta])* $visibility:vis $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
+            = $built:expr, $avx2:expr, $avx512:expr
+    ) => {
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments)]
-        pub(super) fn $name(_: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
-            $body::<0>($($argument),*)
+        $visibility fn $name$(<const $number: usize>)?(
+            _: $crate::instructions::Instructions, $($argument: $type),*
+        ) -> $output {
+            $built($($argument),*)
         }
     };
 }

@@ -27,7 +27,8 @@
 //!     .build()?;
 //!
 //! // Watch the convection rolls, the height and the energy loss for 100 oscillations.
-//! let times = SampleTimes::every(10.0 * oscillation)?;
+//! // No whole number of oscillations between two samples, so that they see all phases of the base.
+//! let times = SampleTimes::every(9.9 * oscillation)?;
 //! let mut series = Series::new((OrderParameters, CenterOfMass), times);
 //! let mut energy = EnergyChange::default();
 //! simulation.run_until(100.0 * oscillation, &mut (&mut series, &mut energy))?;
@@ -104,6 +105,7 @@ pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;
 pub mod trajectory;
+mod violation;
 pub mod wall;
 
 /// The number of the results of this version.
@@ -121,3 +123,4 @@ pub use glam;
 pub use gravity::Gravity;
 pub use kind::Kind;
 pub use simulation::Simulation;
+pub use violation::Violation;

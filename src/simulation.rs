@@ -54,7 +54,7 @@ pub use builder::SimulationBuilder;
 pub(crate) use cells::FEWEST;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
-pub use driving::{Driving, Rescaling, WhiteNoise};
+pub use driving::{Driving, Rescaling, WhiteNoise, laws};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use footprint::Footprint;
@@ -168,8 +168,8 @@ const _: () = {
 /// Buffers that are used again and again.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
-    /// The neighbors of one disk.
-    found: Vec<u32>,
+    /// The neighbors of one disk, or of both that collide.
+    found: [Vec<u32>; 2],
     /// The times of all disks.
     due: Vec<f64>,
     /// Number of disks that the scheduler has room for.

@@ -1,4 +1,5 @@
-//! Random inputs for property tests of your own rules and walls; the module needs the feature `proptest`.
+//! Random inputs for property tests of custom rules, walls and boundaries; the module needs the feature
+//! `proptest`.
 //!
 //! Each function returns a [`Strategy`] that is hostile on purpose: ordinary values, the edges of their
 //! ranges, and values over many decades, in mixtures that a run of the simulation might take days to meet.
@@ -37,11 +38,16 @@
 //! ```
 
 use std::f64::consts::TAU;
+use std::fmt::Debug;
+use std::sync::Arc;
 
 use glam::DVec2;
 use proptest::prelude::*;
 
+use crate::boundary::{Container, Part, Vessel, Wall};
+use crate::collision::laws::{Partner, meeting};
 use crate::collision::{Contact, Elastic, collide};
+use crate::wall::{BiParabolic, Delayed, Sawtooth, Scaled, Sinusoidal, Summed, Triangular, WallMotion};
 use crate::{Disk, Kind};
 
 /// Returns positive numbers, spread evenly over the decades from 10 to the power `low` to 10 to the power
@@ -88,10 +94,11 @@ pub fn direction() -> impl Strategy<Value = DVec2> {
     ]
 }
 
-/// Returns contacts as a rule sees them: they close, and the partners have never collided before.
+/// Returns contacts as a rule sees them: they close, with any slip and relative spin, at any time after the
+/// last collision or without one.
 ///
-/// The tangential mass is at most the normal one, and can be a thousandth of it. The partners are of the
-/// kinds 0 to 2, or one is a wall.
+/// The partners are disks of the kinds 0 to 3 with any masses and inertia, or one is a straight, convex or
+/// hollow wall. [`contact_of`] takes other kinds.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Elastic, laws};
@@ -105,23 +112,51 @@ pub fn direction() -> impl Strategy<Value = DVec2> {
 /// });
 /// ```
 pub fn contact() -> impl Strategy<Value = Contact> {
-    (
-        closing_speed(),
-        speed(),
-        decades(-12.0, 12.0),
-        prop_oneof![4 => decades(-3.0, 0.0), 1 => Just(1.0 / 3.0)],
-    )
-        .prop_flat_map(|(closing, slip, mass, ratio)| {
-            let contact = Contact::new(closing, slip, mass, (mass * ratio).min(mass));
-            partners().prop_map(move |(kinds, radii)| contact.with_kinds(kinds).with_radii(radii))
-        })
+    contact_of((0..4).map(Kind::new).collect())
 }
 
-/// Returns the kinds and radii of two disks, or of a disk and a wall.
-fn partners() -> impl Strategy<Value = ([Kind; 2], [f64; 2])> {
-    let disk = || ((0..3_u16).prop_map(Kind::new), decades(-6.0, 6.0));
-    let other = prop_oneof![3 => disk(), 1 => (Just(Kind::WALL), Just(f64::INFINITY))];
-    (disk(), other).prop_map(|(disk, other)| ([disk.0, other.0], [disk.1, other.1]))
+/// Returns contacts as [`contact`] does, between disks of these kinds and walls.
+///
+/// # Panics
+/// If there are no kinds.
+///
+/// ```
+/// use granular_edmd::{Kind, strategies};
+/// use proptest::prelude::*;
+///
+/// let sand = Kind::new(40);
+/// proptest!(|(contact in strategies::contact_of(vec![sand]))| prop_assert_eq!(contact.kinds()[0], sand));
+/// ```
+pub fn contact_of(kinds: Vec<Kind>) -> impl Strategy<Value = Contact> {
+    let spin = prop_oneof![1 => Just(0.0), 2 => speed()];
+    let time = prop_oneof![1 => Just(f64::INFINITY), 1 => decades(-12.0, 3.0), 1 => 0.0..1.0];
+    (closing_speed(), speed(), spin, time, partners(kinds)).prop_map(
+        |(closing, slip, spin, time, partners)| {
+            let contact = meeting(partners, closing, slip, spin / partners[0].radius);
+            contact.with_time_since_last_collision(time)
+        },
+    )
+}
+
+/// Returns two disks, or a disk and a wall.
+fn partners(kinds: Vec<Kind>) -> impl Strategy<Value = [Partner; 2]> {
+    let factor = prop_oneof![4 => decades(-3.0, 0.0), 1 => Just(0.5)];
+    let factor = factor.prop_map(|factor: f64| factor.min(1.0));
+    let kind = prop::sample::select(kinds);
+    let disk = (decades(-12.0, 12.0), factor, decades(-6.0, 6.0), kind)
+        .prop_map(|(mass, inertia_factor, radius, kind)| Partner { mass, inertia_factor, radius, kind })
+        .boxed();
+    let ratio = prop_oneof![1 => Just(1.0), 3 => decades(-6.0, 6.0)];
+    (disk.clone(), disk, ratio, 0..6_u8).prop_map(|(first, second, ratio, choice)| {
+        let wall = |radius| Partner::wall(f64::INFINITY, radius, Kind::WALL);
+        let other = match choice {
+            0 => wall(f64::INFINITY),
+            1 => wall(second.radius),
+            2 => wall(-1.05 * first.radius - second.radius),
+            _ => Partner { mass: first.mass * ratio, ..second },
+        };
+        [first, other]
+    })
 }
 
 fn closing_speed() -> impl Strategy<Value = f64> {
@@ -196,4 +231,120 @@ pub fn touching_pair() -> impl Strategy<Value = (Disk, Disk)> {
 /// ```
 pub fn disk_closing_on_wall() -> impl Strategy<Value = (Disk, DVec2, DVec2)> {
     touching_pair().prop_map(|(disk, wall)| (disk, disk.position().normalize(), wall.velocity()))
+}
+
+/// A motion that tests can print.
+trait Shown: WallMotion + Debug + Send + Sync {}
+
+impl<M: WallMotion + Debug + Send + Sync> Shown for M {}
+
+/// Returns motions of walls, alone, scaled, delayed and added, with displacements below 0.6 in magnitude.
+///
+/// ```
+/// use granular_edmd::{strategies, wall::laws};
+/// use proptest::prelude::*;
+///
+/// let few = ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() };
+/// proptest!(few, |(motion in strategies::motion())| prop_assert_eq!(laws::check(&motion, -1.0, 2.0), Ok(())));
+/// ```
+pub fn motion() -> impl Strategy<Value = impl WallMotion + Debug + Clone + Send + Sync + 'static> {
+    fn of<M: Shown + 'static>(motion: Result<M, impl Debug>) -> Option<Arc<dyn Shown>> {
+        motion.ok().map(|motion| Arc::new(motion) as Arc<dyn Shown>)
+    }
+    let numbers = || (0.01..0.2, decades(-0.5, 1.5));
+    (numbers(), numbers(), 0.0..2.0, 0..7_u8).prop_filter_map(
+        "a motion",
+        |((amplitude, frequency), (other, faster), start, choice)| {
+            let sine = Sinusoidal::new(amplitude, frequency).ok()?;
+            match choice {
+                0 => of(BiParabolic::new(amplitude, frequency)),
+                1 => of(Triangular::new(amplitude, frequency)),
+                2 => of(Sawtooth::new(amplitude, frequency)),
+                3 => of(Delayed::new(sine, start)),
+                4 => of(Scaled::new(sine, start - 1.0)),
+                5 => of(Summed::new(sine, Sinusoidal::new(other, faster).ok()?)),
+                _ => of(Ok::<_, ()>(sine)),
+            }
+        },
+    )
+}
+
+/// Returns containers of 6 to 16 by 6 to 16, closed, open or with periodic sides, some with a floor or a lid
+/// that moves as [`motion`] says.
+///
+/// ```
+/// use granular_edmd::{boundary::laws, strategies};
+/// use proptest::prelude::*;
+///
+/// let few = ProptestConfig { cases: 3, failure_persistence: None, ..ProptestConfig::default() };
+/// proptest!(few, |(mut container in strategies::container())| {
+///     prop_assert_eq!(laws::check(&mut container, 0.5, 1.0, 1), Ok(()));
+/// });
+/// ```
+pub fn container() -> impl Strategy<Value = Container> {
+    (6.0..16.0, 6.0..16.0, 0..5_u8, any::<bool>(), motion()).prop_filter_map(
+        "a container",
+        |(width, height, choice, is_periodic, motion)| {
+            let container = match choice {
+                0 => Container::open(width),
+                _ => Container::closed(width, height),
+            };
+            let container = match choice {
+                1 | 2 => container.ok()?.with_motion(Wall::Floor, motion).ok()?,
+                3 => container.ok()?.with_motion(Wall::Lid, motion).ok()?,
+                _ => container.ok()?,
+            };
+            if is_periodic { container.with_periodic_sides().ok() } else { Some(container) }
+        },
+    )
+}
+
+/// Returns vessels: a [`container`] with a peg, or a bar that turns, in its middle.
+///
+/// ```
+/// use granular_edmd::boundary::Boundary;
+/// use proptest::prelude::*;
+/// proptest!(|(vessel in granular_edmd::strategies::vessel())| prop_assert!(vessel.wall_count() >= 2));
+/// ```
+pub fn vessel() -> impl Strategy<Value = Vessel> {
+    (container(), 0.3..1.5, -2.0..2.0, any::<bool>()).prop_filter_map(
+        "a vessel",
+        |(container, size, spin, is_peg)| {
+            let middle = DVec2::new(3.0, 3.0);
+            let part = if is_peg {
+                Part::peg(middle, size).ok()?
+            } else {
+                let bar = [middle - DVec2::new(size, 0.0), middle + DVec2::new(size, 0.0)];
+                Part::polyline(bar).ok()?.with_rotation(middle, spin).ok()?
+            };
+            Vessel::new(container).with("part", part).ok()
+        },
+    )
+}
+
+/// Returns up to this number of disks that do not overlap, of several kinds, with radii from 0.05 to 0.5 and
+/// masses over six decades, in rows from the origin on.
+///
+/// ```
+/// use proptest::prelude::*;
+/// proptest!(|(disks in granular_edmd::strategies::mixture(9))| {
+///     prop_assert!(disks.len() <= 9 && disks.iter().all(|disk| disk.position().x < 3.0));
+/// });
+/// ```
+pub fn mixture(most: usize) -> impl Strategy<Value = Vec<Disk>> {
+    let columns = ((most as f64).sqrt() as usize).max(1);
+    let disk = (0.05..0.5, decades(-3.0, 3.0), (-3.0..3.0, -3.0..3.0), 0..4_u16);
+    prop::collection::vec(disk, 0..=most).prop_filter_map("disks", move |all| {
+        let place = |number: usize| {
+            let corner = DVec2::new((number % columns) as f64, (number / columns) as f64);
+            corner + DVec2::splat(0.5)
+        };
+        let numbered = all.into_iter().enumerate();
+        let disks = numbered.map(|(number, (radius, mass, velocity, kind))| {
+            let disk =
+                Disk::new(place(number), radius)?.with_mass(mass)?.with_velocity(DVec2::from(velocity))?;
+            Ok::<_, crate::ParameterError>(disk.with_kind(Kind::new(kind)))
+        });
+        disks.collect::<Result<_, _>>().ok()
+    })
 }

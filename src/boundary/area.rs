@@ -85,17 +85,23 @@ impl Curve {
             | (Self::Circle(center, radius), Self::Line(from, to)) => {
                 let way = (to - from).normalize_or_zero();
                 let (along, beside) = ((center - from).dot(way), way.perp_dot(center - from).abs());
-                let half = ((radius - beside) * (radius + beside)).sqrt();
+                let half = root((radius - beside) * (radius + beside) / (radius * radius)) * radius;
                 [from + (along - half) * way, from + (along + half) * way]
             }
             (Self::Circle(one, first), Self::Circle(two, second)) => {
                 let apart = two - one;
                 let along = 0.5 + 0.5 * (first - second) * (first + second) / apart.length_squared();
-                let half = (first * first / apart.length_squared() - along * along).sqrt();
+                let half = root(first * first / apart.length_squared() - along * along);
                 [one + along * apart + half * apart.perp(), one + along * apart - half * apart.perp()]
             }
         }
     }
+}
+
+/// Returns the root of a square; 0 if rounding may have made the square from 0, where curves are tangent.
+fn root(square: f64) -> f64 {
+    const ROUNDING: f64 = 1e-13;
+    if square.abs() < ROUNDING { 0.0 } else { square.sqrt() }
 }
 
 /// Returns whether two rectangles have a point in common.

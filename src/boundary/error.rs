@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::ParameterError;
 use crate::error::Rounded;
-use crate::wall::Violation;
+use crate::{ParameterError, Violation};
 
 /// An error: a vessel cannot be built or changed in this way.
 ///

@@ -1,23 +1,28 @@
-//! Checks of a boundary's contract, for boundaries of your own.
+//! Checks of a boundary's contract, for custom boundaries.
 //!
 //! [`check`] sends disks on random flights between the walls, and checks every answer of the boundary about
-//! them.
+//! them. [`check_fingerprints`] compares two boundaries.
 
+mod area;
 mod flight;
+mod pair;
+mod reaction;
+mod surface;
 mod trial;
-mod violation;
 
-pub use violation::Violation;
+pub use pair::check_fingerprints;
 
 use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{Boundary, Domain};
-use crate::Flight;
 use crate::random::uniform;
+use crate::violation::require;
+use crate::{Flight, Kind, Violation};
+use area::check_areas;
 use flight::check_flights;
-use trial::Trial;
+use trial::{PART, Trial};
 
 /// Number of disks that are sent on flights.
 const DISKS: usize = 400;
@@ -31,28 +36,37 @@ const PLACES: usize = 10_000;
 /// Largest time origin of a flight, in units of the time that a disk takes to cross the domain.
 const LATEST: f64 = 100.0;
 
-/// Checks that a boundary keeps its contract with disks of this radius, on random flights at about this
-/// speed.
+/// Kinds and sizes of the disks, alternately.
+const KINDS: [u16; 8] = [0, 1, 0, 2, 0, 3, 300, 7];
+const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
+
+/// Checks that a boundary keeps its contract with disks of this radius and smaller ones, on random flights at
+/// about this speed.
 ///
-/// Each of four hundred disks flies from a free place, with or without gravity, at various times. A wall that
-/// it touches turns it back, for up to four flights in a row. The check requires of each flight:
+/// Each of four hundred disks of several kinds flies from a free place, with or without gravity, at various
+/// times and speeds. A wall that it touches turns it back, for up to four flights in a row, and after some
+/// touches it also grazes that wall. The check requires of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again at once if it did
-///   not turn.
-/// - The normal is a unit vector, a disk that is moved along it comes out of the wall, and the velocity is
-///   finite.
-/// - `may_touch` holds for all kinds of regions around the touch, also for those that extend to infinity at
-///   the edges of the domain.
-/// - With another time origin, the same flight touches at the same absolute time.
+///   not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
+/// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along it is the
+///   rate at which the wall moves there, and the radius of the surface that of the curvature.
+/// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, also for those that extend to
+///   infinity at the edges of the domain.
+/// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
+/// - A wall that reacts to a blow moves as its mass says, and `state` and `set_state` bring it back.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.
+///
+/// If the boundary knows its free `area`, overlaps at random places must agree with it.
 ///
 /// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check changes the boundary's time origin.
 ///
 /// # Errors
-/// The first violation that the check finds, with the flight on which it was found.
+/// The first violation that the check finds, with the flight on which it was found. The page "Validation"
+/// tells which planted faults the check finds.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall, laws};
@@ -73,29 +87,37 @@ pub fn check<B: Boundary + ?Sized>(
     for wall in [0, boundary.wall_count(), usize::MAX] {
         drop(boundary.wall_name(wall));
     }
-    let mut trial = Trial::new(boundary, domain, radius, speed);
+    let mut boundary = boundary;
+    let mut trial = Trial::new(&mut boundary, domain, radius, speed);
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(seed));
-    for _ in 0..DISKS {
+    for number in 0..DISKS {
+        trial.radius = radius * SIZES[number % SIZES.len()];
+        trial.kind = Kind::new(KINDS[number % KINDS.len()]);
         let (origin, flight) = random.flight(&mut trial)?;
-        trial.set_origin(origin);
+        trial.begin(origin)?;
         check_flights(&mut trial, flight, FLIGHTS)?;
+        // Each time, the disk is of another size.
+        if number % 83 == 4 {
+            check_areas(&trial, flight.time(), &mut random)?;
+        }
     }
-    Ok(())
+    trial.check_names()
 }
 
 /// Checks that the domain is a rectangle, open above at most, and that it contains the interior.
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
-    if !(is_bounded && domain.left < domain.right && domain.bottom < domain.top) {
-        return Err(Violation::Domain { domain: *domain });
-    }
+    let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;
+    require!(PART, "domain", is_rectangle;
+        "the domain {domain} is no rectangle with a finite bottom and sides");
     let is_inside = domain.left <= interior.left
         && interior.right <= domain.right
         && domain.bottom <= interior.bottom
         && interior.top <= domain.top
         && domain.periodic_sides == interior.periodic_sides
         && domain.periodic_ends == interior.periodic_ends;
-    if is_inside { Ok(()) } else { Err(Violation::Interior { interior: *interior, domain: *domain }) }
+    require!(PART, "interior", is_inside; "the interior {interior} is not inside the domain {domain}");
+    Ok(())
 }
 
 /// A generator of random flights.
@@ -107,13 +129,14 @@ impl Random {
     }
 
     /// Returns a time origin, and a flight that begins at a free place soon after it.
-    fn flight<B: Boundary + ?Sized>(&mut self, trial: &mut Trial<'_, B>) -> Result<(f64, Flight), Violation> {
+    fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
-        let origin = self.between(0.0, LATEST * crossing);
+        let late = self.between(-21.0, 3.0).max(0.0);
+        let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let time = self.between(0.0, crossing);
-        trial.set_origin(origin);
+        trial.begin(origin)?;
         let position = self.place(trial, time)?;
-        let speed = trial.speed * self.between(0.1, 3.0);
+        let speed = trial.speed * self.share();
         // The direction comes from a point in a square, not from an angle: sine and cosine differ
         // between platforms.
         let direction = DVec2::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0)).normalize_or(DVec2::X);
@@ -122,16 +145,33 @@ impl Random {
         let gravity = [0.0, 0.5 * pull, 4.0 * pull, -pull][choice as usize];
         // A third of the pulls are not vertical.
         let down = if choice.fract() < 1.0 / 3.0 { DVec2::new(0.6, -0.8) } else { DVec2::NEG_Y };
-        let acceleration = gravity * down;
-        Ok((origin, Flight::new(time, position, speed * direction, acceleration, trial.radius)))
+        let flight = Flight::new(time, position, speed * direction, gravity * down, trial.radius);
+        Ok((origin, flight.with_kind(trial.kind)))
+    }
+
+    /// Returns a speed in units of the typical one: mostly about 1, sometimes over some decades, seldom very
+    /// slow.
+    fn share(&mut self) -> f64 {
+        match self.between(0.0, 8.0) as u32 {
+            0..=4 => self.between(0.1, 4.0),
+            5 | 6 => libm::exp10(self.between(-2.2, 0.6)),
+            _ => libm::exp10(self.between(-10.0, -2.0)),
+        }
     }
 
     /// Returns a place in the domain where a disk overlaps no wall.
-    fn place<B: Boundary + ?Sized>(&mut self, trial: &Trial<'_, B>, time: f64) -> Result<DVec2, Violation> {
+    fn place(&mut self, trial: &Trial<'_>, time: f64) -> Result<DVec2, Violation> {
         let (low, high) = trial.rectangle();
         let place = (0..PLACES)
             .map(|_| DVec2::new(self.between(low.x, high.x), self.between(low.y, high.y)))
             .find(|&place| trial.depth(place, 0.0, time).is_none());
-        place.ok_or(Violation::NoRoom { radius: trial.radius, time })
+        let radius = trial.radius;
+        place.ok_or_else(|| {
+            Violation::new(
+                PART,
+                "room",
+                format!("there is no room for a disk of radius {radius:?} at {time:?}"),
+            )
+        })
     }
 }

@@ -188,7 +188,11 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        self.boundary.may_meet(wall, region, radius, until)
+        if wall < self.boundary.wall_count() {
+            self.boundary.may_meet(wall, region, radius, until)
+        } else {
+            self.may_touch(region, radius)
+        }
     }
 
     fn state(&self) -> Vec<f64> {

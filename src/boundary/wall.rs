@@ -4,8 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::ParameterError;
-use crate::wall::Violation;
+use crate::{ParameterError, Violation};
 
 /// A wall of a [`Container`](super::Container).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -215,6 +215,14 @@ impl fmt::Display for Contact {
             "closing speed {closing_speed:?}, slip speed {slip_speed:?}, normal mass {normal_mass:?}, \
              tangential mass {tangential_mass:?}, time since the last collision {since:?}, \
              radii {first:?} and {second:?}, kinds {one} and {other}"
+        )?;
+        let (spin, inertia, response) = (self.relative_spin, self.spin_inertia, self.spin_response);
+        if spin == 0.0 && response == 0.0 {
+            return Ok(());
+        }
+        write!(
+            formatter,
+            ", relative spin {spin:?} with the inertia {inertia:?} and the response {response:?}"
         )
     }
 }

@@ -4,7 +4,7 @@ use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Collision, Partner, on_collision};
 use crate::scheduler::EventScheduler;
-use crate::simulation::{Inlet, RunError, Simulation};
+use crate::simulation::{RunError, Simulation};
 
 /// A collision that was played back.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,31 +36,17 @@ pub struct Replayed {
 #[derive(Debug)]
 pub struct Steps<R, B, S> {
     run: Simulation<R, B, S>,
-    ids: Vec<u64>,
-    /// Numbers of disks that have come and gone.
-    population: [u64; 2],
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
     /// Begins with this run.
-    pub fn new(run: Simulation<R, B, S>) -> Self {
-        let mut steps = Self { run, ids: Vec::new(), population: [u64::MAX; 2] };
-        steps.name();
-        steps
+    pub const fn new(run: Simulation<R, B, S>) -> Self {
+        Self { run }
     }
 
     /// Returns the run after the last step.
     pub const fn run(&self) -> &Simulation<R, B, S> {
         &self.run
-    }
-
-    /// Names the disks, if any have come or gone.
-    fn name(&mut self) {
-        let counters = self.run.counters();
-        let population = [counters.insertions, counters.removals];
-        if std::mem::replace(&mut self.population, population) != population {
-            self.ids = self.run.disks().iter().map(crate::Disk::id).collect();
-        }
     }
 
     /// Goes to the next collision; without one up to and at the absolute time `end`, the run goes there and
@@ -70,28 +56,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
     /// The same as for [`Simulation::step_until`].
     pub fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
         let mut last = None;
-        // A disk that comes in gets its name before it collides, so each opening of an inlet is a step.
-        while last.is_none() {
-            let opening = self.run.inlets().iter().map(Inlet::next_opening).fold(end, f64::min);
-            self.run
-                .step_until(opening, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
-            if last.is_none() {
-                self.name();
-                if opening >= end {
-                    return Ok(None);
-                }
-            }
-        }
-        let replayed = last.map(|collision| {
-            let id = |disk: usize| self.ids.get(disk).copied().unwrap_or(0);
-            let partner_id = match collision.partner {
-                Partner::Disk(partner) => Some(id(partner)),
-                Partner::Wall(_) => None,
-            };
-            let number = self.run.counters().collisions();
-            Replayed { number, id: id(collision.disk), partner_id, collision }
-        });
-        self.name();
-        Ok(replayed)
+        self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
+        Ok(last.map(|collision| {
+            let [id, partner] = collision.ids;
+            let partner_id = matches!(collision.partner, Partner::Disk(_)).then_some(partner);
+            Replayed { number: self.run.counters().collisions(), id, partner_id, collision }
+        }))
     }
 }

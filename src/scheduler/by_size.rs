@@ -44,12 +44,12 @@ impl EventScheduler for BySize {
         if is_large { self.queue.reset(due) } else { self.tree.reset(due) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn set(&mut self, disk: usize, due: f64) {
         if self.is_large { self.queue.set(disk, due) } else { self.tree.set(disk, due) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn earliest(&self) -> (usize, f64) {
         if self.is_large { self.queue.earliest() } else { self.tree.earliest() }
     }

@@ -234,7 +234,7 @@ impl Cells {
     }
 
     /// Does the same for a disk of the smallest class, also in the ghosts that mirror its cell.
-    #[inline]
+    #[inline(always)]
     fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
         change(&mut self.contents, self.grid.index(place), disk);
@@ -246,7 +246,7 @@ impl Cells {
     }
 
     /// Moves a disk to the cell that it enters by this exit. Returns the number of periods passed.
-    #[inline]
+    #[inline(always)]
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> [i32; 2] {
         self.change_cell(disk, Contents::remove);
         let (place, passed) = self.grid.neighbor(self.places[disk], exit.direction());
@@ -277,7 +277,7 @@ impl Cells {
 
     /// Writes to `found` the disks that `disk` may touch before it leaves its cell, itself included. Returns
     /// their number.
-    #[inline]
+    #[inline(always)]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
         match &self.layers {
             None => self.around_cell(self.places[disk], found),
@@ -286,7 +286,7 @@ impl Cells {
     }
 
     /// Writes the disks in the nine cells around a place.
-    #[inline]
+    #[inline(always)]
     fn around_cell(&self, place: Place, found: &mut [u32]) -> usize {
         let center = self.grid.index(place);
         let stride = self.grid.stride();
@@ -323,7 +323,7 @@ impl Cells {
 
     /// Writes to `found` the disks that come within reach of a disk of the smallest class when it enters its
     /// cell by `exit`. Returns their number.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ahead(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
         self.ahead_of(self.places[disk], exit, found)
     }
@@ -334,7 +334,7 @@ impl Cells {
         self.ahead_of(self.next_place(disk, exit), exit, found)
     }
 
-    #[inline]
+    #[inline(always)]
     fn ahead_of(&self, place: Place, exit: Exit, found: &mut [u32]) -> usize {
         let (first, step) = self.three_ahead(place, exit);
         let count = self.contents.gather(first, step, found, 0);
@@ -347,7 +347,7 @@ impl Cells {
 
     /// Returns the first of the three cells ahead of a place that a disk enters by `exit`, and their distance
     /// in memory.
-    #[inline]
+    #[inline(always)]
     fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();
         let stride = self.grid.stride();

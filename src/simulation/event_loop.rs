@@ -14,7 +14,7 @@ use super::resolution::{Kick, failed, impact_of, is_parting, is_possible, resolv
 use super::state::{Clock, Earliest, Exit, Forecast};
 use super::{Event, Simulation};
 use crate::boundary::{Boundary, Reaction, Response};
-use crate::collision::{CollisionRule, Regime};
+use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::observable::{Collision, Observer, Partner};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
@@ -87,6 +87,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Outcome<Event> {
         let periods = self.cells.grid().periods();
+        // Neighbors are listed before the collision is known: the processor then has this work to do while
+        // it waits for the roots and quotients of the collision.
+        let counts = [self.neighbors(disk, 0), self.neighbors(partner, 1)];
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
         // A couple can make a spin impossible while the velocity stays. Without one, the comparison is known
         // when the rule is compiled.
@@ -107,9 +110,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.part(disk, partner, collision.normal, left);
         }
         observer.on_collision(&collision);
-        for disk in [disk, partner] {
-            self.find_next(disk);
-        }
+        self.find_next_of_both([disk, partner], counts);
         for disk in [disk, partner] {
             self.schedule(disk);
         }
@@ -206,15 +207,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     fn count_regime(&mut self, collision: &Collision) {
         if collision.impulse.regime().is_remedy() {
-            self.count_remedy(collision);
+            // By value: if the collision itself were lent, all of it would be written to memory each time.
+            self.count_remedy(collision.contact, collision.impulse);
         }
     }
 
     /// Counts a collision that a remedy decided.
     #[cold]
     #[inline(never)]
-    fn count_remedy(&mut self, collision: &Collision) {
-        let Collision { contact, impulse, .. } = collision;
+    fn count_remedy(&mut self, contact: Contact, impulse: Impulse) {
         match impulse.regime() {
             Regime::ContactDuration => {
                 self.counters.contact_duration_collisions += 1;
@@ -223,7 +224,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
             Regime::LeastRebound => {
                 self.counters.least_rebound_collisions += 1;
-                self.counters.energy_of_rebounds += impulse.energy_change(contact).max(0.0);
+                self.counters.energy_of_rebounds += impulse.energy_change(&contact).max(0.0);
             }
             _ => {}
         }
@@ -293,7 +294,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let passed = self.cells.cross(disk, exit);
         self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        let count = self.cells.ahead(disk, exit, &mut self.scratch.found);
+        let count = self.cells.ahead(disk, exit, &mut self.scratch.found[0]);
         self.go_on(disk, count);
     }
 
@@ -317,7 +318,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let passed = self.cells.cross_large(disk, exit);
         self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found);
+        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found[0]);
         self.go_on(disk, count);
     }
 
@@ -325,7 +326,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn look_ahead(&mut self) {
         if self.bodies.len() >= LARGE_SYSTEM {
             self.make_room();
-            self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found);
+            self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found[0]);
         }
     }
 }

@@ -5,7 +5,6 @@ use std::fmt;
 use super::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::instructions::Level;
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 /// The memory and the cells of a simulation, its scheduler, and the instructions that it has chosen.
@@ -38,18 +37,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             ("BySize", false) => "BucketQueue, by size",
             _ => name,
         };
-        let instructions = match self.instructions.level() {
-            Level::Avx512 => "AVX-512",
-            Level::Avx2 => "AVX2",
-            Level::Built => "those of the build",
-        };
         Footprint {
             bytes_per_disk: (self.bodies.bytes() + self.cells.bytes()) as f64 / self.len() as f64,
             cells,
             occupied_cells,
             disks_in_cells,
             scheduler: scheduler.into(),
-            instructions: instructions.into(),
+            instructions: self.instructions.level().name().into(),
         }
     }
 }

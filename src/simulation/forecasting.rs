@@ -4,7 +4,7 @@
 use std::hint::select_unpredictable;
 
 use super::Simulation;
-use super::prediction::{LANES, cell_exit, earliest_collision};
+use super::prediction::{LANES, earliest_collision, find_partners, leave_cell, leave_cells};
 use super::state::{Earliest, Exit, Forecast};
 use crate::Flight;
 use crate::boundary::{Boundary, FirstTouch, Touch};
@@ -32,7 +32,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Finds another partner for a disk whose partner has collided meanwhile. The end of the disk's own
     /// flight in its cell stays.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
         self.schedule(disk);
@@ -41,17 +41,44 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next collision of a disk among all its neighbors.
     #[inline(always)]
     fn find_partner(&mut self, disk: usize) {
-        let count = self.cells.around(disk, &mut self.scratch.found);
+        let count = self.neighbors(disk, 0);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
-        let partner_collisions =
-            self.bodies.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
-        self.forecast_mut(disk).set_collision(earliest, partner_collisions);
+        self.bodies.expect(disk, earliest);
     }
 
-    #[inline]
-    pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
+    /// Lists the neighbors of a disk in the first or second list. Returns their number.
+    #[inline(always)]
+    pub(super) fn neighbors(&mut self, disk: usize, list: usize) -> usize {
+        self.cells.around(disk, &mut self.scratch.found[list])
+    }
+
+    /// Finds the next events of two disks, whose neighbors have been listed.
+    #[inline(always)]
+    pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
         let (periods, now) = (self.cells.grid().periods(), self.clock.now);
         let found = &mut self.scratch.found;
+        find_partners(
+            self.instructions,
+            self.instructions,
+            &mut self.bodies,
+            periods,
+            disks,
+            found,
+            counts,
+            now,
+        );
+        let at_wall = leave_cells(self.instructions, &mut self.bodies, &self.cells, disks[0], disks[1], now);
+        for (disk, at_wall) in disks.into_iter().zip(at_wall) {
+            if at_wall {
+                self.end_at_wall(disk);
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
+        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
+        let found = &mut self.scratch.found[0];
         earliest_collision(self.instructions, &self.bodies, periods, disk, found, count, now, known)
     }
 
@@ -69,7 +96,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Tells the scheduler when the next event of a disk is due.
-    #[inline]
+    #[inline(always)]
     pub(super) fn schedule(&mut self, disk: usize) {
         self.scheduler.set(disk, self.forecast(disk).due());
     }
@@ -80,13 +107,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
-        if self.scratch.found.len() < room {
-            self.scratch.found.resize(room, 0);
+        if self.scratch.found[0].len() < room {
+            for found in &mut self.scratch.found {
+                found.resize(room, 0);
+            }
         }
     }
 
     /// Finds the time and the way in which a disk's flight in its cell ends.
-    #[inline]
+    #[inline(always)]
     pub(super) fn end_flight(&mut self, disk: usize) {
         self.instructions.run(
             #[inline(always)]
@@ -96,11 +125,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     #[inline(always)]
     fn end_flight_here(&mut self, disk: usize) {
-        let (region, at_wall) = self.cells.region(disk);
-        let (exit_due, exit) = cell_exit(&self.bodies, disk, &region, self.clock.now);
-        let forecast = self.forecast_mut(disk);
-        (forecast.exit_due, forecast.exit) = (exit_due, exit);
-        if at_wall {
+        if leave_cell(&mut self.bodies, &self.cells, disk, self.clock.now) {
             self.end_at_wall(disk);
         }
     }

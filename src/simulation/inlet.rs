@@ -62,11 +62,6 @@ crate::gate::from_file! {
 }
 
 impl Inlet {
-    /// Returns the absolute time at which the inlet opens next; NaN if it is too late to be told.
-    pub(crate) fn next_opening(&self) -> f64 {
-        self.times.upcoming()
-    }
-
     /// Creates an inlet that lets in one disk at each of these times: a copy of one of the models, drawn at
     /// random.
     ///

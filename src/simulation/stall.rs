@@ -15,6 +15,9 @@ const SLOW: f64 = 1e-9;
 /// Number of windows in which a run without losses may hardly advance.
 const PATIENCE: u32 = 64;
 
+/// Number of windows, each like the one before, after which such a run is stuck.
+const STUCK: u32 = 2;
+
 /// Time, relative to an epoch, over which the velocity of a wall is compared with the way of its surface.
 const MOMENT: f64 = 1e-6;
 
@@ -39,13 +42,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns whether a run in which time hardly advances before this event will not go on.
     ///
     /// A lossless collision may be one of many that end by themselves: a light disk between a wall and a
-    /// heavy disk that comes near. Such a run has more time. If nothing loses energy, and yet it does not
-    /// end, a disk is squeezed.
+    /// heavy disk that comes near. Such a run has more time, as long as its windows differ. If they are
+    /// alike, a disk is squeezed.
     #[cold]
     pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
         let (disk, due) = self.next_collider(disk, due);
         let remedy = self.partner_of(disk).map(|partner| self.remedy(disk, partner, due));
-        remedy != Some(Remedy::FasterDisks) || self.clock.guard.slow >= PATIENCE
+        let is_stuck = self.clock.guard.alike >= STUCK || self.clock.guard.slow >= PATIENCE;
+        remedy != Some(Remedy::FasterDisks) || is_stuck
     }
 
     /// Returns the disk of the next collision and its time offset, or the arguments if there is no collision.

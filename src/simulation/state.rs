@@ -10,9 +10,9 @@ mod pace;
 mod population;
 mod properties;
 
-pub(super) use bodies::Bodies;
 #[cfg(feature = "serde")]
-pub(super) use bodies::{Spin, Trajectory};
+pub(super) use bodies::Spin;
+pub(super) use bodies::{Bodies, Trajectory};
 pub(super) use clock::{Clock, Tally};
 pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]

@@ -100,7 +100,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     fn has_room(&mut self, disk: &Disk) -> bool {
         let (position, radius, now) = (disk.position(), disk.radius(), self.clock.now);
-        let found = &mut self.scratch.found;
+        let found = &mut self.scratch.found[0];
         let count = self.cells.near(position, 2.0 * radius, found);
         let domain = self.boundary.domain();
         let is_free = |other: usize| {

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::fs;
 
+use crate::instructions::Instructions;
+
 /// The machine and the build of a measurement. Times from others cannot be compared.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -18,7 +20,8 @@ pub struct Circumstances {
     pub load: String,
     /// Version of this crate.
     pub version: String,
-    /// Optimization and vector instructions with which the crate was compiled.
+    /// Optimization and vector instructions with which the crate was compiled, and the instructions that it
+    /// chooses on this processor.
     pub build: String,
 }
 
@@ -37,7 +40,7 @@ impl Circumstances {
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             load: load.split_whitespace().next().unwrap_or_default().to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            build: format!("{optimized}, {wide}"),
+            build: format!("{optimized}, {wide}, runs with {}", Instructions::detected().level().name()),
         }
     }
 }

@@ -1,72 +1,28 @@
-//! Checks of a format's contract, for formats of your own.
+//! Checks of a format's contract, for custom formats.
 
 use std::io;
 
 use glam::DVec2;
-use thiserror::Error;
 
 use super::{Format, Frame};
 use crate::boundary::Domain;
-use crate::error::Readable;
 use crate::observable::Snapshot;
-use crate::{Disk, ParameterError};
+use crate::violation::require;
+use crate::{Disk, ParameterError, Violation};
 
-/// A way in which a format breaks its [contract](Format).
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum Violation {
-    /// A frame cannot be written or skipped.
-    #[error("frame {number}: {reason}")]
-    Failed {
-        /// Number of the frame.
-        number: usize,
-        /// The error of the format.
-        reason: String,
-    },
-    /// The same frame gave other bytes when it was written again.
-    #[error("frame {number}, written twice, has other bytes the second time")]
-    NotAlike {
-        /// Number of the frame.
-        number: usize,
-    },
-    /// The time that was read is not the time of the frame.
-    #[error(
-        "frame {number} of time {written} is read as one of time {read}",
-        written = Readable(*written), read = Readable(*read)
-    )]
-    Time {
-        /// Number of the frame.
-        number: usize,
-        /// Time of the frame.
-        written: f64,
-        /// The time that was read.
-        read: f64,
-    },
-    /// The format skipped more or fewer bytes than it had written.
-    #[error("frame {number} has {written} bytes, of which {read} are passed over")]
-    Length {
-        /// Number of the frame.
-        number: usize,
-        /// Number of its bytes.
-        written: usize,
-        /// Number of the bytes that were skipped.
-        read: usize,
-    },
-    /// The format did not notice that a frame was cut short.
-    #[error("frame {number}, cut after {kept} of its {written} bytes, does not answer `None`")]
-    Torn {
-        /// Number of the frame.
-        number: usize,
-        /// Number of its bytes.
-        written: usize,
-        /// Number of the bytes that were left.
-        kept: usize,
-    },
-}
+const PART: &str = "format";
 
-/// Checks that a format keeps its contract, with some frames of made-up disks.
+/// Number of rounds in which all frames are written, alternately or each one twice.
+const ROUNDS: usize = 40;
+
+/// Numbers of the frames.
+const NUMBERS: [usize; 6] = [0, 1, 2, 3, 4, 1_000_000];
+
+/// Checks that a format keeps its contract, with some frames of made-up disks, each of which is written some
+/// sixty times, alternately and twice in a row.
 ///
-/// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked as far as it goes.
+/// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked as far as it goes. The page
+/// "Validation" tells which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -77,19 +33,18 @@ pub enum Violation {
 /// assert_eq!(laws::check(&LammpsDump), Ok(()));
 /// ```
 pub fn check(format: &dyn Format) -> Result<(), Violation> {
-    let failed = |number| move |error: io::Error| Violation::Failed { number, reason: error.to_string() };
-    let disks = disks().map_err(|error| failed(0)(io::Error::other(error)))?;
+    let disks = disks().map_err(|error| failed(0, &io::Error::other(error)))?;
     let snapshots = snapshots(&disks);
-    let mut frames = Vec::new();
-    for (number, snapshot) in snapshots.iter().enumerate() {
-        let frame = Frame::new(number, snapshot);
-        let [mut once, mut again] = [Vec::new(), Vec::new()];
-        format.write_frame(&frame, &mut once).map_err(failed(number))?;
-        format.write_frame(&frame, &mut again).map_err(failed(number))?;
-        if once != again {
-            return Err(Violation::NotAlike { number });
+    let frames = snapshots.iter().enumerate().map(|(index, snapshot)| written(format, index, snapshot));
+    let frames: Vec<Vec<u8>> = frames.collect::<Result<_, _>>()?;
+    for round in 1..ROUNDS {
+        for (number, once) in frames.iter().enumerate() {
+            for _ in 0..1 + round % 2 {
+                let is_same = *once == written(format, number, &snapshots[number])?;
+                require!(PART, "alike", is_same;
+                    "frame {number} of {} bytes is another when written again", once.len());
+            }
         }
-        frames.push(once);
     }
     let text = frames.concat();
     let mut rest = text.as_slice();
@@ -97,27 +52,39 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
         let before = rest.len();
         let read = match format.skip_frame(&mut rest) {
             Err(error) if error.kind() == io::ErrorKind::Unsupported => return Ok(()),
-            read => read.map_err(failed(number))?.unwrap_or(f64::NAN),
+            read => read.map_err(|error| failed(number, &error))?.unwrap_or(f64::NAN),
         };
-        if read.to_bits() != snapshot.time().to_bits() {
-            return Err(Violation::Time { number, written: snapshot.time(), read });
-        }
-        let (written, read) = (frame.len(), before - rest.len());
-        if written != read {
-            return Err(Violation::Length { number, written, read });
-        }
+        let time = snapshot.time();
+        let is_time = read.to_bits() == time.to_bits();
+        require!(PART, "time", is_time; "frame {number} of time {time:?} is read as one of time {read:?}");
+        let (written, skipped) = (frame.len(), before - rest.len());
+        require!(PART, "length", written == skipped;
+            "frame {number} has {written} bytes, of which {skipped} are skipped");
         check_torn(format, number, frame)?;
     }
     Ok(())
 }
 
+fn failed(number: usize, error: &io::Error) -> Violation {
+    Violation::new(PART, "no failure", format!("frame {number}: {error}"))
+}
+
+/// Returns the bytes of a frame.
+fn written(format: &dyn Format, index: usize, snapshot: &Snapshot<'_>) -> Result<Vec<u8>, Violation> {
+    let mut bytes = Vec::new();
+    let frame = Frame::new(NUMBERS[index], snapshot);
+    format.write_frame(&frame, &mut bytes).map_err(|error| failed(index, &error))?;
+    Ok(bytes)
+}
+
 /// Checks that the format notices a frame that is cut short at any byte.
 fn check_torn(format: &dyn Format, number: usize, frame: &[u8]) -> Result<(), Violation> {
     let written = frame.len();
-    match (1..written).find(|&kept| !matches!(format.skip_frame(&mut &frame[..kept]), Ok(None))) {
-        None => Ok(()),
-        Some(kept) => Err(Violation::Torn { number, written, kept }),
-    }
+    let passed = (1..written).find(|&kept| !matches!(format.skip_frame(&mut &frame[..kept]), Ok(None)));
+    let kept = passed.unwrap_or_default();
+    require!(PART, "cut short", passed.is_none();
+        "frame {number}, cut after {kept} of its {written} bytes, does not answer `None`");
+    Ok(())
 }
 
 fn disks() -> Result<[Disk; 3], ParameterError> {
@@ -131,7 +98,7 @@ fn disks() -> Result<[Disk; 3], ParameterError> {
 }
 
 /// Returns snapshots of no disk, one disk and all disks, in boxes that are closed, open and periodic.
-fn snapshots(disks: &[Disk]) -> [Snapshot<'_>; 4] {
+fn snapshots(disks: &[Disk]) -> [Snapshot<'_>; 6] {
     let closed = Domain::new(0.0, 7.0, -0.1, 9.0);
     let open = Domain::new(0.0, 7.0, -0.1, f64::INFINITY).with_periodic_sides();
     [
@@ -139,5 +106,7 @@ fn snapshots(disks: &[Disk]) -> [Snapshot<'_>; 4] {
         Snapshot::new(1.0 / 3.0, &[], open, 0.0),
         Snapshot::new(12_345_678.9, &disks[..1], closed.with_periodic_ends(), -1e-9),
         Snapshot::new(1e16, disks, open, 0.1),
+        Snapshot::new(-0.0, disks, closed, 1.0),
+        Snapshot::new(5e-324, &disks[1..], open, 1.0),
     ]
 }

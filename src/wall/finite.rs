@@ -1,6 +1,10 @@
 //! The gate that every motion passes before a wall takes it: finite answers, and pieces that advance.
 
-use super::{AccelerationBounds, Violation, WallMotion, WallState};
+use super::{AccelerationBounds, WallMotion, WallState};
+use crate::Violation;
+use crate::violation::require;
+
+pub(super) const PART: &str = "wall motion";
 
 /// Number of pieces in a row that together must advance by more than rounding.
 const PIECES_IN_A_ROW: u32 = 8;
@@ -36,7 +40,7 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 /// }
 ///
 /// assert_eq!(check_finite(&Fixed), Ok(()));
-/// assert_eq!(check_finite(&Torn).unwrap_err().to_string(), "at phase 0.0 its displacement is NaN");
+/// assert_eq!(check_finite(&Torn).unwrap_err().found(), "at phase 0.0 its displacement is NaN");
 /// ```
 pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation> {
     check_constants(motion)?;
@@ -49,13 +53,12 @@ pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation>
 /// Checks the reach and the period, and returns the reach.
 pub(super) fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Violation> {
     let (low, high) = motion.reach();
-    if !(low.is_finite() && high.is_finite() && low <= high) {
-        return Err(Violation::Reach { low, high });
-    }
-    match motion.period() {
-        Some(period) if !(period.is_finite() && period > 0.0) => Err(Violation::PeriodValue { period }),
-        _ => Ok((low, high)),
-    }
+    let is_ordered = low.is_finite() && high.is_finite() && low <= high;
+    require!(PART, "reach", is_ordered; "its reach from {low:?} to {high:?} must be finite and in order");
+    let period = motion.period().unwrap_or(1.0);
+    let is_possible = period.is_finite() && period > 0.0;
+    require!(PART, "period", is_possible; "its period must be finite and positive, but is {period:?}");
+    Ok((low, high))
 }
 
 /// Follows some pieces from this phase on, and also checks the middle of each.
@@ -73,9 +76,9 @@ pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> R
     // The row must advance by more than two floating-point numbers for each piece. No search can follow
     // shorter pieces.
     let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
-    if phase <= least {
-        return Err(Violation::ShortPieces { phase: start, until: phase, pieces: PIECES_IN_A_ROW });
-    }
+    let sentence = "pieces of its motion lead only from phase";
+    require!(PART, "pieces", phase > least;
+        "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short");
     Ok(())
 }
 
@@ -94,12 +97,16 @@ pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
     let bounds = motion.acceleration(phase);
     finite("lower bound of the acceleration", bounds.min, phase)?;
     finite("upper bound of the acceleration", bounds.max, phase)?;
-    if bounds.min > bounds.max {
-        return Err(Violation::Bounds { phase, min: bounds.min, max: bounds.max });
-    }
-    if bounds.until > phase { Ok(bounds) } else { Err(Violation::PieceEnd { phase, until: bounds.until }) }
+    let AccelerationBounds { until, min, max } = bounds;
+    let sentence = "its lower bound of the acceleration";
+    require!(PART, "bounds", min <= max;
+        "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}");
+    let sentence = "the piece of its motion from phase";
+    require!(PART, "pieces", until > phase; "{sentence} {phase:?} on ends at {until:?}, which is not later");
+    Ok(bounds)
 }
 
-fn finite(quantity: &'static str, value: f64, phase: f64) -> Result<(), Violation> {
-    if value.is_finite() { Ok(()) } else { Err(Violation::NotFinite { quantity, phase, value }) }
+fn finite(quantity: &str, value: f64, phase: f64) -> Result<(), Violation> {
+    require!(PART, "finite", value.is_finite(); "at phase {phase:?} its {quantity} is {value:?}");
+    Ok(())
 }

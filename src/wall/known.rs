@@ -9,8 +9,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{
     BiParabolic, Delayed, Fixed, Motion, Sawtooth, Scaled, Sinusoidal, StartingAt, Stroke, Summed, Tabulated,
-    Triangular, Violation,
+    Triangular,
 };
+use crate::Violation;
 
 impl Serialize for Motion {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,11 +1,14 @@
-//! Checks of a wall motion's contract, for motions of your own.
+//! Checks of a wall motion's contract, for custom motions.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`](super::check_finite) tests only
+//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only
 //! that all answers are finite and that pieces advance; a container does this with every motion that it is
-//! given.
+//! given. [`check_fingerprints`] compares two motions.
 
-use super::finite::{check_constants, finite_bounds, finite_state, row_of_pieces};
-use super::{AccelerationBounds, Violation, WallMotion, WallState};
+use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
+use super::{AccelerationBounds, WallMotion, WallState, check_finite};
+use crate::Violation;
+use crate::fingerprint::check_pair;
+use crate::violation::require;
 
 /// Number of samples in a piece.
 const SAMPLES: u32 = 512;
@@ -22,14 +25,30 @@ const LAST: f64 = 1.0 / (1u64 << 20) as f64;
 /// Length below which a piece may be an artifact of rounding, relative to its phase and the period.
 const SHORT: f64 = 1e-9;
 
+/// Allowed difference between the displacement and the integral of the velocity, relative to the way, and the
+/// number of samples in a piece near which the acceleration may jump.
+const EXACT: f64 = 1e-8;
+const JUMPS: u32 = 8;
+
+/// Fraction of a piece over which the acceleration at its ends is measured.
+const SLOPE: f64 = 3e-4;
+
+/// Number of phases at which two motions are compared, and the length of the interval in which they lie.
+const PHASES: u32 = 4000;
+const INTERVAL: f64 = 400.0;
+
+/// Number of later phases, each by a fifth later than the one before.
+const LATE: i32 = 40;
+
 /// Checks that a motion keeps its contract between two phases.
 ///
 /// The check samples each piece that begins between the phases. The state must be finite and within the
 /// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
-/// the integral of the velocity. Pieces must advance, and the wall may jump only where one ends, and away
-/// from the disks. The motion must repeat after its period. The check can miss a fault that is narrower than
-/// a five-hundredth of a piece, so check a motion with one long piece on several short stretches. It refuses
-/// a stretch of more than ten thousand pieces.
+/// the integral of the velocity. Pieces must advance, and the wall may jump only where one ends, away from
+/// the disks, and if the motion says so. The motion must repeat after its period, and answer alike when it is
+/// asked again. The check can miss a fault that is narrower than a five-hundredth of a piece, so check a
+/// motion with one long piece in several short intervals. It refuses an interval of more than ten thousand
+/// pieces. The page "Validation" tells which planted faults it finds.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -60,8 +79,9 @@ const SHORT: f64 = 1e-9;
 /// ```
 pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(), Violation> {
     let (low, high) = check_constants(motion)?;
+    check_finite(motion)?;
     row_of_pieces(motion, from)?;
-    let check = Check { motion, low, high };
+    let mut check = Check { motion, low, high, jumps: motion.jumps(), answers: Vec::new() };
     let mut phase = from;
     for _ in 0..MOST_PIECES {
         let until = check.piece(phase, to)?;
@@ -71,7 +91,36 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
         check.end(phase, until)?;
         phase = until;
     }
-    Err(Violation::ShortPieces { phase: from, until: phase, pieces: MOST_PIECES })
+    let sentence = format!("{MOST_PIECES} pieces of its motion lead only from phase {from:?} to {phase:?}");
+    Err(Violation::new(PART, "pieces", sentence))
+}
+
+/// Checks that two motions which answer differently have different fingerprints, and that two which answer
+/// alike have the same. Motions without a fingerprint are not compared.
+///
+/// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
+///
+/// # Errors
+/// If the fingerprints tell something else than the answers.
+///
+/// ```
+/// use granular_edmd::wall::{Sinusoidal, laws};
+/// laws::check_fingerprints(&Sinusoidal::new(0.1, 10.0)?, &Sinusoidal::new(0.1, 11.0)?)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check_fingerprints<M, N>(first: &M, second: &N) -> Result<(), Violation>
+where
+    M: WallMotion + ?Sized,
+    N: WallMotion + ?Sized,
+{
+    let differ = |&phase: &f64| first.state(phase) != second.state(phase);
+    let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
+    let late = (0..LATE).map(|k| INTERVAL * 1.2_f64.powi(k));
+    let mut difference = phases.chain(late).find(differ).map(|phase| format!("at phase {phase:?}"));
+    if (first.reach(), first.period()) != (second.reach(), second.period()) {
+        difference = Some("in reach or period".to_owned());
+    }
+    check_pair(PART, [first.fingerprint(), second.fingerprint()], difference)
 }
 
 /// A motion and its reach, under the check.
@@ -79,10 +128,13 @@ struct Check<'a, M: ?Sized> {
     motion: &'a M,
     low: f64,
     high: f64,
+    jumps: bool,
+    /// The samples of the present piece.
+    answers: Vec<Sample>,
 }
 
 /// A phase, and the state at it.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
     phase: f64,
     state: WallState,
@@ -90,10 +142,12 @@ struct Sample {
 
 impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks the piece that begins here, up to `to` at most, and returns its end.
-    fn piece(&self, start: f64, to: f64) -> Result<f64, Violation> {
+    fn piece(&mut self, start: f64, to: f64) -> Result<f64, Violation> {
         let whole = finite_bounds(self.motion, start)?;
         let length = whole.until.min(to) - start;
         let mut last = self.sample(start)?;
+        let mut jumps = 0;
+        self.answers = vec![last];
         for k in 1..=SAMPLES {
             let share = if k == SAMPLES { 1.0 - LAST } else { f64::from(k) / f64::from(SAMPLES) };
             let next = self.sample(start + share * length)?;
@@ -102,8 +156,22 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             if next.phase <= bounds.until {
                 self.change(last, next, &bounds)?;
             }
+            if last.state.velocity * next.state.velocity < 0.0 {
+                self.extreme(last, next)?;
+            }
+            jumps += u32::from(!self.is_integral(last, next, &whole)?);
+            let [from, to] = [start, next.phase];
+            require!(PART, "displacement", jumps <= JUMPS;
+                "between the phases {from:?} and {to:?} its displacement is not the integral of its \
+                 velocity");
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
+            self.answers.push(next);
             last = next;
+        }
+        self.strength(start, length, &whole)?;
+        for sample in self.answers.iter().rev() {
+            let again = self.sample(sample.phase)?;
+            require!(PART, "repeatable", again == *sample; "{sample:?} is {again:?} when asked for again");
         }
         Ok(whole.until)
     }
@@ -112,10 +180,25 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let state = finite_state(self.motion, phase)?;
         let (displacement, low, high) = (state.displacement, self.low, self.high);
         let slack = ROUNDING * self.length();
-        if displacement < low - slack || displacement > high + slack {
-            return Err(Violation::OutOfReach { phase, displacement, low, high });
-        }
+        let is_inside = displacement >= low - slack && displacement <= high + slack;
+        let sentence = "is beyond its reach";
+        require!(PART, "reach", is_inside;
+            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}");
         Ok(Sample { phase, state })
+    }
+
+    /// Checks the reach where the velocity changes its sign between two samples.
+    fn extreme(&self, from: Sample, to: Sample) -> Result<(), Violation> {
+        let (mut low, mut high) = (from.phase, to.phase);
+        for _ in 0..30 {
+            let middle = self.sample(0.5 * (low + high))?;
+            if middle.state.velocity * from.state.velocity > 0.0 {
+                low = middle.phase;
+            } else {
+                high = middle.phase;
+            }
+        }
+        Ok(())
     }
 
     /// Checks that an acceleration within the bounds can lead from one state to the other.
@@ -124,22 +207,68 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let gain = to.state.velocity - from.state.velocity;
         let (least, most) = (bounds.min * wait, bounds.max * wait);
         let slack = self.speed_rounding(from, bounds);
-        if gain < least - slack || gain > most + slack {
-            return Err(Violation::Velocity { from: from.phase, to: to.phase, gain, least, most });
-        }
+        let is_within = gain >= least - slack && gain <= most + slack;
+        let [start, end] = [from.phase, to.phase];
+        require!(PART, "bounds", is_within;
+            "from phase {start:?} to {end:?} its velocity changes by {gain:?}, but the bounds of its \
+             acceleration allow {least:?} to {most:?}");
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
         // Given the first and the last velocity, the displacement is extreme if the acceleration is first at
         // one bound and then at the other. It then differs from the displacement at the mean velocity by the
         // area of a triangle, which is at most `spread`.
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
-        if (rise - expected).abs() > spread + self.length_rounding(from, bounds) + slack * wait {
-            return Err(Violation::Displacement { from: from.phase, to: to.phase, rise, expected });
+        let is_integral =
+            (rise - expected).abs() <= spread + self.length_rounding(from, bounds) + slack * wait;
+        require!(PART, "displacement", is_integral;
+            "from phase {start:?} to {end:?} it advances by {rise:?}, but its velocity says {expected:?}");
+        Ok(())
+    }
+
+    /// Returns whether the displacement between two samples is the integral of the velocity, as it is if the
+    /// acceleration is smooth there (Simpson's rule).
+    fn is_integral(&self, from: Sample, to: Sample, bounds: &AccelerationBounds) -> Result<bool, Violation> {
+        let wait = to.phase - from.phase;
+        // If the velocity changes much between samples, the rule is not exact enough.
+        if 0.5 * (bounds.max - bounds.min) * wait > 0.05 * self.speed_scale(bounds) {
+            return Ok(true);
+        }
+        let middle = self.sample(from.phase + 0.5 * wait)?.state.velocity;
+        let (first, last) = (from.state.velocity, to.state.velocity);
+        let expected = (first + 4.0 * middle + last) * wait / 6.0;
+        let trapezoid = 0.5 * (first + last) * wait;
+        let rise = to.state.displacement - from.state.displacement;
+        let slack = EXACT * middle.abs() * wait
+            + 0.01 * (expected - trapezoid).abs()
+            + self.length_rounding(from, bounds)
+            + self.speed_rounding(from, bounds) * wait;
+        Ok((rise - expected).abs() <= slack)
+    }
+
+    /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
+    fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
+        if length < SHORT * (1.0 + start.abs()) {
+            return Ok(());
+        }
+        let end = start + (1.0 - LAST) * length;
+        for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
+            let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
+            let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
+            let step = next.phase - now.phase;
+            let [here, there, far] = [now, next, last].map(|sample| sample.state.velocity);
+            let found = (4.0 * there - 3.0 * here - far) / (2.0 * step);
+            let scale = bounds.min.abs().max(bounds.max.abs());
+            let slack = 4.0 * self.speed_rounding(now, bounds) / step.abs() + EXACT * scale;
+            let AccelerationBounds { min, max, .. } = *bounds;
+            let is_within = found >= min - slack && found <= max + slack;
+            require!(PART, "bounds", is_within;
+                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and \
+                 {max:?}");
         }
         Ok(())
     }
 
-    /// Checks that the wall does not jump toward the disks where a piece ends.
+    /// Checks that the wall does not jump toward the disks where a piece ends, and that it says if it jumps.
     fn end(&self, start: f64, until: f64) -> Result<(), Violation> {
         let bounds = finite_bounds(self.motion, start)?;
         let before = self.sample(until - LAST * (until - start))?;
@@ -149,7 +278,12 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = bounds.min.abs().max(bounds.max.abs()) * wait * wait
             + self.length_rounding(before, &bounds)
             + self.speed_rounding(before, &bounds) * wait;
-        if jump > slack { Err(Violation::Jump { phase: until, jump }) } else { Ok(()) }
+        require!(PART, "jump", jump <= slack;
+            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}");
+        let is_told = self.jumps || jump >= -slack - 1e-6 * (self.high - self.low);
+        require!(PART, "jump", is_told;
+            "at phase {until:?} it jumps by {jump:?}, but says that it never jumps");
+        Ok(())
     }
 
     /// Checks that the motion is the same some periods later, at a phase inside a piece of this length.
@@ -160,7 +294,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             return Ok(());
         }
         let (now, bounds) = (self.sample(phase)?, finite_bounds(self.motion, phase)?);
-        for later in [phase + period, phase + 3.0 * period] {
+        for later in [1.0, 3.0, 17.0, 250.0].map(|count| phase + count * period) {
             let (then, then_bounds) = (self.sample(later)?, finite_bounds(self.motion, later)?);
             let moved = (then.state.displacement - now.state.displacement).abs();
             let gained = (then.state.velocity - now.state.velocity).abs();
@@ -171,9 +305,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 // The times at which pieces end are rounded. The bounds there change with the third
                 // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
-            if differs {
-                return Err(Violation::Period { phase, period, later });
-            }
+            let sentence = "is not that at phase";
+            require!(PART, "period", !differs;
+                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}");
         }
         Ok(())
     }
@@ -183,13 +317,13 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Returns the rounding of a displacement: that of its terms, and that of the phase at this speed.
+    /// Returns the rounding of a displacement: the rounding of its terms, and of the phase at this speed.
     fn length_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
         ROUNDING * (self.length() + speed * sample.phase.abs())
     }
 
-    /// Returns the rounding of a velocity: that of its terms, and that of the phase at this acceleration.
+    /// Returns the rounding of a velocity: the rounding of its terms, and of the phase at this acceleration.
     fn speed_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let acceleration = bounds.min.abs().max(bounds.max.abs());
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);

@@ -5,7 +5,8 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::{Fixed, Stroke, Violation, WallMotion, check_finite};
+use super::{Fixed, Stroke, WallMotion, check_finite};
+use crate::Violation;
 
 /// A motion whose type can be asked for: files hold the types of the crate.
 pub(crate) trait Owned: WallMotion + Any + Send + Sync {}

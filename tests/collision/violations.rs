@@ -1,8 +1,7 @@
 //! The check for rules of users, which names each broken law, and passes everything that breaks none.
 
-use granular_edmd::collision::laws::{
-    Fault, Violation, check_friction_cone, check_friction_opposes_slip, check_impulse,
-};
+use granular_edmd::Violation;
+use granular_edmd::collision::laws::{check_friction_cone, check_friction_opposes_slip, check_impulse};
 use granular_edmd::collision::{Contact, Impulse};
 use granular_edmd::strategies::{contact, decades};
 use proptest::prelude::*;
@@ -18,8 +17,9 @@ fn impulse(contact: &Contact, normal: f64, tangential: f64) -> Impulse {
     )
 }
 
-fn fault_of(answer: Result<(), Violation>) -> Result<(), Fault> {
-    answer.map_err(|violation| violation.fault)
+/// Returns whether the answer is a violation of this law that names the number.
+fn says(answer: Result<(), Violation>, law: &str, number: f64) -> bool {
+    answer.is_err_and(|fault| fault.law() == law && fault.found().contains(&format!(" {number:?} (")))
 }
 
 proptest! {
@@ -36,8 +36,7 @@ proptest! {
         let impulse = impulse(&contact, normal, tangential);
         let closing_speed = impulse.closing_speed_after(&contact);
         prop_assert!(closing_speed > 0.0);
-        let fault = Fault::StillClosing { closing_speed };
-        prop_assert_eq!(fault_of(check_impulse(&contact, impulse)), Err(fault));
+        prop_assert!(says(check_impulse(&contact, impulse), "separation", closing_speed));
     }
 
     #[test]
@@ -46,8 +45,7 @@ proptest! {
         let energy_change = impulse.energy_change(&contact);
         let available = contact.available_energy();
         prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the slip");
-        let fault = Fault::EnergyGained { energy_change };
-        prop_assert_eq!(fault_of(check_impulse(&contact, impulse)), Err(fault));
+        prop_assert!(says(check_impulse(&contact, impulse), "energy", energy_change));
     }
 
     /// The impulse goes from nothing to the full reversal, in the cone that just holds it.
@@ -68,8 +66,7 @@ proptest! {
         let with = impulse(&contact, 1.0, -share);
         prop_assume!(with.tangential() != 0.0);
         let slip_speed = with.slip_speed_after(&contact);
-        let fault = Fault::SlipSpedUp { slip_speed };
-        prop_assert_eq!(fault_of(check_friction_opposes_slip(&contact, with)), Err(fault));
+        prop_assert!(says(check_friction_opposes_slip(&contact, with), "opposed slip", slip_speed));
     }
 
     /// A tangential impulse that speeds the slip up, or reverses it faster than it was, gains energy.
@@ -80,8 +77,7 @@ proptest! {
         let available = contact.available_energy();
         prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the approach");
         prop_assert!(impulse.slip_speed_after(&contact).abs() > contact.slip_speed().abs());
-        let fault = Fault::EnergyGained { energy_change };
-        prop_assert_eq!(fault_of(check_impulse(&contact, impulse)), Err(fault));
+        prop_assert!(says(check_impulse(&contact, impulse), "energy", energy_change));
     }
 }
 
@@ -97,32 +93,28 @@ fn numbers_that_are_not_finite_are_named() {
     let contact = Contact::new(1.0, 0.5, 0.5, 0.125);
     for (normal, tangential) in [(f64::INFINITY, 0.0), (1.0, f64::NEG_INFINITY), (1.0, f64::NAN)] {
         let violation = check_impulse(&contact, Impulse::new(normal, tangential)).unwrap_err();
-        assert_eq!(violation.fault, Fault::NotFinite);
+        assert_eq!(violation.law(), "finite");
         let impulse = format!("({normal:?}, {tangential:?})");
-        assert_eq!(
-            violation.to_string(),
-            format!("the impulse {impulse} is not finite {}", of_contact("0.5"))
-        );
+        assert_eq!(violation.found(), format!("the impulse {impulse} is not finite {}", of_contact("0.5")));
     }
 }
 
 #[test]
 fn messages_carry_the_numbers() {
     let contact = Contact::new(1.0, 0.0, 0.5, 0.125);
-    let text = |normal| check_impulse(&contact, Impulse::new(normal, 0.0)).unwrap_err().to_string();
+    let text = |normal| check_impulse(&contact, Impulse::new(normal, 0.0)).unwrap_err().found().to_owned();
     let weak = "the impulse (0.25, 0.0) leaves the surfaces closing, at speed 0.5";
     assert_eq!(text(0.25), format!("{weak} {}", of_contact("0.0")));
     assert_eq!(text(1.5), format!("the impulse (1.5, 0.0) gains the energy 0.75 {}", of_contact("0.0")));
     let slipping = Contact::new(1.0, 2.0, 0.5, 0.125);
     let violation = check_friction_cone(&slipping, Impulse::new(0.5, 0.25), 0.25).unwrap_err();
     let cone = "the impulse (0.5, 0.25) leaves the friction cone: 0.125 is the most along the tangent";
-    assert_eq!(violation.to_string(), format!("{cone} {}", of_contact("2.0")));
+    assert_eq!(violation.found(), format!("{cone} {}", of_contact("2.0")));
     let violation = check_friction_opposes_slip(&slipping, Impulse::new(0.5, -0.25)).unwrap_err();
     assert_eq!(
-        violation.to_string(),
+        violation.found(),
         format!("the impulse (0.5, -0.25) makes the slip faster: 4.0 {}", of_contact("2.0"))
     );
-    assert_eq!((*violation.contact, violation.impulse), (slipping, Impulse::new(0.5, -0.25)));
 }
 
 /// Equality breaks no law: nothing happens to surfaces at rest.

@@ -104,7 +104,8 @@ fn measurements_with_a_field_too_many_are_refused() {
     let mut heights = Sampled::new(HeightProfile::new(0.0, 10.0, 2).unwrap(), times);
     let mut fields = Sampled::new(Fields::new(Grid::new(region, 1, 1).unwrap()), times);
     let grid = Grid::new(region, 2, 1).unwrap();
-    let mut pairs = Sampled::new(PairCorrelation::new(1.0, 2).unwrap().within(region).unwrap(), times);
+    let bulk = granular_edmd::boundary::Region::new(low + 2.0, high - 2.0);
+    let mut pairs = Sampled::new(PairCorrelation::new(1.0, 2).unwrap().within(bulk).unwrap(), times);
     let mut displacement = MeanSquaredDisplacement::new(2, times).unwrap();
     let mut memory = TimeCorrelation::new(Velocities, 2, times).unwrap();
     let mut stress = Stress::new(times).within(region).unwrap();

@@ -1,6 +1,7 @@
 //! The form of a planted fault, and tools to plant one.
 
 pub(crate) mod blind;
+pub(crate) mod informed;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -39,6 +40,11 @@ impl<T> List<T> {
     pub(crate) fn plant(&mut self, name: impl Into<String>, part: T) {
         self.faults.push(Planted { name: name.into(), family: self.family, part });
     }
+}
+
+/// Returns the names of faults, each after the name of its trait.
+fn named<T>(part: &str, catalogue: &[Planted<T>]) -> Vec<String> {
+    catalogue.iter().map(|fault| format!("{part}: {}: {}", fault.family, fault.name)).collect()
 }
 
 /// Returns 10 to the power −n.

@@ -30,7 +30,7 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
     for pressure in [0.07, 0.2, 0.5, 1.0, 1.8, 2.6] {
         let force = pressure * WIDTH;
         let lid = Piston::new(MASS, 0.0, TOP - 9.0)?.with_force(force)?;
-        let start = (2.5 * DISKS as f64 / force).max(26.0);
+        let start = (1.2 * DISKS as f64 / force).max(26.0);
         let lid = lid.starting_at(TOP - start, 0.0)?;
         let container = Container::closed(WIDTH, TOP)?.with_periodic_sides()?.with_piston(Wall::Lid, lid)?;
         let disks = initial::random(&container, DISKS, 0.5, start, 1)?;

@@ -1,7 +1,7 @@
 //! Crossings of lines: exact balances of the disks on both sides.
 
 use granular_edmd::boundary::{Container, Part, Vessel};
-use granular_edmd::collision::Frictional;
+use granular_edmd::collision::{Frictional, LeastRebound};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Crossings, OfKind, SampleTimes};
 use granular_edmd::simulation::Limits;
@@ -35,7 +35,7 @@ fn disks_above_a_line_are_those_that_crossed_it() -> Outcome {
             initial::with_maxwellian_velocities(initial::random(&container, 40, 0.4, 10.0, 1)?, 1.0, 2)?;
         let paint = |(k, disk): (usize, Disk)| if k % 3 == 0 { disk.with_kind(RED) } else { disk };
         let disks: Vec<Disk> = disks.into_iter().enumerate().map(paint).collect();
-        let rule = Frictional::from_inelasticity(0.1, 0.1, 0.3)?;
+        let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, 0.05)?;
         let mut run = Simulation::builder(rule, container).disks(disks.clone()).gravity(0.3).build()?;
         let line = [DVec2::new(-1.0, HEIGHT), DVec2::new(13.0, HEIGHT)];
         // Across periodic sides, the line must be as long as a period, and no longer.
@@ -43,7 +43,7 @@ fn disks_above_a_line_are_those_that_crossed_it() -> Outcome {
         let all = Crossings::new(line, SampleTimes::every(1.0)?)?;
         let mut both = (all.clone(), OfKind::new(RED, all));
         let mut noise = WhiteNoise::new(0.2, SampleTimes::every(0.5)?, 3)?;
-        run.run_driven(&Limits::until(200.0), &mut noise, &mut both)?;
+        run.run_driven(&Limits::until(100.0), &mut noise, &mut both)?;
         assert!(both.0.forward().iter().sum::<u64>() > 100);
         assert_eq!(net(&both.0), above(&run.disks(), None) - above(&disks, None), "{periodic}");
         assert_eq!(net(both.1.inner()), above(&run.disks(), Some(RED)) - above(&disks, Some(RED)));

@@ -41,6 +41,7 @@ fn measures() -> Vec<Measure> {
         Measure("`Stress`", GRID, areas::stress),
         Measure("`WallStress`", ROUNDING, collisions::wall_stress),
         Measure("`Arrivals`", ROUNDING, collisions::arrivals),
+        Measure("`Crossings`", ROUNDING, histories::crossings),
         Measure("`CollisionCounts`", ROUNDING, collisions::collision_counts),
         Measure("`CollisionHistograms`", ROUNDING, collisions::collision_histograms),
         Measure("`EnergyChange`", ROUNDING, collisions::energy_change),
@@ -53,7 +54,7 @@ fn measures() -> Vec<Measure> {
 }
 
 /// The cells that refuse: measure, setting, and words of the error. All others are right.
-const REFUSED: [(&str, &str, &str); 15] = [
+const REFUSED: [(&str, &str, &str); 16] = [
     ("`WallStress`", "periodic both ways", "index of a wall must be less than the number of walls"),
     ("`Arrivals`", "periodic both ways", "index of a wall must be less than the number of walls"),
     ("`TransportCoefficients`", "closed box", NO_PERIOD),
@@ -63,6 +64,7 @@ const REFUSED: [(&str, &str, &str); 15] = [
     ("`TransportCoefficients`", "drum", NO_PERIOD),
     ("`TransportCoefficients`", "block and peg", NO_PERIOD),
     ("`TransportCoefficients`", "moving walls", NO_PERIOD),
+    ("`TransportCoefficients`", "piston", NO_PERIOD),
     ("`TransportCoefficients`", "tilted gravity", NO_PERIOD),
     ("`TransportCoefficients`", "sizes and masses", NO_PERIOD),
     ("`TransportCoefficients`", "kinds", NO_PERIOD),

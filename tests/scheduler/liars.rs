@@ -2,7 +2,7 @@
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
-use granular_edmd::scheduler::laws::{Violation, check};
+use granular_edmd::scheduler::laws::check;
 use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, NOTHING_DUE};
 use granular_edmd::{Simulation, initial};
 
@@ -132,18 +132,12 @@ fn the_same_scheduler_without_a_fault_passes() {
 #[test]
 fn a_violation_names_the_step_and_both_answers() {
     let violation = check(|| Liar::with(Fault::NotANumber)).unwrap_err();
-    let Violation::NotEarliest { step, expected, given, .. } = &violation else { panic!("{violation}") };
-    assert!(*step > 100, "{violation}");
-    assert_eq!(expected.0, given.0);
-    let (disk, due) = expected;
     let said = violation.to_string();
-    let answers = format!("the earliest is disk {disk} at {due:?}, but disk {disk} at NaN is named");
-    assert!(said.contains(&format!("step {step}, after ")) && said.ends_with(&answers), "{said}");
+    assert!(said.contains("step 1") && said.contains(", after ") && said.ends_with(" at NaN"), "{said}");
 
-    let violation = check(|| Liar::with(Fault::SomebodyWithoutDisks)).unwrap_err().to_string();
-    assert!(
-        violation.ends_with("before the first reset: the earliest is nothing, but disk 0 at inf is named")
-    );
+    let said = check(|| Liar::with(Fault::SomebodyWithoutDisks)).unwrap_err().to_string();
+    let answers = "before the first reset: the earliest is nothing, not disk 0 at inf";
+    assert!(said.starts_with("scheduler, law \"earliest\": script") && said.ends_with(answers), "{said}");
 }
 
 #[test]
@@ -156,7 +150,7 @@ fn the_check_is_the_same_at_each_call() {
 #[test]
 fn only_looking_ahead_is_blamed_for_what_it_does() {
     let removed = check(|| Liar::with(Fault::TakesWhatWasNamed)).unwrap_err();
-    assert!(matches!(removed, Violation::Removed { .. }), "{removed}");
+    assert_eq!(removed.law(), "hint", "{removed}");
     let confused = check(|| Liar::with(Fault::ConfusedByLookingAhead)).unwrap_err().to_string();
     assert!(confused.contains("after a look at upcoming disks"), "{confused}");
 }

@@ -90,10 +90,11 @@ fn a_contact_duration_is_judged_by_the_rate_of_collisions() -> Outcome {
         Ok((run.warnings(), share))
     };
     // Matter at rest: nearly all collisions are those of the model, and nothing is wrong.
-    let (rest, share) = warned(1e-4, 60.0)?;
+    let (rest, share) = warned(3e-3, 40.0)?;
     assert!(rest.is_empty() && share > 0.5, "{rest:?} {share}");
     // A flow: a quarter of them are, and the model takes a large part of the dissipation.
     let (flow, share) = warned(0.1, 5.0)?;
+    println!("{flow:?} {share}");
     assert!(matches!(flow[..], [Warning::LongContactDuration { .. }]) && share < 0.9, "{flow:?} {share}");
     Ok(())
 }
@@ -158,7 +159,7 @@ fn an_elastic_run_that_ends_by_itself_goes_on() -> Outcome {
     let heavy = Disk::new(DVec2::new(15.0, 5.0), 0.5)?.with_mass(1e12)?.with_velocity(DVec2::NEG_X)?;
     let mut run = Simulation::builder(Elastic, walls()?).disks([light, heavy]).build()?;
     let most = 3_141_592;
-    run.run(&Limits::until(17.0), &mut ())?;
+    run.run(&Limits::until(26.0), &mut ())?;
     assert_eq!(run.counters().collisions(), most);
     Ok(())
 }

@@ -406,15 +406,17 @@ impl Format for Faulty {
 
 #[test]
 fn faults_of_formats_are_told() {
-    use granular_edmd::trajectory::laws::Violation;
     let faulty = |time, kept, ends_early| {
         trajectory::laws::check(&Faulty { time, kept, ends_early, numbered: 0.into() })
+            .map_err(|violation| violation.found().to_owned())
     };
+    let found = |sentence: &str| Err(sentence.to_owned());
     assert_eq!(faulty(0.0, 0, false), Ok(()));
-    assert_eq!(faulty(0.5, 0, false), Err(Violation::Time { number: 0, written: -0.5, read: 0.0 }));
-    assert_eq!(faulty(0.0, 1, false), Err(Violation::Length { number: 0, written: 10, read: 11 }));
-    assert_eq!(faulty(0.0, 0, true), Err(Violation::Torn { number: 0, written: 10, kept: 2 }));
-    assert_eq!(faulty(0.0, 5, false), Err(Violation::NotAlike { number: 0 }));
+    assert_eq!(faulty(0.5, 0, false), found("frame 0 of time -0.5 is read as one of time 0.0"));
+    assert_eq!(faulty(0.0, 1, false), found("frame 0 has 10 bytes, of which 11 are skipped"));
+    let cut = "frame 0, cut after 2 of its 10 bytes, does not answer `None`";
+    assert_eq!(faulty(0.0, 0, true), found(cut));
+    assert_eq!(faulty(0.0, 5, false), found("frame 0 of 10 bytes is another when written again"));
     assert_eq!(trajectory::laws::check(&ExtendedXyz), Ok(()));
     assert_eq!(trajectory::laws::check(&LammpsDump), Ok(()));
 }

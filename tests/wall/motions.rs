@@ -3,11 +3,11 @@
 
 use std::error::Error;
 
+use granular_edmd::Violation;
 use granular_edmd::boundary::{Container, Wall, WallError};
 use granular_edmd::wall::laws::check;
 use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Fixed, Sinusoidal, StartingAt, Violation, WallMotion, WallState,
-    check_finite,
+    AccelerationBounds, BiParabolic, Fixed, Sinusoidal, StartingAt, WallMotion, WallState, check_finite,
 };
 
 const AMPLITUDE: f64 = 0.1;
@@ -113,6 +113,12 @@ fn verdict(fault: Fault) -> Result<(), Violation> {
     check(&spoilt(fault), 0.0, 2.0)
 }
 
+/// Checks that the check names this law.
+fn breaks(fault: Fault, law: &str) {
+    let found = verdict(fault).map_err(|violation| violation.law());
+    assert_eq!(found, Err(law), "{fault:?}");
+}
+
 #[test]
 fn a_sound_motion_passes() {
     assert_eq!(verdict(Fault::None), Ok(()));
@@ -123,49 +129,47 @@ fn a_sound_motion_passes() {
 
 #[test]
 fn wrong_bounds_are_caught() {
-    assert!(matches!(verdict(Fault::Bounds(0.9)), Err(Violation::Velocity { .. })));
-    assert!(matches!(verdict(Fault::SwappedBounds), Err(Violation::Bounds { .. })));
+    breaks(Fault::Bounds(0.9), "bounds");
+    breaks(Fault::SwappedBounds, "bounds");
 }
 
 #[test]
 fn jumps_are_caught() {
     for by in [1e-3, -1e-3] {
-        assert!(matches!(verdict(Fault::JumpInside(by)), Err(Violation::Displacement { .. })), "{by}");
+        breaks(Fault::JumpInside(by), "displacement");
     }
-    assert!(
-        matches!(verdict(Fault::JumpAtEnd(1e-3)), Err(Violation::Jump { jump, .. }) if (jump - 1e-3).abs() < 1e-6)
-    );
+    breaks(Fault::JumpAtEnd(1e-3), "jump");
     // A jump down is away from the disks, but then there is one up at the end of the period.
-    assert!(matches!(verdict(Fault::JumpAtEnd(-1e-3)), Err(Violation::Jump { phase, .. }) if phase > 0.6));
-    assert!(matches!(verdict(Fault::VelocityJumps), Err(Violation::Velocity { .. })));
+    breaks(Fault::JumpAtEnd(-1e-3), "jump");
+    breaks(Fault::VelocityJumps, "bounds");
 }
 
 #[test]
 fn a_velocity_that_is_not_that_of_the_displacement_is_caught() {
-    assert!(matches!(verdict(Fault::Velocity(0.99)), Err(Violation::Displacement { .. })));
+    breaks(Fault::Velocity(0.99), "displacement");
 }
 
 #[test]
 fn a_wrong_period_is_caught() {
     for part in [0.5, 0.999, 1.01] {
-        assert!(matches!(verdict(Fault::Period(part)), Err(Violation::Period { .. })), "{part}");
+        breaks(Fault::Period(part), "period");
     }
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(verdict(Fault::PeriodValue(value)), Err(Violation::PeriodValue { .. })), "{value}");
+        breaks(Fault::PeriodValue(value), "period");
     }
 }
 
 #[test]
 fn a_reach_that_is_too_small_is_caught() {
-    assert!(matches!(verdict(Fault::Reach(-0.1, 0.099)), Err(Violation::OutOfReach { .. })));
-    assert!(matches!(verdict(Fault::Reach(-0.09, 0.1)), Err(Violation::OutOfReach { .. })));
+    breaks(Fault::Reach(-0.1, 0.099), "reach");
+    breaks(Fault::Reach(-0.09, 0.1), "reach");
 }
 
 #[test]
 fn pieces_that_do_not_go_on_are_caught() {
-    assert!(matches!(verdict(Fault::StandingPieces), Err(Violation::PieceEnd { .. })));
-    assert!(matches!(verdict(Fault::UntilNaN), Err(Violation::PieceEnd { .. })));
-    assert!(matches!(verdict(Fault::TinyPieces), Err(Violation::ShortPieces { .. })));
+    breaks(Fault::StandingPieces, "pieces");
+    breaks(Fault::UntilNaN, "pieces");
+    breaks(Fault::TinyPieces, "pieces");
 }
 
 /// Returns faults each of which would let disks fall through the floor, or hang the search for a touch.
@@ -199,7 +203,7 @@ fn numbers_that_are_not_finite_are_refused_by_the_container() {
         assert!(verdict(fault).is_err(), "{fault:?}");
         let error = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, spoilt(fault)).unwrap_err();
         // A violation by NaN is not equal to itself, so the violations are compared as text.
-        let WallError::Motion { wall: Wall::Floor, violation: told } = error else {
+        let WallError::Motion { wall: Wall::Floor, violation: ref told } = error else {
             panic!("{fault:?}: {error}")
         };
         assert_eq!(told.to_string(), violation.to_string());

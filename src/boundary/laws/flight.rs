@@ -2,10 +2,13 @@
 
 use glam::DVec2;
 
-use super::trial::Trial;
-use super::violation::Violation;
-use crate::Flight;
+use super::LATEST;
+use super::reaction::check_reaction;
+use super::surface::check_surface;
+use super::trial::{PART, Trial, restarted};
 use crate::boundary::{Boundary, Overlap, Response, Surface, Touch};
+use crate::violation::require;
+use crate::{Flight, Violation};
 
 /// Number of samples along a flight.
 const SAMPLES: u32 = 200;
@@ -17,20 +20,16 @@ const LONGEST: f64 = 3.0;
 /// such a touch, or that there is none.
 const GRAZING: f64 = 1e-2;
 
-/// Fraction of the radius by which a disk is moved to probe a wall.
-const STEP: f64 = 1e-3;
+/// Largest relative error of a velocity with another time origin.
+const SAME: f64 = 1e-9;
 
-/// Largest errors of a normal: of its squared length, and of its direction. The direction is judged by the
-/// depths of disks moved along it.
-const UNIT: f64 = 1e-9;
-const SLOPE: f64 = 0.2;
+/// Closing speeds of flights that graze a wall, as fractions of the speed along it.
+const GRAZES: [f64; 4] = [3e-2, 3e-3, 3e-4, 3e-5];
 
 /// A touch that was found, and how the disk meets the wall.
 struct Meeting {
     touch: Touch,
     place: DVec2,
-    /// Velocity of the disk.
-    velocity: DVec2,
     /// Speed at which the gap opens; negative while it closes.
     rate: f64,
     /// True if the gap closes so slowly that rounding decides.
@@ -38,28 +37,27 @@ struct Meeting {
 }
 
 /// Checks consecutive flights of a disk. Each wall that the disk touches turns it back.
-pub(super) fn check_flights<B: Boundary + ?Sized>(
-    trial: &mut Trial<'_, B>,
-    first: Flight,
-    flights: usize,
-) -> Result<(), Violation> {
+pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize) -> Result<(), Violation> {
     let mut flight = first;
-    for _ in 0..flights {
+    for number in 0..flights {
         let touched = check_flight(trial, &flight)?;
         trial.check_constants()?;
-        match touched {
-            Some(next) => flight = next,
-            None => break,
+        let Some(meeting) = touched else { break };
+        check_reaction(trial, meeting.touch, meeting.place)?;
+        flight = turned_back(trial, &flight, &meeting);
+        if number % 2 == 1 {
+            trial.grazes += 1;
+            let grazing = grazing(trial, &flight, &meeting, GRAZES[trial.grazes % GRAZES.len()]);
+            if trial.depth(grazing.position(grazing.time()), 0.0, grazing.time()).is_none() {
+                check_flight(trial, &grazing)?;
+            }
         }
     }
     Ok(())
 }
 
-/// Checks a flight, and returns the next one, which begins where a wall turned this one back.
-fn check_flight<B: Boundary + ?Sized>(
-    trial: &mut Trial<'_, B>,
-    flight: &Flight,
-) -> Result<Option<Flight>, Violation> {
+/// Checks a flight, and returns how it ends at a wall that turns it back.
+fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting>, Violation> {
     let until = flight.time() + longest(trial, flight);
     let found = trial.first_touch(flight, until)?;
     if let Some(touch) = found {
@@ -70,16 +68,21 @@ fn check_flight<B: Boundary + ?Sized>(
         return Ok(None);
     }
     let meeting = found.map(|touch| check_place(trial, flight, touch)).transpose()?;
+    let again = trial.first_touch(flight, until)?;
+    let is_same = again == found;
+    require!(PART, "repeatable", is_same;
+        "the touch {found:?} is {again:?} when asked for again: {flight:?}");
     check_origin(trial, flight, until, meeting.as_ref())?;
-    let Some(meeting) = meeting else { return Ok(None) };
-    check_limits(trial, flight, &meeting)?;
-    trial.check_regions(meeting.place)?;
-    Ok(Some(turned_back(trial, flight, &meeting)))
+    if let Some(meeting) = &meeting {
+        check_limits(trial, flight, meeting)?;
+        trial.check_regions(meeting.touch, meeting.place)?;
+    }
+    Ok(meeting)
 }
 
 /// Returns how long a flight may last. Like flights of the engine, it ends at a periodic side or end at
 /// the latest.
-fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
+fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
     let longest = LONGEST * trial.length() / trial.speed;
     let (domain, start) = (trial.domain, flight.time());
     let (place, velocity) = (flight.position(start), flight.velocity(start));
@@ -106,174 +109,172 @@ fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
 }
 
 /// Tells whether the flight ends at a sink. It may take a disk out without a touch, when the center arrives.
-fn is_absorbed<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight, touch: Touch) -> bool {
+fn is_absorbed(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
     let place = flight.position(touch.time);
     matches!(trial.boundary.surface(touch.wall, place, touch.time).response, Response::Absorbing)
 }
 
-fn check_touch<B: Boundary + ?Sized>(
-    trial: &Trial<'_, B>,
+fn check_touch(
+    trial: &Trial<'_>,
     flight: &Flight,
-    touch: Touch,
+    Touch { time, wall, .. }: Touch,
     until: f64,
 ) -> Result<(), Violation> {
-    if !(touch.time >= flight.time() && touch.time <= until) {
-        return Err(Violation::TouchTime { time: touch.time, until, flight: *flight });
-    }
+    let is_inside = time >= flight.time() && time <= until;
+    require!(PART, "touch time", is_inside;
+        "a touch at {time:?} is not on the flight until {until:?}: {flight:?}");
     let count = trial.wall_count;
-    if touch.wall >= count {
-        return Err(Violation::TouchWall { wall: touch.wall, count, flight: *flight });
-    }
+    require!(PART, "touched wall", wall < count;
+        "wall {wall} is touched, but there are {count}, on {flight:?}");
     Ok(())
 }
 
 /// Checks that a disk overlaps no wall and stays in the domain on its way.
-fn check_way<B: Boundary + ?Sized>(
-    trial: &Trial<'_, B>,
-    flight: &Flight,
-    end: f64,
-    found: Option<Touch>,
-) -> Result<(), Violation> {
+fn check_way(trial: &Trial<'_>, flight: &Flight, end: f64, found: Option<Touch>) -> Result<(), Violation> {
     let (domain, rounding) = (trial.domain, trial.rounding());
+    let found = found.map(|touch| touch.time);
     for k in 0..=SAMPLES {
         let time = (flight.time() + (end - flight.time()) * f64::from(k) / f64::from(SAMPLES)).min(end);
         let place = flight.position(time);
         if let Some(Overlap { with: wall, depth }) = trial.depth(place, -rounding, time) {
-            let (found, flight) = (found.map(|touch| touch.time), *flight);
-            return Err(Violation::LetThrough { wall, depth, time, found, flight });
+            let sentence = format!(
+                "a disk goes into wall {wall}: at time {time:?} it is {depth:?} deep, with the touch {found:?}, \
+                 on {flight:?}"
+            );
+            return Err(Violation::new(PART, "no missed touch", sentence));
         }
-        if !domain.contains(place, rounding) {
-            return Err(Violation::LeftDomain { place, time, flight: *flight });
-        }
+        let is_inside = domain.contains(place, rounding);
+        require!(PART, "inside the domain", is_inside;
+            "a disk is at {place:?} at time {time:?}, on {flight:?}");
     }
     Ok(())
 }
 
-/// Checks that the gap is closed at the touch, and that the surface there points out of the wall.
-fn check_place<B: Boundary + ?Sized>(
-    trial: &Trial<'_, B>,
-    flight: &Flight,
-    touch: Touch,
-) -> Result<Meeting, Violation> {
-    let place = flight.position(touch.time);
-    if trial.depth(place, trial.rounding(), touch.time).is_none() {
-        return Err(Violation::EarlyTouch { wall: touch.wall, time: touch.time, flight: *flight });
-    }
-    let surface = trial.boundary.surface(touch.wall, place, touch.time);
-    check_surface(trial, touch, place, &surface)?;
-    let velocity = flight.velocity(touch.time);
-    let relative = velocity - surface.velocity;
-    let rate = relative.dot(surface.normal);
+/// Checks that the gap is closed at the touch, and the surface there.
+fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<Meeting, Violation> {
+    let Touch { time, wall, .. } = touch;
+    let place = flight.position(time);
+    let is_closed = trial.depth(place, trial.rounding(), time).is_some();
+    require!(PART, "no early touch", is_closed; "the gap to wall {wall} is open at {time:?}, on {flight:?}");
+    check_surface(trial, touch, place)?;
+    let surface = trial.boundary.surface(wall, place, time);
+    let velocity = flight.velocity(time);
+    let rate = (velocity - surface.velocity).dot(surface.normal);
     let speed = velocity.length() + surface.velocity.length();
-    if rate > GRAZING * speed {
-        return Err(Violation::Leaving { wall: touch.wall, rate, time: touch.time, flight: *flight });
-    }
-    Ok(Meeting { touch, place, velocity, rate, is_grazing: rate > -GRAZING * speed })
+    let closes = rate <= GRAZING * speed;
+    require!(PART, "approach", closes;
+        "wall {wall} is touched at {time:?}, but left at {rate:?}, on {flight:?}");
+    Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
 }
 
-/// Checks that the normal is a unit vector, that a disk moved along it comes out of the wall, and that the
-/// velocity of the wall is finite.
-fn check_surface<B: Boundary + ?Sized>(
-    trial: &Trial<'_, B>,
-    touch: Touch,
-    place: DVec2,
-    surface: &Surface<'_>,
-) -> Result<(), Violation> {
-    let Touch { wall, time, .. } = touch;
-    let normal = surface.normal;
-    if !normal.is_finite() || (normal.length_squared() - 1.0).abs() > UNIT {
-        return Err(Violation::NormalLength { wall, normal, place, time });
-    }
-    if !surface.velocity.is_finite() {
-        return Err(Violation::Velocity { wall, velocity: surface.velocity, time });
-    }
-    let step = STEP * trial.radius;
-    let none = Overlap::new(wall, 0.0);
-    let depth = |place: DVec2| trial.depth(place, 2.0 * step, time).unwrap_or(none);
-    let (here, inward, outward) = (depth(place), depth(place - step * normal), depth(place + step * normal));
-    // In a corner, another wall may be the deepest one, before the step and after it.
-    let is_alone = here.with == wall && outward.with == wall;
-    let comes_out = (here.depth - outward.depth - step).abs() <= SLOPE * step;
-    let goes_in = inward.depth - here.depth >= (1.0 - SLOPE) * step;
-    if goes_in && (comes_out || !is_alone) {
-        Ok(())
-    } else {
-        Err(Violation::NormalDirection { wall, normal, place, time })
-    }
-}
-
-/// Checks that a flight which ends before the touch finds none, and that a flight which begins at the touch
-/// finds it at once.
-fn check_limits<B: Boundary + ?Sized>(
-    trial: &Trial<'_, B>,
-    flight: &Flight,
-    meeting: &Meeting,
-) -> Result<(), Violation> {
-    let time = meeting.touch.time;
+/// Checks that a flight which ends before the touch finds none, one that ends just after finds it, and one
+/// that begins at the touch finds it immediately.
+fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
+    let Touch { time, wall, .. } = meeting.touch;
     let half = flight.time() + 0.5 * (time - flight.time());
-    if let Some(early) = trial.first_touch(flight, half)?
-        && time > half
-    {
-        return Err(Violation::TouchTime { time: early.time, until: half, flight: *flight });
-    }
+    let early = trial.first_touch(flight, half)?;
+    let is_open = early.is_none() || time <= half;
+    require!(PART, "touch time", is_open; "a search that ends at {half:?} finds {early:?}, on {flight:?}");
     if meeting.is_grazing {
         return Ok(());
     }
-    let going_on = Flight::new(time, meeting.place, meeting.velocity, flight.acceleration(), flight.radius());
     // Rounding may have left the gap open. It then closes within this time.
-    let soon = time + 4.0 * trial.rounding() / meeting.rate.abs();
-    match trial.first_touch(&going_on, soon)? {
-        Some(again) if again.time >= time && again.time <= soon => Ok(()),
-        _ => Err(Violation::Missed { wall: meeting.touch.wall, flight: going_on }),
+    let soon = time + slack(trial, meeting);
+    for start in [*flight, restarted(flight, time)] {
+        let found = trial.first_touch(&start, soon)?;
+        let is_found = found.is_some_and(|again| (time - slack(trial, meeting)..=soon).contains(&again.time));
+        require!(PART, "no missed touch", is_found;
+            "wall {wall} is touched at {time:?}, but a search until {soon:?} finds {found:?}, on {start:?}");
     }
+    Ok(())
 }
 
-/// Checks that the same flight, given relative to another time origin, touches at the same absolute time.
+/// Checks that the same flight, given relative to another time origin, touches at the same absolute time, and
+/// finds the same surface.
 ///
 /// Rounding decides a grazing touch, or one just before the flight is over, so it may be found with one
 /// origin only.
-fn check_origin<B: Boundary + ?Sized>(
-    trial: &mut Trial<'_, B>,
+fn check_origin(
+    trial: &mut Trial<'_>,
     flight: &Flight,
     until: f64,
     meeting: Option<&Meeting>,
 ) -> Result<(), Violation> {
     let (origin, start) = (trial.origin, flight.time());
-    // The other origin is earlier, so that no offset is negative.
-    let shift = 0.37 * origin;
+    let state = trial.boundary.state();
+    // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
+    // react do not know how they came to be as they are, so their other origin is later.
+    let earlier = origin.min(LATEST * trial.length() / trial.speed);
+    let shift = 0.37 * if state.is_empty() { earlier } else { -start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
-    let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius());
+    let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
+        .with_kind(flight.kind());
+    let before = meeting.map(|meeting| seen(trial, meeting, 0.0));
     trial.set_origin(origin - shift);
     let found = trial.first_touch(&shifted, until + shift)?;
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
+    let after = meeting.map(|meeting| seen(trial, meeting, shift));
     trial.set_origin(origin);
-    // The other touch, relative to the first origin.
-    let other = other?
-        .map(|other| Meeting { touch: Touch::new(other.touch.time - shift, other.touch.wall), ..other });
+    trial.take_state(&state)?;
+    let other = other?;
+    let later = |other: &Meeting| other.touch.time - shift;
     let agree = match (meeting, &other) {
         (None, None) => true,
-        (Some(one), None) | (None, Some(one)) => {
-            one.is_grazing || until - one.touch.time < 2.0 * slack(trial, one)
-        }
+        (Some(one), None) => one.is_grazing || until - one.touch.time < 2.0 * slack(trial, one),
+        (None, Some(one)) => one.is_grazing || until - later(one) < 2.0 * slack(trial, one),
         (Some(one), Some(other)) => {
-            let apart = (one.touch.time - other.touch.time).abs();
+            let apart = (one.touch.time - later(other)).abs();
             one.is_grazing || other.is_grazing || apart <= slack(trial, one)
         }
     };
-    let time = |meeting: &Meeting| meeting.touch.time;
-    let (before, after) = (meeting.map(time), other.as_ref().map(time));
-    if agree { Ok(()) } else { Err(Violation::TimeOrigin { origin, shift, before, after, flight: *flight }) }
+    let (time, other) = (meeting.map(|one| one.touch.time), other.as_ref().map(later));
+    require!(PART, "time origin", agree;
+        "an origin {shift:?} before {origin:?} moves a touch at {time:?} to {other:?}: {flight:?}");
+    let is_same = before.zip(after).is_none_or(|(one, other)| is_same(trial, &one, &other));
+    require!(PART, "time origin", is_same;
+        "an origin {shift:?} before {origin:?} changes the surface {before:?} to {after:?}: {flight:?}");
+    Ok(())
+}
+
+/// Returns the surface at a touch as seen from an origin that is earlier by a shift, without its response.
+fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
+    let Touch { time, wall, .. } = meeting.touch;
+    let surface = trial.boundary.surface(wall, meeting.place, time + shift);
+    let bare = Surface::new(surface.normal, surface.velocity).with_kind(surface.kind);
+    bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
+}
+
+/// Returns whether two surfaces are the same but for the rounding of late times, which is a place on a wall
+/// that moves.
+fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
+    let late = 1.0 + trial.origin * trial.speed / trial.length();
+    let slack = SAME * (one.velocity.length() + trial.speed * late);
+    let numbers = |seen: &Surface<'_>| (seen.radius, seen.mass, seen.tangential_mass, seen.kind);
+    one.normal.distance(other.normal) <= 100.0 * SAME * late
+        && one.velocity.distance(other.velocity) <= slack
+        && numbers(one) == numbers(other)
 }
 
 /// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding.
-fn slack<B: Boundary + ?Sized>(trial: &Trial<'_, B>, meeting: &Meeting) -> f64 {
+fn slack(trial: &Trial<'_>, meeting: &Meeting) -> f64 {
     4.0 * trial.rounding() / meeting.rate.abs()
 }
 
 /// Returns the flight after the touch, as if wall and disk were elastic and smooth.
-fn turned_back<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight, meeting: &Meeting) -> Flight {
+fn turned_back(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Flight {
     let time = meeting.touch.time;
     let surface = trial.boundary.surface(meeting.touch.wall, meeting.place, time);
-    let velocity = meeting.velocity - 2.0 * meeting.rate.min(0.0) * surface.normal;
+    let velocity = flight.velocity(time) - 2.0 * meeting.rate.min(0.0) * surface.normal;
     Flight::new(time, meeting.place, velocity, flight.acceleration(), flight.radius())
+        .with_kind(flight.kind())
+}
+
+/// Returns a flight that starts a little off the wall and closes onto it slowly, while it goes along.
+fn grazing(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting, share: f64) -> Flight {
+    let Touch { time, wall, .. } = meeting.touch;
+    let surface = trial.boundary.surface(wall, meeting.place, time);
+    let normal = surface.normal;
+    let velocity = surface.velocity + trial.speed * (normal.perp() - share * normal);
+    let place = meeting.place + 0.1 * share * share * flight.radius() * normal;
+    Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
 }

@@ -2,9 +2,11 @@
 
 use glam::DVec2;
 
-use super::violation::Violation;
-use crate::Flight;
 use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Touch};
+use crate::violation::require;
+use crate::{Flight, Kind, Violation};
+
+pub(super) const PART: &str = "boundary";
 
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
@@ -16,20 +18,31 @@ const MOST_SEARCHES: u32 = 10_000;
 /// rounding.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
+/// Number of touches of a wall after which overlaps must have named it.
+const TOUCHES: u32 = 8;
+
 /// A boundary, and the numbers of its trial.
-pub(super) struct Trial<'a, B: ?Sized> {
-    pub(super) boundary: &'a mut B,
+pub(super) struct Trial<'a> {
+    pub(super) boundary: &'a mut dyn Boundary,
     pub(super) domain: Domain,
     pub(super) wall_count: usize,
     pub(super) radius: f64,
+    pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
+    /// The state of the walls at first.
+    pub(super) state: Vec<f64>,
+    /// Number of flights that graze a wall.
+    pub(super) grazes: usize,
+    /// For each wall, the number of its touches, and of the overlaps at these that name it.
+    pub(super) touches: Vec<[u32; 2]>,
 }
 
-impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
-    pub(super) fn new(boundary: &'a mut B, domain: Domain, radius: f64, speed: f64) -> Self {
-        let wall_count = boundary.wall_count();
-        Self { boundary, domain, wall_count, radius, speed, origin: 0.0 }
+impl<'a> Trial<'a> {
+    pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
+        let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
+        let (touches, state) = (vec![[0; 2]; wall_count], boundary.state());
+        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, state, grazes: 0, touches }
     }
 
     /// Returns the size of the domain. If the domain is open above, this is its width.
@@ -38,10 +51,15 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         if height.is_finite() { self.domain.width().max(height) } else { self.domain.width() }
     }
 
+    /// Returns the largest number in the coordinates of a disk and its surface.
+    pub(super) fn extent(&self) -> f64 {
+        let Domain { left, right, bottom, .. } = self.domain;
+        self.length() + left.abs().max(right.abs()).max(bottom.abs()) + self.radius
+    }
+
     /// Returns the depth of an overlap that counts as rounding.
     pub(super) fn rounding(&self) -> f64 {
-        let Domain { left, right, bottom, .. } = self.domain;
-        ROUNDING * (self.length() + left.abs().max(right.abs()).max(bottom.abs()) + self.radius)
+        ROUNDING * self.extent()
     }
 
     /// Returns the corners of the rectangle in which flights begin.
@@ -53,6 +71,21 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn set_origin(&mut self, origin: f64) {
         self.boundary.set_time_origin(origin);
         self.origin = origin;
+    }
+
+    /// Sets an origin at which walls that react are as they were at first.
+    pub(super) fn begin(&mut self, origin: f64) -> Result<(), Violation> {
+        self.set_origin(origin);
+        self.take_state(&self.state.clone())
+    }
+
+    /// Checks that the boundary takes this state.
+    pub(super) fn take_state(&mut self, state: &[f64]) -> Result<(), Violation> {
+        let answer = self.boundary.set_state(state);
+        require!(PART, "state", answer.is_ok(); "the state {state:?} is refused: {answer:?}");
+        let again = self.boundary.state();
+        require!(PART, "state", again == state; "the state {state:?} is {again:?} after it is set");
+        Ok(())
     }
 
     /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end,
@@ -68,40 +101,60 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
             if open.is_nan() || open <= rest.time() {
                 break;
             }
-            let (place, velocity) = (flight.position(open), flight.velocity(open));
-            rest = Flight::new(open, place, velocity, flight.acceleration(), flight.radius());
+            rest = restarted(flight, open);
         }
-        Err(Violation::NoProgress { time: rest.time(), flight: *flight })
+        let sentence = format!("the search gets no further than time {:?}, on {flight:?}", rest.time());
+        Err(Violation::new(PART, "progress", sentence))
     }
 
     /// Returns the wall that a disk with a radius larger by `more` overlaps at this place, and the depth.
     pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<Overlap> {
-        self.boundary.overlap(&Probe::new(place, self.radius + more, time))
+        self.boundary.overlap(&Probe::new(place, self.radius + more, time).with_kind(self.kind))
     }
 
     /// Checks that the domain and the number of walls have not changed.
     pub(super) fn check_constants(&self) -> Result<(), Violation> {
-        let (now, walls) = (self.boundary.domain(), self.boundary.wall_count());
-        if now != self.domain {
-            return Err(Violation::DomainChanged { before: self.domain, now });
-        }
-        if walls != self.wall_count {
-            return Err(Violation::WallsChanged { before: self.wall_count, now: walls });
-        }
+        let (before, now, walls) = (self.domain, self.boundary.domain(), self.boundary.wall_count());
+        require!(PART, "constant domain", now == before; "the domain was {before} and is now {now}");
+        let count = self.wall_count;
+        require!(PART, "constant walls", walls == count;
+            "there were {count} walls, and now there are {walls}");
         Ok(())
     }
 
-    /// Checks that `may_touch` is true for every region that contains this place of a touch.
-    pub(super) fn check_regions(&self, place: DVec2) -> Result<(), Violation> {
-        for size in REGIONS.map(|size| DVec2::splat(size * self.radius + self.rounding())) {
-            let around = Region::new(place - size, place + size);
-            for region in [around, self.open_at_edges(around)] {
-                for radius in [self.radius, 1.5 * self.radius] {
-                    if !self.boundary.may_touch(&region, radius) {
-                        return Err(Violation::MayTouch { region, radius, place });
-                    }
-                }
+    /// Checks that overlaps have named each wall that was touched often. At single touches, another wall may
+    /// be as deep.
+    pub(super) fn check_names(&self) -> Result<(), Violation> {
+        let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
+        let wall = unnamed.unwrap_or_default();
+        require!(PART, "overlapped wall", unnamed.is_none();
+            "disks touch wall {wall}, but overlap others there");
+        Ok(())
+    }
+
+    /// Checks that `may_touch` and `may_meet` are true for every region that contains the place of a touch.
+    pub(super) fn check_regions(&self, touch: Touch, place: DVec2) -> Result<(), Violation> {
+        for size in REGIONS.map(|size| size * self.radius) {
+            let [low, high] = [0.0, size].map(|size| DVec2::splat(size + self.rounding()));
+            let regions = [[low, low], [high, high], [low, high], [high, low]];
+            for [low, high] in regions {
+                let around = Region::new(place - low, place + high);
+                self.check_region(touch, around)?;
+                self.check_region(touch, self.open_at_edges(around))?;
             }
+        }
+        let (low, high) = self.rectangle();
+        self.check_region(touch, Region::new(low.min(place), high.max(place)))
+    }
+
+    fn check_region(&self, Touch { time, wall, .. }: Touch, region: Region) -> Result<(), Violation> {
+        for radius in [self.radius, 1.5 * self.radius] {
+            let may = self.boundary.may_touch(&region, radius);
+            require!(PART, "may_touch", may;
+                "a disk of radius {radius:?} touches in {region:?}, where it is denied");
+            let may = self.boundary.may_meet(wall, &region, radius, time);
+            require!(PART, "may_meet", may;
+                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied");
         }
         Ok(())
     }
@@ -124,4 +177,10 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
             ),
         )
     }
+}
+
+/// Returns the rest of a flight from this time on.
+pub(super) fn restarted(flight: &Flight, time: f64) -> Flight {
+    let (place, velocity) = (flight.position(time), flight.velocity(time));
+    Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
 }

@@ -49,15 +49,7 @@ impl Boundary for Vessel {
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
-        let reach = 1.001 * radius;
-        let mut near = self.index.near(region.min - reach, region.max + reach);
-        self.container.may_touch(region, radius)
-            || near.any(|entry| {
-                let region = Region::new(region.min - entry.image, region.max - entry.image);
-                let (wall, travel) = self.wall(entry.wall as usize);
-                travel.may_reach(&wall.brick, &region, reach)
-            })
+        self.container.may_touch(region, radius) || self.parts_may_touch(region, radius)
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
@@ -100,7 +92,11 @@ impl Boundary for Vessel {
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        self.container.may_meet(wall, region, radius, until)
+        if wall < self.container.wall_count() {
+            self.container.may_meet(wall, region, radius, until)
+        } else {
+            self.may_touch(region, radius)
+        }
     }
 
     fn state(&self) -> Vec<f64> {

@@ -13,7 +13,20 @@ impl Vessel {
         let is_free = |place| self.overlap_with_parts(&Probe::new(place, radius, time)).is_none();
         let is_closed = |placed: &super::Placed| placed.part.takes_centers() || placed.part.is_closed();
         let looks = if self.parts.iter().all(is_closed) { 1 } else { LOOKS };
-        Field { region, curves: self.curves(&region, radius, time), looks, is_free: &is_free }.area()
+        let is_near = self.parts_may_touch(&region, radius);
+        let curves = if is_near { self.curves(&region, radius, time) } else { Vec::new() };
+        Field { region, curves, looks, is_free: &is_free }.area()
+    }
+
+    /// Returns whether a disk with its center in a region can touch a part at any time.
+    pub(super) fn parts_may_touch(&self, region: &Region, radius: f64) -> bool {
+        // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
+        let reach = 1.001 * radius;
+        self.index.near(region.min - reach, region.max + reach).any(|entry| {
+            let region = Region::new(region.min - entry.image, region.max - entry.image);
+            let (wall, travel) = self.wall(entry.wall as usize);
+            travel.may_reach(&wall.brick, &region, reach)
+        })
     }
 
     /// Returns the curves in a region on which the center of a disk touches a part.

@@ -1,34 +1,74 @@
 //! The check of a rule against all laws at once.
 
-use super::violation::same;
+use super::random::random_contacts;
+use super::simplest::simplest;
 use super::{
-    Fault, Violation, check_friction_cone, check_friction_opposes_slip, check_impulse, check_separation,
-    hostile_contacts,
+    LEAST, ROUNDING, check_friction_cone, check_friction_opposes_slip, check_impulse, check_rolling,
+    check_separation, hostile_contacts, unless,
 };
-use crate::collision::{CollisionRule, Contact, Impulse};
+use crate::collision::{CollisionRule, Contact, Impulse, Regime};
+use crate::fingerprint::check_pair;
+use crate::{Kind, Violation};
+
+/// Kinds of the partners, unless others are named.
+const KINDS: [Kind; 23] = {
+    let mut kinds = [Kind::DEFAULT; 23];
+    let mut number = 0;
+    while number < 20 {
+        kinds[number as usize] = Kind::new(number);
+        number += 1;
+    }
+    (kinds[20], kinds[21], kinds[22]) = (Kind::new(255), Kind::new(256), Kind::new(65_000));
+    kinds
+};
+
+/// Step between two contacts in the last pass, a prime that divides no number of contacts in a check.
+const STRIDE: usize = 7919;
 
 /// The promises of a rule. Every rule also promises finite impulses that separate the surfaces and repeat to
-/// the bit.
+/// the bit, and the same physics for partners in either order and for the mirror image, unless it says
+/// otherwise.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check};
-/// use granular_edmd::collision::{Rough, Smooth};
+/// use granular_edmd::collision::{Elastic, RollingFriction, Rough, Smooth};
 ///
 /// check(&Smooth::from_inelasticity(0.2)?, &Promises::new().with_friction(0.0))?;
 /// check(&Rough::from_inelasticity(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
+/// check(&RollingFriction::new(Elastic, 0.3)?, &Promises::new().with_rolling_friction(0.3))?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Promises {
     energy_gain: bool,
     opposed_slip: bool,
     static_friction: Option<f64>,
+    rolling_friction: Option<f64>,
+    exchange: bool,
+    mirror: bool,
+    kinds: &'static [Kind],
+    seed: u64,
+}
+
+impl Default for Promises {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Promises {
     /// Creates the promise that a collision gains no energy. It says nothing about the tangential direction.
     pub const fn new() -> Self {
-        Self { energy_gain: false, opposed_slip: false, static_friction: None }
+        Self {
+            energy_gain: false,
+            opposed_slip: false,
+            static_friction: None,
+            rolling_friction: None,
+            exchange: true,
+            mirror: true,
+            kinds: &KINDS,
+            seed: 1,
+        }
     }
 
     /// Returns the same promises, with Coulomb friction: the impulse stays in the cone of this coefficient
@@ -42,9 +82,46 @@ impl Promises {
         Self { opposed_slip: true, ..self }
     }
 
+    /// Returns the same promises, with rolling friction of this coefficient μ_r: the couple is at most
+    /// μ_r Δ_n R with the effective radius R, and slows the spin that friction leaves without reversing it.
+    pub const fn with_rolling_friction(self, coefficient: f64) -> Self {
+        Self { rolling_friction: Some(coefficient), ..self }
+    }
+
     /// Returns the same promises for a rule that drives: energy may be gained.
     pub const fn with_energy_gain(self) -> Self {
         Self { energy_gain: true, ..self }
+    }
+
+    /// Returns the same promises for a rule that depends on which of two disks is partner 1.
+    pub const fn with_ordered_partners(self) -> Self {
+        Self { exchange: false, ..self }
+    }
+
+    /// Returns the same promises for a rule that acts otherwise on the mirror image of a contact.
+    pub const fn with_handedness(self) -> Self {
+        Self { mirror: false, ..self }
+    }
+
+    /// Returns the same promises for disks of these kinds only; the default are 0 to 19 and three larger ones.
+    ///
+    /// ```
+    /// use granular_edmd::Kind;
+    /// use granular_edmd::collision::laws::{Promises, check};
+    /// use granular_edmd::collision::{Elastic, RulesByKind, Smooth};
+    ///
+    /// const SAND: Kind = Kind::new(40);
+    /// let rules = RulesByKind::new(Elastic).with(SAND, SAND, Smooth::from_inelasticity(0.1)?);
+    /// check(&rules, &Promises::new().with_kinds(const { &[Kind::DEFAULT, SAND] }))?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn with_kinds(self, kinds: &'static [Kind]) -> Self {
+        Self { kinds, ..self }
+    }
+
+    /// Returns the same promises, which [`check`] tests with other random contacts.
+    pub const fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
     }
 
     /// Checks that `impulse` keeps these promises.
@@ -56,29 +133,152 @@ impl Promises {
         if let Some(static_friction) = self.static_friction {
             check_friction_cone(contact, impulse, static_friction)?;
         }
+        if let Some(coefficient) = self.rolling_friction {
+            check_rolling(contact, impulse, coefficient)?;
+        }
         if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
+    }
+
+    /// Checks the answer of a rule to a contact, to the same with partners exchanged, and to its mirror image.
+    fn check_answer<R: CollisionRule + ?Sized>(
+        &self,
+        rule: &R,
+        contact: &Contact,
+    ) -> Result<Impulse, Violation> {
+        let impulse = rule.impulse(contact);
+        self.check(contact, impulse)?;
+        let is_between_disks = contact.radii()[1] > 0.0 && !contact.kinds().contains(&Kind::WALL);
+        if self.exchange && is_between_disks && contact.radii()[1].is_finite() {
+            let other = rule.impulse(&exchanged(contact));
+            check_same(contact, impulse, other, 1.0, "exchange of partners")
+                .map_err(|violation| forgetful(rule, contact, impulse).unwrap_or(violation))?;
+        }
+        if self.mirror {
+            let other = rule.impulse(&mirrored(contact));
+            check_same(contact, impulse, other, -1.0, "mirror image")
+                .map_err(|violation| forgetful(rule, contact, impulse).unwrap_or(violation))?;
+        }
+        Ok(impulse)
+    }
+
+    /// Returns the contacts of a check, with kinds of these promises.
+    fn contacts(&self) -> impl Iterator<Item = Contact> + '_ {
+        let named = |kind: Kind| match kind {
+            Kind::WALL => kind,
+            _ => {
+                self.kinds.get(usize::from(kind.number()) % self.kinds.len().max(1)).copied().unwrap_or(kind)
+            }
+        };
+        let hostile = hostile_contacts().map(move |contact| contact.with_kinds(contact.kinds().map(named)));
+        hostile.chain(random_contacts(self.seed, self.kinds))
     }
 }
 
-/// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when asked
-/// again in another order.
+/// Checks that `rule` keeps its promises, and that it gives the same answers when it is asked again in other
+/// orders.
+///
+/// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
+/// convex and hollow walls, kinds, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
+/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. The page
+/// "Validation" tells which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken, with the contact and the impulse that break it.
+/// The first promise that is broken, at the simplest contact at which the same promise is still broken.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
     let mut answers = Vec::new();
-    for contact in hostile_contacts() {
-        let impulse = rule.impulse(&contact);
-        promises.check(&contact, impulse)?;
+    for contact in promises.contacts() {
+        let impulse = promises.check_answer(rule, &contact).map_err(|violation| {
+            simplest(contact, violation, |contact| promises.check_answer(rule, contact).err())
+        })?;
         answers.push((contact, impulse));
     }
-    // The second pass runs backward, so that a rule with a memory remembers other contacts.
-    for (contact, impulse) in answers.into_iter().rev() {
-        let later = rule.impulse(&contact);
-        if !same(impulse, later) {
-            let contact = Box::new(contact);
-            return Err(Violation { fault: Fault::NotRepeatable { later }, contact, impulse });
-        }
+    // A rule with a memory remembers other contacts in each pass.
+    let count = answers.len();
+    for index in (0..count).rev().chain((0..count).map(|step| step * STRIDE % count)) {
+        let (contact, impulse) = &answers[index];
+        let later = rule.impulse(contact);
+        check_again(contact, *impulse, later)?;
     }
     Ok(())
+}
+
+/// Checks that two rules which answer differently have different fingerprints, and that two which answer all
+/// contacts of [`check`] alike have the same. Rules without a fingerprint are not compared.
+///
+/// # Errors
+/// If the fingerprints tell something else than the answers.
+///
+/// ```
+/// use granular_edmd::collision::{Smooth, laws};
+/// let of = Smooth::from_inelasticity;
+/// laws::check_fingerprints(&of(0.1)?, &of(0.2)?)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check_fingerprints<R, S>(first: &R, second: &S) -> Result<(), Violation>
+where
+    R: CollisionRule + ?Sized,
+    S: CollisionRule + ?Sized,
+{
+    let differ = |contact: &Contact| bits(first.impulse(contact)) != bits(second.impulse(contact));
+    let difference = Promises::new().contacts().find(differ).map(|contact| format!("in {contact}"));
+    check_pair("collision rule", [first.fingerprint(), second.fingerprint()], difference)
+}
+
+/// Returns the same contact, with partner 1 as partner 2.
+fn exchanged(contact: &Contact) -> Contact {
+    let ([first, second], [one, other]) = (contact.kinds(), contact.radii());
+    contact.with_kinds([second, first]).with_radii([other, one]).with_spin(
+        0.0 - contact.relative_spin(),
+        contact.spin_inertia(),
+        0.0 - contact.spin_response(),
+    )
+}
+
+fn mirrored(contact: &Contact) -> Contact {
+    Contact::new(
+        contact.closing_speed(),
+        0.0 - contact.slip_speed(),
+        contact.normal_mass(),
+        contact.tangential_mass(),
+    )
+    .with_kinds(contact.kinds())
+    .with_radii(contact.radii())
+    .with_time_since_last_collision(contact.time_since_last_collision())
+    .with_spin(0.0 - contact.relative_spin(), contact.spin_inertia(), contact.spin_response())
+}
+
+/// Checks that an impulse is the other one as seen with other signs. The couple changes its sign in both
+/// cases.
+fn check_same(
+    contact: &Contact,
+    impulse: Impulse,
+    other: Impulse,
+    sign: f64,
+    law: &'static str,
+) -> Result<(), Violation> {
+    let close = |one: f64, other: f64, scale: f64| {
+        (one - other).abs() <= ROUNDING * (one.abs() + other.abs() + scale.abs()) + LEAST
+    };
+    let turning = contact.spin_inertia() * contact.relative_spin();
+    let is_same = close(impulse.normal(), other.normal(), 0.0)
+        && close(impulse.tangential(), sign * other.tangential(), impulse.normal())
+        && close(impulse.couple(), -other.couple(), turning);
+    unless(is_same, law, contact, impulse, || format!("is another there: {other}"))
+}
+
+fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<(), Violation> {
+    unless(bits(impulse) == bits(later), "repeatable", contact, impulse, || {
+        format!("is another when asked for again: {later}, {:?}", later.regime())
+    })
+}
+
+/// Returns the violation of a rule that forgets its answer when it is asked for it some more times.
+fn forgetful<R: CollisionRule + ?Sized>(rule: &R, contact: &Contact, impulse: Impulse) -> Option<Violation> {
+    (0..4).find_map(|_| check_again(contact, impulse, rule.impulse(contact)).err())
+}
+
+/// Returns the bits of an impulse, and its regime.
+fn bits(impulse: Impulse) -> ([u64; 3], Regime) {
+    let numbers = [impulse.normal(), impulse.tangential(), impulse.couple()];
+    (numbers.map(f64::to_bits), impulse.regime())
 }

@@ -28,7 +28,7 @@ impl Block {
     pub(super) const EMPTY: Self = Self([0; SLOTS]);
 
     /// Returns the number of slots taken, or [`CROWDED`].
-    #[inline]
+    #[inline(always)]
     pub(super) fn count(&self) -> usize {
         ((self.0[0] & !AT_WALL) / ONE) as usize
     }
@@ -64,14 +64,14 @@ impl Block {
     }
 
     /// Returns the slots: the disks, followed by arbitrary numbers.
-    #[inline]
+    #[inline(always)]
     pub(super) fn slots(&self) -> [u32; SLOTS] {
         let [first, second, third, fourth] = self.0;
         [first & DISK, second, third, fourth]
     }
 
     /// Adds a disk to a block that has room.
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, disk: usize) {
         let (count, above) = (self.count(), self.above());
         let mut slots = self.slots();
@@ -84,7 +84,7 @@ impl Block {
     }
 
     /// Removes a disk. The last disk of the block takes its place.
-    #[inline]
+    #[inline(always)]
     pub(super) fn remove(&mut self, disk: usize) {
         let mut slots = self.with(disk, self.last());
         slots[0] -= ONE;
@@ -103,7 +103,7 @@ impl Block {
     }
 
     /// Returns the last disk of a block that is not empty.
-    #[inline]
+    #[inline(always)]
     pub(super) fn last(&self) -> u32 {
         self.0[self.count().wrapping_sub(1) % SLOTS] & DISK
     }
@@ -114,7 +114,7 @@ impl Block {
         self.0[0] & !DISK
     }
 
-    #[inline]
+    #[inline(always)]
     fn with(&self, disk: usize, by: u32) -> [u32; SLOTS] {
         let mut slots = self.slots().map(|slot| if slot == disk as u32 { by } else { slot });
         slots[0] |= self.above();

@@ -40,7 +40,7 @@ impl Contents {
         self.blocks[cell].is_at_wall()
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, cell: usize, disk: usize) {
         match &mut self.blocks[cell] {
             block if block.count() < SLOTS => block.push(disk),
@@ -61,7 +61,7 @@ impl Contents {
     }
 
     /// Removes a disk. Another disk of the cell takes its place.
-    #[inline]
+    #[inline(always)]
     pub(super) fn remove(&mut self, cell: usize, disk: usize) {
         match &mut self.blocks[cell] {
             block if block.count() < CROWDED => block.remove(disk),

@@ -162,7 +162,7 @@ impl Grid {
 
     /// Returns the neighbor at these numbers of columns to the right and rows up, and the numbers of periods
     /// passed on the way.
-    #[inline]
+    #[inline(always)]
     pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, [i32; 2]) {
         let mut to =
             Place { column: place.column.wrapping_add_signed(right), row: place.row.wrapping_add_signed(up) };

@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::forecast::Forecast;
+use super::forecast::{Earliest, Exit, Forecast};
 use super::identities::Identities;
 use super::properties::Properties;
 use crate::collision::{Body, Material};
@@ -152,6 +152,20 @@ impl Bodies {
     #[inline]
     pub(in crate::simulation) fn forecast(&self, disk: usize) -> Option<&Forecast> {
         self.particles.get(disk).map(|particle| &particle.forecast)
+    }
+
+    /// Sets the next collision of a disk.
+    #[inline(always)]
+    pub(in crate::simulation) fn expect(&mut self, disk: usize, earliest: Earliest) {
+        let collisions = self.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
+        self.particles[disk].forecast.set_collision(earliest, collisions);
+    }
+
+    /// Sets when and where the flight of a disk in its cell ends.
+    #[inline(always)]
+    pub(in crate::simulation) fn exit(&mut self, disk: usize, due: f64, exit: Exit) {
+        let forecast = &mut self.particles[disk].forecast;
+        (forecast.exit_due, forecast.exit) = (due, exit);
     }
 
     pub(in crate::simulation) fn id(&self, disk: usize) -> u64 {

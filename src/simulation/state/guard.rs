@@ -36,7 +36,14 @@ pub(in crate::simulation) struct Guard {
     pub(in crate::simulation) before: u64,
     /// Number of windows in a row in which time hardly advanced.
     pub(in crate::simulation) slow: u32,
+    /// Number of those, at their end, in which it advanced as much as in the window before.
+    pub(in crate::simulation) alike: u32,
+    /// Simulated time that the last window took.
+    pub(in crate::simulation) elapsed: f64,
 }
+
+/// Relative difference of two windows that are alike.
+const ALIKE: f64 = 0.05;
 
 /// A window in which time has hardly advanced.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,11 +78,16 @@ impl Guard {
         events: u64,
         least_progress: f64,
     ) -> Option<Standstill> {
-        let last = std::mem::replace(self, Self { since: offset, before: events, slow: 0 });
+        let last = *self;
         let standstill =
             Standstill { events: events.saturating_sub(last.before), elapsed: offset - last.since };
         let is_slow = standstill.elapsed < least_progress * standstill.events as f64;
-        self.slow = if is_slow { last.slow + 1 } else { 0 };
+        let elapsed = standstill.elapsed;
+        let is_alike = (elapsed - last.elapsed).abs() <= ALIKE * elapsed.max(last.elapsed);
+        let (slow, alike) =
+            (last.slow.saturating_add(1), if is_alike { last.alike.saturating_add(1) } else { 0 });
+        let (slow, alike) = if is_slow { (slow, alike) } else { (0, 0) };
+        *self = Self { since: offset, before: events, slow, alike, elapsed };
         is_slow.then_some(standstill)
     }
 
@@ -97,7 +109,7 @@ mod tests {
             [200_200, 200_199, 1, 0, 0]
         );
         assert_eq!(guard.end_window(3.0, 200_200, 1e-5), None);
-        assert_eq!(guard, Guard { since: 3.0, before: 200_200, slow: 0 });
+        assert_eq!((guard.since, guard.before, guard.slow), (3.0, 200_200, 0));
         let slow = guard.end_window(3.5, 400_400, 1e-5).unwrap();
         assert_eq!((slow.events, slow.elapsed), (200_200, 0.5));
         assert_eq!(guard.left(400_400, 10), 200_200);

@@ -69,7 +69,7 @@ mod tests {
     use granular_edmd::scheduler::laws;
 
     #[test]
-    fn it_keeps_the_laws() -> Result<(), laws::Violation> {
+    fn it_keeps_the_laws() -> Result<(), granular_edmd::Violation> {
         laws::check(LazyHeap::default)
     }
 }

@@ -12,13 +12,10 @@ pub(crate) mod observers;
 pub(crate) mod rules;
 pub(crate) mod schedulers;
 
-use super::Planted;
+use super::named;
 
 /// Returns the names of all faults, each after the name of its trait.
 pub(crate) fn names() -> Vec<String> {
-    fn named<T>(part: &str, catalogue: &[Planted<T>]) -> Vec<String> {
-        catalogue.iter().map(|fault| format!("{part}: {}: {}", fault.family, fault.name)).collect()
-    }
     [
         named("rule", &rules::catalogue()),
         named("motion", &motions::catalogue()),

@@ -37,8 +37,7 @@ pub(super) fn height_profile(setting: &Setting) -> Cell {
             }
         }
         let region = Region::new(DVec2::new(domain.left, bottom), DVec2::new(domain.right, bottom + step));
-        let times = log.samples().map(|state| state.time);
-        let free = setting.mean_area(&region, times) * log.samples().count() as f64;
+        let free = setting.mean_area(&region, log.samples()) * log.samples().count() as f64;
         worst = worst.max(far(&[measured], &[area / free]));
     }
     Ok(worst)
@@ -56,7 +55,7 @@ pub(super) fn fields(setting: &Setting) -> Cell {
         let is_inside = |place: DVec2| place.cmpge(region.min).all() && place.cmplt(region.max).all();
         let own: Vec<_> =
             log.samples().flat_map(|state| &state.disks).filter(|disk| is_inside(disk.position())).collect();
-        let free = samples * setting.mean_area(&region, log.samples().map(|state| state.time));
+        let free = samples * setting.mean_area(&region, log.samples());
         if own.is_empty() {
             worst = worst.max(cell.number_density);
             continue;
@@ -125,10 +124,10 @@ pub(super) fn stress(setting: &Setting) -> Cell {
         !is_open || (place.cmpge(setting.bulk.min).all() && place.cmplt(setting.bulk.max).all())
     };
     let region = if is_open { setting.bulk } else { whole(setting) };
-    let rest = setting.mean_area(&region, std::iter::once(0.0));
+    let rest = setting.mean_area(&region, log.samples().take(1));
     let (mut sum, mut count) = ([0.0; 4], 0.0);
     for (state, collisions) in log.intervals() {
-        let area = if setting.walls_move { setting.free_area(&region, state.time) } else { rest };
+        let area = if setting.walls_move { setting.free_area(&region, state) } else { rest };
         let mut add = |one: DVec2, other: DVec2| {
             let parts = [one.x * other.x, one.x * other.y, one.y * other.x, one.y * other.y];
             sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part / area);

@@ -20,6 +20,8 @@ pub(super) struct State {
     pub(super) disks: Vec<Disk>,
     /// Number of collisions so far.
     pub(super) collisions: usize,
+    /// Height of the lid, in a closed box; 0 elsewhere.
+    pub(super) lid: f64,
 }
 
 impl State {
@@ -62,7 +64,8 @@ impl Log {
 
     fn keep(&mut self, occasion: Occasion, snapshot: &Snapshot<'_>) {
         let (disks, collisions) = (snapshot.disks().to_vec(), self.collisions.len());
-        self.states.push(State { occasion, time: snapshot.time(), disks, collisions });
+        let lid = snapshot.wall_point(3).map_or(0.0, |place| place.y);
+        self.states.push(State { occasion, time: snapshot.time(), disks, collisions, lid });
     }
 }
 

@@ -8,10 +8,10 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::initial::Radii;
 use granular_edmd::observable::Observer;
 use granular_edmd::simulation::{BoxedBoundary, BoxedRule, Inlet, Limits, Rescaling};
-use granular_edmd::wall::Sinusoidal;
+use granular_edmd::wall::{Piston, Sinusoidal};
 use granular_edmd::{Disk, Gravity, Kind, Simulation, initial};
 
-use super::log::Log;
+use super::log::{Log, State};
 use crate::report::report;
 
 type Failure = Box<dyn std::error::Error>;
@@ -31,18 +31,18 @@ pub(super) struct Setting {
     between: fn(&mut Run) -> Result<(), Failure>,
     is_driven: bool,
     pub(super) walls_move: bool,
-    /// Whether the walls at this place leave matter free at a time, in closed form.
-    pub(super) is_free: fn(DVec2, f64) -> bool,
+    /// Whether the walls of a state leave matter free at a place, in closed form.
+    pub(super) is_free: fn(DVec2, &State) -> bool,
     /// A rectangle to be measured, which holds most of the disks.
     pub(super) region: Region,
-    /// A rectangle that is away from all walls by 1.5.
+    /// A rectangle that is away from all walls by 1.5; it may reach to periodic seams.
     pub(super) bulk: Region,
 }
 
 impl Setting {
     fn new(name: &'static str, make: fn() -> Result<Run, Failure>) -> Self {
         let (region, bulk) = (rectangle(0.0, 0.0, 10.0, 8.0), rectangle(1.75, 2.5, 8.25, 6.0));
-        let is_free = |place: DVec2, _| rectangle_has(&rectangle(0.0, 0.0, 10.0, 8.0), place);
+        let is_free = |place: DVec2, _: &State| rectangle_has(&rectangle(0.0, 0.0, 10.0, 8.0), place);
         Self { name, make, between: |_| Ok(()), is_driven: false, walls_move: false, is_free, region, bulk }
     }
 
@@ -75,20 +75,20 @@ impl Setting {
         (self.make)().map_or(Domain::new(0.0, 1.0, 0.0, 1.0), |run| run.boundary().domain())
     }
 
-    /// Returns the mean free area of a rectangle at some times.
-    pub(super) fn mean_area(&self, region: &Region, times: impl Iterator<Item = f64>) -> f64 {
-        let times: Vec<f64> = if self.walls_move { times.collect() } else { vec![0.0] };
-        times.iter().map(|&time| self.free_area(region, time)).sum::<f64>() / times.len() as f64
+    /// Returns the mean free area of a rectangle in some states.
+    pub(super) fn mean_area<'a>(&self, region: &Region, states: impl Iterator<Item = &'a State>) -> f64 {
+        let states: Vec<&State> = states.take(if self.walls_move { usize::MAX } else { 1 }).collect();
+        states.iter().map(|state| self.free_area(region, state)).sum::<f64>() / states.len() as f64
     }
 
-    /// Returns the free area of a rectangle at a time, by many points.
-    pub(super) fn free_area(&self, region: &Region, time: f64) -> f64 {
+    /// Returns the free area of a rectangle in a state, by many points.
+    pub(super) fn free_area(&self, region: &Region, state: &State) -> f64 {
         const LINES: u32 = 700;
         let size = region.max - region.min;
         let at = |k: u32, low: f64, size: f64| low + size * (f64::from(k) + 0.5) / f64::from(LINES);
         let is_free = |row: u32, column: u32| {
             let place = DVec2::new(at(column, region.min.x, size.x), at(row, region.min.y, size.y));
-            (self.is_free)(place, time)
+            (self.is_free)(place, state)
         };
         let free =
             (0..LINES).map(|row| (0..LINES).filter(|&column| is_free(row, column)).count()).sum::<usize>();
@@ -182,21 +182,36 @@ fn put_elsewhere(run: &mut Run) -> Result<(), Failure> {
 
 /// Returns all settings, the columns of the table.
 pub(super) fn settings() -> Vec<Setting> {
-    let triangle = |place: DVec2, _| place.min_element() >= 0.0 && place.x / 14.0 + place.y / 9.0 <= 1.0;
+    let boxes = boxes().into_iter().chain(vessels()).chain(walls_that_move());
+    boxes.chain(others()).collect()
+}
+
+fn boxes() -> Vec<Setting> {
     vec![
         Setting::new("closed box", || gas(closed()?, 0.0)),
-        Setting::new("periodic sides", || gas(closed()?.with_periodic_sides()?, 0.1)),
-        Setting::new("periodic both ways", || {
-            let container = Container::periodic(10.0, 8.0)?;
-            let disks = initial::random(&container, 24, 0.4, 8.0, 1)?;
-            of(container, disks, Elastic, 0.0)
-        }),
+        Setting {
+            bulk: rectangle(0.0, 2.5, 10.0, 6.0),
+            ..Setting::new("periodic sides", || gas(closed()?.with_periodic_sides()?, 0.1))
+        },
+        Setting {
+            bulk: rectangle(0.0, 0.0, 10.0, 8.0),
+            ..Setting::new("periodic both ways", || {
+                let container = Container::periodic(10.0, 8.0)?;
+                let disks = initial::random(&container, 24, 0.4, 8.0, 1)?;
+                of(container, disks, Elastic, 0.0)
+            })
+        },
         Setting {
             is_free: |place, _| place.x >= 0.0 && place.x <= 10.0 && place.y >= 0.0,
             ..Setting::new("open top", || gas(Container::open(10.0)?, 0.3))
         },
+    ]
+}
+
+fn vessels() -> Vec<Setting> {
+    vec![
         Setting {
-            is_free: triangle,
+            is_free: |place, _| place.min_element() >= 0.0 && place.x / 14.0 + place.y / 9.0 <= 1.0,
             region: rectangle(0.0, 0.0, 14.0, 9.0),
             bulk: rectangle(1.75, 1.75, 4.0, 3.5),
             ..Setting::new("triangle", || {
@@ -222,15 +237,35 @@ pub(super) fn settings() -> Vec<Setting> {
             bulk: rectangle(3.5, 2.5, 6.0, 5.5),
             ..Setting::new("block and peg", obstructed)
         },
+    ]
+}
+
+fn walls_that_move() -> Vec<Setting> {
+    vec![
         Setting {
-            is_free: |place, time| {
-                rectangle_has(&rectangle(0.0, floor(time), 10.0 - floor(time), 8.0), place)
+            is_free: |place, state| {
+                let inward = floor(state.time);
+                rectangle_has(&rectangle(0.0, inward, 10.0 - inward, 8.0), place)
             },
             region: rectangle(0.0, -0.3, 10.3, 8.0),
             bulk: rectangle(1.75, 2.5, 8.0, 6.0),
             walls_move: true,
             ..Setting::new("moving walls", moving)
         },
+        Setting {
+            is_free: |place, state| rectangle_has(&rectangle(0.0, 0.0, 10.0, state.lid), place),
+            bulk: rectangle(1.75, 1.75, 8.25, 4.0),
+            walls_move: true,
+            ..Setting::new("piston", || {
+                let lid = Piston::new(20.0, 0.0, 2.0)?.with_force(2.0)?.starting_at(0.5, 0.0)?;
+                gas(closed()?.with_piston(Wall::Lid, lid)?, 0.1)
+            })
+        },
+    ]
+}
+
+fn others() -> Vec<Setting> {
+    vec![
         Setting::new("tilted gravity", || gas(closed()?, Gravity::tilted(0.2, PI / 5.0)?)),
         Setting::new("sizes and masses", mixed),
         Setting::new("kinds", of_two_kinds),

@@ -1,7 +1,7 @@
 //! Boundaries that break their contract.
 
-mod altered;
-mod bases;
+pub(in crate::faults) mod altered;
+pub(in crate::faults) mod bases;
 mod reacting;
 mod touches;
 

@@ -9,33 +9,33 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::{Fingerprint, Flight, ParameterError};
 
 /// An honest boundary behind functions that change its answers. At first, they change nothing.
-pub(super) struct Altered {
-    pub(super) honest: Box<dyn Boundary>,
+pub(in crate::faults) struct Altered {
+    pub(in crate::faults) honest: Box<dyn Boundary>,
     /// The last origin that was given.
-    pub(super) since: f64,
+    pub(in crate::faults) since: f64,
     /// Takes the last origin and the new one, and returns the one that is passed on.
-    pub(super) origin: Box<dyn Fn(f64, f64) -> f64>,
+    pub(in crate::faults) origin: Box<dyn Fn(f64, f64) -> f64>,
     /// The origin, and the domain.
-    pub(super) domain: Box<dyn Fn(f64, Domain) -> Domain>,
-    pub(super) interior: Box<dyn Fn(Domain) -> Domain>,
+    pub(in crate::faults) domain: Box<dyn Fn(f64, Domain) -> Domain>,
+    pub(in crate::faults) interior: Box<dyn Fn(Domain) -> Domain>,
     /// The origin, and the number of walls.
-    pub(super) walls: Box<dyn Fn(f64, usize) -> usize>,
-    pub(super) may_touch: Box<dyn Fn(&dyn Boundary, &Region, f64) -> bool>,
-    pub(super) touch: Box<dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>>,
+    pub(in crate::faults) walls: Box<dyn Fn(f64, usize) -> usize>,
+    pub(in crate::faults) may_touch: Box<dyn Fn(&dyn Boundary, &Region, f64) -> bool>,
+    pub(in crate::faults) touch: Box<dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>>,
     /// The surface, the position of the disk, and the time.
-    pub(super) surface: Box<dyn Fn(&mut Surface<'_>, DVec2, f64)>,
-    pub(super) overlap: Box<dyn Fn(&dyn Boundary, &Probe) -> Option<Overlap>>,
+    pub(in crate::faults) surface: Box<dyn Fn(&mut Surface<'_>, DVec2, f64)>,
+    pub(in crate::faults) overlap: Box<dyn Fn(&dyn Boundary, &Probe) -> Option<Overlap>>,
     /// The answer, the region and the radius.
-    pub(super) area: Box<dyn Fn(Option<f64>, &Region, f64) -> Option<f64>>,
-    pub(super) react: Box<dyn Fn(&mut dyn Boundary, &Impact) -> Reaction>,
-    pub(super) may_meet: Box<dyn Fn(&Region, bool) -> bool>,
-    pub(super) state: Box<dyn Fn(Vec<f64>) -> Vec<f64>>,
-    pub(super) restored: Box<dyn Fn(&[f64]) -> Option<Vec<f64>>>,
-    pub(super) mark: Option<Fingerprint>,
+    pub(in crate::faults) area: Box<dyn Fn(Option<f64>, &Region, f64) -> Option<f64>>,
+    pub(in crate::faults) react: Box<dyn Fn(&mut dyn Boundary, &Impact) -> Reaction>,
+    pub(in crate::faults) may_meet: Box<dyn Fn(&Region, bool) -> bool>,
+    pub(in crate::faults) state: Box<dyn Fn(Vec<f64>) -> Vec<f64>>,
+    pub(in crate::faults) restored: Box<dyn Fn(&[f64]) -> Option<Vec<f64>>>,
+    pub(in crate::faults) mark: Option<Fingerprint>,
 }
 
 impl Altered {
-    pub(super) fn new(honest: impl Boundary + 'static) -> Self {
+    pub(in crate::faults) fn new(honest: impl Boundary + 'static) -> Self {
         Self {
             honest: Box::new(honest),
             since: 0.0,

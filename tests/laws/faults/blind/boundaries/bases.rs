@@ -16,57 +16,57 @@ use granular_edmd::{Disk, Flight, Kind, ParameterError};
 use super::altered::Altered;
 
 /// The kind that passes the peg of [`sieve`].
-pub(super) const GHOST: Kind = Kind::new(1);
+pub(in crate::faults) const GHOST: Kind = Kind::new(1);
 
-pub(super) fn floor_motion() -> BiParabolic {
+pub(in crate::faults) fn floor_motion() -> BiParabolic {
     BiParabolic::new(0.2, 6.0).expect("an amplitude")
 }
 
-pub(super) fn resting() -> Container {
+pub(in crate::faults) fn resting() -> Container {
     Container::closed(10.0, 12.0).expect("a size")
 }
 
 /// Returns the area that a region and the box at rest have in common, less a margin along the walls.
-pub(super) fn common_area(region: &Region, margin: f64) -> f64 {
+pub(in crate::faults) fn common_area(region: &Region, margin: f64) -> f64 {
     let (low, high) = (DVec2::splat(margin), DVec2::new(10.0, 12.0) - margin);
     let size = (region.max.min(high) - region.min.max(low)).max(DVec2::ZERO);
     size.x * size.y
 }
 
 /// A box at rest that knows its free area.
-pub(super) fn measured() -> Altered {
+pub(in crate::faults) fn measured() -> Altered {
     let area = Box::new(|_: Option<f64>, region: &Region, radius: f64| Some(common_area(region, radius)));
     Altered { area, ..Altered::new(resting()) }
 }
 
-pub(super) fn shaken() -> Altered {
+pub(in crate::faults) fn shaken() -> Altered {
     Altered::new(resting().with_motion(Wall::Floor, floor_motion()).expect("a floor"))
 }
 
 /// A box with a floor that slides to the right and back.
-pub(super) fn sliding() -> Altered {
+pub(in crate::faults) fn sliding() -> Altered {
     let motion = Sinusoidal::new(0.3, 2.0).expect("an amplitude");
     Altered::new(resting().with_sliding(Wall::Floor, motion).expect("a floor"))
 }
 
-pub(super) fn dish() -> Altered {
+pub(in crate::faults) fn dish() -> Altered {
     let drum = Part::drum(DVec2::splat(6.0), 6.0).expect("a radius");
     Altered::new(Vessel::around([("dish", drum)]).expect("a vessel"))
 }
 
-pub(super) fn board() -> Obstacles<Container> {
+pub(in crate::faults) fn board() -> Obstacles<Container> {
     Obstacles::new(resting(), [Disk::new(DVec2::new(5.0, 6.0), 1.5).expect("a radius")])
 }
 
 /// A box with a bar that turns about the point (5, 6).
-pub(super) fn stirred() -> Altered {
+pub(in crate::faults) fn stirred() -> Altered {
     let bar = Part::polyline([DVec2::new(4.0, 6.0), DVec2::new(6.0, 6.0)]).expect("a bar");
     let bar = bar.with_rotation(DVec2::new(5.0, 6.0), 0.7).expect("a rotation");
     Altered::new(Vessel::new(resting()).with("bar", bar).expect("a vessel"))
 }
 
 /// A box with a peg that one kind passes.
-pub(super) fn sieve(passes: Kind) -> Altered {
+pub(in crate::faults) fn sieve(passes: Kind) -> Altered {
     let (bare, empty) = (resting(), resting());
     Altered {
         touch: Box::new(move |board, flight, until| {
@@ -86,7 +86,7 @@ pub(super) fn sieve(passes: Kind) -> Altered {
 }
 
 /// A box with a heavy floor on a spring, which blows set in motion.
-pub(super) struct Sprung {
+pub(in crate::faults) struct Sprung {
     container: Container,
     swing: Swing,
     origin: f64,
@@ -141,7 +141,7 @@ impl WallMotion for Swing {
 }
 
 impl Sprung {
-    pub(super) fn new() -> Self {
+    pub(in crate::faults) fn new() -> Self {
         Self { container: resting(), swing: Swing { cosine: 0.1, sine: 0.0 }, origin: 0.0 }
     }
 
@@ -234,7 +234,7 @@ impl Boundary for Sprung {
 }
 
 /// A round drum that turns freely, with a moment of inertia.
-pub(super) struct Rotor {
+pub(in crate::faults) struct Rotor {
     rim: Brick,
     spin: f64,
 }
@@ -243,7 +243,7 @@ const RADIUS: f64 = 6.0;
 const INERTIA: f64 = 400.0;
 
 impl Rotor {
-    pub(super) fn new() -> Self {
+    pub(in crate::faults) fn new() -> Self {
         Self { rim: Brick::circle(DVec2::ZERO, RADIUS).expect("a radius"), spin: 0.1 }
     }
 }

@@ -1,0 +1,92 @@
+//! The comparison of two boundaries with their fingerprints.
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::trial::{PART, Trial};
+use super::{KINDS, Random};
+use crate::boundary::{Boundary, FirstTouch, Region, Response, Surface};
+use crate::collision::laws::hostile_contacts;
+use crate::fingerprint::check_pair;
+use crate::{Flight, Kind, Violation};
+
+/// Number of flights on which two boundaries are compared.
+const FLIGHTS: usize = 1000;
+
+/// Number of contacts in which the rules of two walls are compared.
+const CONTACTS: usize = 300;
+
+/// Checks that two boundaries which answer differently have different fingerprints, and that two which answer
+/// alike on a thousand flights have the same. Boundaries without a fingerprint are not compared.
+///
+/// The check sets the time origins of both.
+///
+/// # Errors
+/// If the fingerprints tell something else than the answers.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, laws};
+/// let (mut narrow, mut wide) = (Container::closed(8.0, 6.0)?, Container::closed(9.0, 6.0)?);
+/// laws::check_fingerprints(&mut narrow, &mut wide, 0.5, 1.0)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check_fingerprints<A, B>(
+    first: &mut A,
+    second: &mut B,
+    radius: f64,
+    speed: f64,
+) -> Result<(), Violation>
+where
+    A: Boundary + ?Sized,
+    B: Boundary + ?Sized,
+{
+    let (domain, other) = (first.domain(), second.domain());
+    let fingerprints = [first.fingerprint(), second.fingerprint()];
+    if (domain, first.interior()) != (other, second.interior()) {
+        return check_pair(PART, fingerprints, Some(format!("in their domains {domain} and {other}")));
+    }
+    let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(7));
+    let (mut first, mut second) = (first, second);
+    let mut one = Trial::new(&mut first, domain, radius, speed);
+    let mut other = Trial::new(&mut second, domain, radius, speed);
+    for number in 0..FLIGHTS {
+        one.kind = Kind::new(KINDS[number % KINDS.len()]);
+        other.kind = one.kind;
+        // A boundary without room has been refused by `check`; here, nothing is left to compare.
+        let Ok((origin, flight)) = random.flight(&mut one) else { break };
+        one.set_origin(origin);
+        other.set_origin(origin);
+        let until = flight.time() + one.length() / speed;
+        let answers = [answer(&one, &flight, until), answer(&other, &flight, until)];
+        if answers[0] != answers[1] {
+            return check_pair(PART, fingerprints, Some(format!("on {flight:?}: {answers:?}")));
+        }
+    }
+    check_pair(PART, fingerprints, None)
+}
+
+/// Returns the answers of a boundary about a flight, in words.
+fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
+    let (start, boundary) = (flight.time(), &*trial.boundary);
+    let place = flight.position(start);
+    let depth = trial.depth(place, trial.length(), start).map(|found| found.depth);
+    let around = DVec2::splat(flight.radius());
+    let area = boundary.area(&Region::new(place - around, place + around), flight.radius(), start);
+    let touch = boundary.first_touch(flight, until);
+    let surface = match touch {
+        FirstTouch::At(touch) => {
+            in_words(&boundary.surface(touch.wall, flight.position(touch.time), touch.time))
+        }
+        FirstTouch::NotBefore(_) => String::new(),
+    };
+    format!("{depth:?}, {area:?}, {touch:?}, {surface}")
+}
+
+/// Returns everything about a surface; rules are known by their answers.
+fn in_words(surface: &Surface<'_>) -> String {
+    let Response::Rule(rule) = surface.response else { return format!("{surface:?}") };
+    let contacts = hostile_contacts().take(CONTACTS);
+    let impulses: Vec<_> = contacts.map(|contact| rule.impulse(&contact)).collect();
+    format!("{surface:?} {impulses:?}")
+}

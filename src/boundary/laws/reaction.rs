@@ -1,0 +1,93 @@
+//! Checks of walls that react to blows.
+
+use glam::DVec2;
+
+use super::trial::{PART, Trial};
+use crate::Violation;
+use crate::boundary::{Boundary, Impact, Reaction, Touch};
+use crate::violation::require;
+
+/// Speeds that blows give to a wall, in units of the typical speed.
+const BLOWS: [f64; 3] = [1e-6, 1e-3, 5e-2];
+
+/// Largest error of a velocity after a blow, relative to the change and to the typical speed.
+const EXACT: f64 = 1e-8;
+const ROUNDING: f64 = 1e-12;
+
+/// Checks that the wall takes a blow as its masses say, and that its state brings it back.
+pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
+    let Touch { wall, time, .. } = touch;
+    let (state, before) = (trial.boundary.state(), answers(trial, touch, place));
+    for (number, share) in BLOWS.into_iter().enumerate() {
+        let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
+        check_blow(trial, touch, place, [-share, sign * share, 0.0])?;
+        check_blow(trial, touch, place, [0.0, 0.0, sign * share])?;
+        let (changed, after) = (trial.boundary.state(), answers(trial, touch, place));
+        check_state(trial, &state)?;
+        for (state, expected) in [(&state, before), (&changed, after), (&state, before)] {
+            trial.take_state(state)?;
+            let found = answers(trial, touch, place);
+            require!(PART, "state", found == expected;
+                "wall {wall} is {found:?} at {time:?} when its state {state:?} is set, and was {expected:?}");
+        }
+    }
+    Ok(())
+}
+
+/// Returns numbers that tell how a wall is and will be: its velocity, and depths of overlaps.
+fn answers(trial: &Trial<'_>, touch: Touch, place: DVec2) -> [f64; 4] {
+    let Touch { wall, time, .. } = touch;
+    let velocity = trial.boundary.surface(wall, place, time).velocity;
+    let later = time + 0.1 * trial.length() / trial.speed;
+    let [now, then] = [time, later].map(|time| trial.depth(place, trial.radius, time));
+    [velocity.x, velocity.y, now.map_or(0.0, |found| found.depth), then.map_or(0.0, |found| found.depth)]
+}
+
+/// Checks a blow along the normal and the surface, and a couple, in units of the speeds that they give.
+fn check_blow(
+    trial: &mut Trial<'_>,
+    touch: Touch,
+    place: DVec2,
+    [along, across, couple]: [f64; 3],
+) -> Result<(), Violation> {
+    let Touch { wall, time, .. } = touch;
+    let surface = trial.boundary.surface(wall, place, time);
+    let (normal, tangent, velocity) = (surface.normal, surface.normal.perp(), surface.velocity);
+    let (radius, masses) = (surface.radius, [surface.mass, surface.tangential_mass]);
+    let [mass, tangential] = masses.map(|mass| if mass.is_finite() { mass } else { 1.0 });
+    let impulse = trial.speed * (along * mass * normal + across * tangential * tangent);
+    // A couple turns a wall with a tangential mass, which is its moment of inertia by R².
+    let arm = if radius.is_finite() { radius } else { trial.radius };
+    let couple = couple * trial.speed * tangential * arm;
+    let point = place - trial.radius * normal;
+    let depth = |trial: &Trial<'_>| trial.depth(place, trial.radius, time).map_or(0.0, |found| found.depth);
+    let depth_before = depth(trial);
+    let reaction = trial.boundary.react(&Impact::new(wall, impulse, point, time).with_couple(couple));
+    let gained = trial.boundary.surface(wall, place, time).velocity - velocity;
+    let expected = DVec2::new(
+        impulse.dot(normal) / masses[0],
+        (impulse.dot(tangent) + if radius.is_finite() { couple / arm } else { 0.0 }) / masses[1],
+    );
+    let found = DVec2::new(gained.dot(normal), gained.dot(tangent));
+    let slack = EXACT * expected.length() + ROUNDING * (velocity.length() + trial.speed);
+    let is_as_expected = (found - expected).length() <= slack;
+    require!(PART, "reaction", is_as_expected;
+        "a blow {impulse:?} with the couple {couple:?} at {time:?} gives wall {wall}, of the masses \
+         {masses:?}, the velocity {found:?} along normal and tangent, not {expected:?}");
+    let is_told = reaction == Reaction::Moved || gained.length() <= slack;
+    require!(PART, "reaction", is_told; "wall {wall} answers {reaction:?} to a blow, and gains {gained:?}");
+    let moved = depth(trial) - depth_before;
+    require!(PART, "reaction", moved.abs() <= trial.rounding();
+        "a blow moves wall {wall} by {moved:?} at once");
+    Ok(())
+}
+
+/// Checks that the boundary takes no state of another length.
+fn check_state(trial: &mut Trial<'_>, state: &[f64]) -> Result<(), Violation> {
+    let longer = [state, &[0.0]].concat();
+    for wrong in [&longer[..], &longer[..state.len().saturating_sub(1)], &[]] {
+        let is_refused = wrong.len() == state.len() || trial.boundary.set_state(wrong).is_err();
+        require!(PART, "state", is_refused; "{} numbers are accepted as a state of {}", wrong.len(), state.len());
+    }
+    Ok(())
+}
