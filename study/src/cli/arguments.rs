@@ -17,7 +17,7 @@ const MOST_THREADS: i64 = 4096;
 /// slower than before, 6 the runs differ, 7 done but some values were not finished, 8 nobody does the rest,
 /// 130 stopped with all saved.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "granular-edmd", version)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
