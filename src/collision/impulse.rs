@@ -23,15 +23,6 @@ pub enum Regime {
     LeastRebound,
 }
 
-impl Regime {
-    /// Returns whether a remedy decided the collision.
-    #[inline]
-    pub(crate) fn is_remedy(self) -> bool {
-        // The remedies come last, so that one comparison is enough.
-        self as u8 >= Self::ContactDuration as u8
-    }
-}
-
 /// The momentum that partner 1 receives along the normal and the tangent, and a couple.
 ///
 /// Partner 2 receives the opposite.

@@ -43,7 +43,13 @@ impl Kick {
     /// Tells whether the kick leads to a motion within the engine's bounds.
     pub(super) fn is_possible(&self) -> bool {
         let velocity = self.after.velocity.abs();
-        velocity.x <= LARGEST && velocity.y <= LARGEST && self.after.angular_velocity.abs() <= LARGEST
+        velocity.x <= LARGEST && velocity.y <= LARGEST && self.may_spin()
+    }
+
+    /// Returns whether the spin after the kick is within the engine's bounds.
+    #[inline]
+    pub(super) fn may_spin(&self) -> bool {
+        self.after.angular_velocity.abs() <= LARGEST
     }
 }
 
