@@ -31,7 +31,7 @@ fn main() -> anyhow::Result<()> {
     whole.checkpoint().write_with(&series, &file)?;
 
     // Another program, on another day, makes rule and walls again, and goes on. A checkpoint refuses another
-    // rule or another wall; a part of one's own needs a `fingerprint` for that.
+    // rule or another wall; a custom part needs a `fingerprint` for that.
     let (checkpoint, mut resumed) = Checkpoint::read_with::<Series<CenterOfMass>>(&file)?;
     let mut second = Simulation::resume(&checkpoint, rule()?, self::container()?).build()?;
     second.run_until(1000.0, &mut resumed)?;

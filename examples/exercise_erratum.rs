@@ -5,7 +5,8 @@
 //! cargo run --release --example exercise_erratum -- FACTOR JUMP FRICTION INELASTICITY
 //! ```
 //!
-//! Nothing is looked up: the answers are computed from the collision rule and from the mean energy change.
+//! An answer is a number such as 0.25, or a fraction such as 1/4. The program computes the right answers from
+//! the collision rule and from the mean energy change.
 
 use std::process::ExitCode;
 
@@ -20,7 +21,7 @@ const QUESTIONS: [&str; 4] = [
 ];
 
 fn main() -> anyhow::Result<ExitCode> {
-    let answers: Vec<f64> = std::env::args().skip(1).map(|text| text.parse()).collect::<Result<_, _>>()?;
+    let answers: Vec<f64> = std::env::args().skip(1).map(|text| number(&text)).collect::<Result<_, _>>()?;
     if answers.is_empty() {
         return curves();
     }
@@ -34,6 +35,15 @@ fn main() -> anyhow::Result<ExitCode> {
         all &= right;
     }
     Ok(if all { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Reads a number or a fraction.
+fn number(text: &str) -> anyhow::Result<f64> {
+    let (numerator, denominator) = text.split_once('/').unwrap_or((text, "1"));
+    let part = |text: &str| text.trim().parse::<f64>().ok();
+    let value = part(numerator).zip(part(denominator)).map(|(above, below)| above / below);
+    let value = value.filter(|value| value.is_finite());
+    value.ok_or_else(|| anyhow::anyhow!("{text}: expected a number or a fraction, such as 0.25 or 1/4"))
 }
 
 /// Returns the energy change of a collision of the paper's disks, of mass 1.

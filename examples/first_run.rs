@@ -4,8 +4,8 @@
 //! cargo run --release --example first_run
 //! ```
 //!
-//! A moment. You learn how a run is put together: walls, disks, a rule for their collisions, something to
-//! watch.
+//! It takes less than a second. You learn how a run is put together: walls, disks, a rule for their
+//! collisions, something to watch.
 
 use granular_edmd::prelude::*;
 
@@ -29,14 +29,15 @@ fn main() -> anyhow::Result<()> {
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, 0.07)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
 
-    // Watch the order parameters of one roll and of two, and the height of the center of mass.
-    let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(100.0 * oscillation)?);
+    // Watch the order parameters of one roll and of two, and the height of the center of mass. Samples a
+    // whole number of oscillations apart would always see the base at the same phase; these see ten phases.
+    let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(99.9 * oscillation)?);
     simulation.run_until(2000.0 * oscillation, &mut series)?;
 
     println!("oscillation  one roll  two rolls   height");
     for (time, (order, center)) in series.iter() {
         let count = time / oscillation;
-        println!("{count:11.0} {:9.3} {:10.3} {:8.2}", order.one_roll, order.two_rolls, center.y);
+        println!("{count:11.1} {:9.3} {:10.3} {:8.2}", order.one_roll, order.two_rolls, center.y);
     }
     println!("{} collisions", simulation.counters().disk_collisions);
     Ok(())

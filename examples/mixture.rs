@@ -4,8 +4,8 @@
 //! cargo run --release --example mixture
 //! ```
 //!
-//! Two seconds. You learn kinds of disks, a table of rules by pairs of kinds, and observables of one kind. In
-//! a driven granular gas, the kinds do not have the same temperature.
+//! It takes two seconds. You learn kinds of disks, rules by pairs of kinds, and observables of one kind. In a
+//! driven granular gas, the kinds do not have the same temperature.
 
 use granular_edmd::prelude::*;
 

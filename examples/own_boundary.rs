@@ -1,11 +1,11 @@
-//! A boundary of one's own: a drum whose rim is hot on one side and cold on the other.
+//! A custom boundary: a drum whose rim is hot on one side and cold on the other.
 //!
 //! ```text
 //! cargo run --release --example own_boundary
 //! ```
 //!
-//! A moment. You learn what a boundary answers (where it is, when a disk touches it, what its surface is
-//! like), and that its geometry is made of the same bricks as the vessels of the library.
+//! It takes less than a second. You learn which questions a boundary answers (where it is, when a disk
+//! touches it, how its surface moves), and that you can build it from the bricks of the library's vessels.
 
 use granular_edmd::boundary::{Overlap, Probe, laws};
 use granular_edmd::prelude::*;
@@ -46,7 +46,8 @@ impl Boundary for Drum {
 
     fn surface(&self, wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
         let surface = Surface::new(self.rim.normal(position), DVec2::ZERO);
-        surface.with_response(Response::Thermal(self.temperatures[wall]))
+        // The rim is hollow for rules that ask for its radius.
+        surface.with_radius(-self.radius).with_response(Response::Thermal(self.temperatures[wall]))
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {

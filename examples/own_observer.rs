@@ -1,15 +1,16 @@
-//! An observer of one's own: the force on the base, oscillation by oscillation, in a table.
+//! A custom observer: the force on the base, oscillation by oscillation, in a table.
 //!
 //! ```text
 //! cargo run --release --example own_observer > force.csv
 //! ```
 //!
-//! A start. You learn how an observer hears of collisions, has a clock, and never changes a run.
+//! It takes less than a second. You learn how an observer receives collisions and sampling times. It never
+//! changes a run.
 
 use anyhow::Context;
 use granular_edmd::prelude::*;
 
-/// Sums up the momentum that the base receives, and begins anew at each beat of its clock.
+/// Sums up the momentum that the base receives, from one sampling time to the next.
 struct Force {
     clock: SampleTimes,
     base: Partner,

@@ -1,11 +1,11 @@
-//! A collision rule of one's own: grains that are the more elastic, the more slowly they meet.
+//! A custom collision rule: the slower two grains collide, the more elastic they are.
 //!
 //! ```text
 //! cargo run --release --example own_rule
 //! ```
 //!
-//! A moment. You learn what a rule is (a contact goes in, an impulse comes out), and how a rule is checked.
-//! A gas of such grains cools more slowly than one of constant restitution.
+//! It takes less than a second. You learn what a rule is (a function from a contact to an impulse), and how
+//! to check it. A gas of such grains cools more slowly than one of constant restitution.
 
 use granular_edmd::collision::laws::{self, Promises};
 use granular_edmd::prelude::*;

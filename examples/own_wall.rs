@@ -1,11 +1,11 @@
-//! A wall motion of one's own: a base that rests between its kicks.
+//! A custom wall motion: a base that rests between its kicks.
 //!
 //! ```text
 //! cargo run --release --example own_wall
 //! ```
 //!
-//! Two seconds. You learn what a wall motion must tell (place, velocity, bounds of its acceleration), and how
-//! it is checked.
+//! It takes two seconds. You learn what a wall motion returns (position, velocity, bounds of its
+//! acceleration), and how to check it.
 
 use granular_edmd::prelude::*;
 use granular_edmd::wall::laws;

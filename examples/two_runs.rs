@@ -1,10 +1,10 @@
-//! Two runs that differ by the last bit of one place: when they part, and what stays the same.
+//! Two runs that differ by the last bit of one position: when they diverge, and what stays the same.
 //!
 //! ```text
 //! cargo run --release --example two_runs
 //! ```
 //!
-//! Some seconds. You learn how a run is played back, how chaos shows, and why a result is a mean with an
+//! It takes five seconds. You learn how to replay a run, how chaos shows, and why a result is a mean with an
 //! error and not a trajectory.
 //!
 //! It prints when a disk is first a billionth, a thousandth and a radius away from itself (t = 16, 49, 68),

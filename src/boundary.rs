@@ -95,13 +95,33 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    that cannot come to an end says how far the way is free, which is later than the flight begins.
 /// 4. If the disk already touches a wall, even if only by rounding, that touch is found at once while the
 ///    disk approaches the wall, and never while the disk leaves it.
-/// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite
-///    velocities.
-/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the depth to which the disk
-///    reaches into a wall.
+/// 5. [`surface`](Self::surface) gives the unit normal that points from the wall to the disk, the gradient of
+///    the gap, to $`10^{-8}`$. The velocity is that of the wall's material at the touch, whatever the time
+///    origin: along the normal, it is the speed at which the wall moves by `overlap`, to $`10^{-8}`$ of the
+///    speeds; two disks that touch the same point of a wall find the same velocity there. The radius is that
+///    of the surface at the touch: infinite if it is straight, negative if it is hollow, never zero. At a tip
+///    or a corner it may be any other.
+/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the positive depth to which the
+///    disk reaches into a wall, and names the wall in which it is deepest, or one that is as deep. It agrees
+///    with `first_touch` for disks of each kind: at a touch, a disk that is larger by $`10^{-9}`$ of the size
+///    of the domain overlaps the wall, and one that is smaller by this overlaps none.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
-/// 8. The same questions get the same answers, bit for bit.
+/// 8. The same questions get the same answers, bit for bit, until the origin is set or a wall reacts.
+/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple: its velocity changes by
+///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
+///    over the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a
+///    mass m counts as the impulse C/R. No wall moves in an instant. The answer is [`Reaction::Moved`] if the
+///    velocity changes. A wall of infinite masses does not react.
+/// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
+///     `until`.
+/// 11. [`state`](Self::state) and [`set_state`](Self::set_state) bring walls back that have reacted: all
+///     answers are as before, and the state that was set is returned again. A state of another length is
+///     refused.
+/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap`, and
+///     [`wall_point`](Self::wall_point) stays on its wall.
+/// 13. Boundaries with equal [fingerprints](Self::fingerprint) answer alike, and equal boundaries have equal
+///     ones, whatever their state and their origin.
 ///
 /// The engine guarantees:
 /// - It sets the origin before it asks anything, and whenever the epoch of the run moves. It never asks about
@@ -117,12 +137,14 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] finds most faults, and the engine notices many. At each collision with a wall, a disk
-/// enlarged by 1e-9 of its radius must overlap a wall, and it must be no deeper in one than 1e-6 of its
-/// radius. So an early or late touch is an error of the run. So is a disk that has left the domain, or that
-/// overlaps a wall at the end of a search that found no touch. A missed touch with a thin wall that disks
-/// meet from both sides stays unseen. A touch with a wall that the disk is leaving comes again at once, until
-/// the run fails for lack of progress. A velocity or a normal that is not finite is an error of the run.
+/// [`laws::check`] tests 1 to 12, except for points of walls, and
+/// [`laws::check_fingerprints`] tests 13; `docs/validation.md` tells which planted faults they find. The
+/// engine notices many faults, too. At each collision with a wall, a disk enlarged by 1e-9 of its radius must
+/// overlap a wall, and it must be no deeper in one than 1e-6 of its radius. So an early or late touch is an
+/// error of the run. So is a disk that has left the domain, or that overlaps a wall at the end of a search
+/// that found no touch. A missed touch with a thin wall that disks meet from both sides stays unseen. A touch
+/// with a wall that the disk is leaving comes again at once, until the run fails for lack of progress. A
+/// velocity or a normal that is not finite is an error of the run.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -168,7 +190,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///         wait.map(|wait| Touch::new((start + wait).min(until), 0)).into()
 ///     }
 ///     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
-///         Surface::new(-position.normalize_or(DVec2::Y), DVec2::ZERO)
+///         Surface::new(-position.normalize_or(DVec2::Y), DVec2::ZERO).with_radius(-self.radius)
 ///     }
 ///     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
 ///         let depth = probe.position().length() + probe.radius() - self.radius;

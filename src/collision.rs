@@ -98,10 +98,11 @@ use crate::forward::forward;
 /// The engine calls [`Self::impulse`] once for each collision that the rule decides, between disks or with a
 /// wall. The engine guarantees about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
-/// - the slip speed is finite, of either sign or zero;
-/// - the masses are finite and positive, the tangential one not above the normal one;
-/// - the radii of disks are finite and positive; the radius of a wall is infinite if it is straight, negative
-///   if it is hollow, and never zero.
+/// - the slip speed and the relative spin are finite, of either sign or zero;
+/// - the masses are finite and positive, the tangential one not above the normal one; those of disks are
+///   between $`10^{-30}`$ and $`10^{30}`$, and so are their radii;
+/// - the radius of a wall is infinite if it is straight, negative if it is hollow, and never zero;
+/// - partner 2 is the wall, if there is one. Of two disks, either may be partner 1.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
@@ -109,10 +110,18 @@ use crate::forward::forward;
 /// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and the contact.
 /// 3. The surfaces no longer close after the collision. Otherwise, they collide again at once, until the run
 ///    ends as stalled.
-/// 4. The collision gains no energy, unless the rule is meant to drive. Otherwise, the system heats up
-///    unnoticed.
+/// 4. The collision gains no energy, of the relative motion of the surfaces and of the relative spin, unless
+///    the rule is meant to drive. Otherwise, the system heats up unnoticed.
+/// 5. The partners exchanged give the same physics: the same normal and tangential impulse, and the opposite
+///    couple, for the contact with kinds and radii in the other order and with the opposite relative spin and
+///    response. Otherwise, a trajectory depends on the order of the disks in a list.
+/// 6. The mirror image gives the mirror image: the same normal impulse, and the opposite tangential one and
+///    couple, for the opposite slip and relative spin. A rule for disks that are not symmetric may differ.
 ///
-/// [`laws::check`] tests all four.
+/// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
+/// [`laws::check`] tests it. The promises that it takes say which of 4 to 6 a rule does not give, and which
+/// others it gives: friction and rolling friction within their limits. `docs/validation.md` tells which
+/// planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",
     label = "the trait `CollisionRule` is not implemented for `{Self}`",

@@ -10,7 +10,10 @@ use crate::violation::require;
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
 /// others. A part of your own makes its fingerprint from its name and from all numbers on which its answers
 /// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be told apart.
-/// The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
+/// The checks of fingerprints, such as
+/// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare two parts
+/// with their answers: parts that differ in a number must differ, and equal parts agree. The hash is FNV-1a
+/// with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;
@@ -79,14 +82,10 @@ pub(crate) fn check_pair(
 ) -> Result<(), Violation> {
     let [Some(one), Some(other)] = fingerprints else { return Ok(()) };
     if let Some(difference) = difference {
-        require!(
-            one != other,
-            part,
-            "fingerprint",
-            "two parts have the fingerprint {one}, but differ {difference}"
-        );
+        require!(part, "fingerprint", one != other;
+            "two parts have the fingerprint {one}, but differ {difference}");
     } else {
-        require!(one == other, part, "fingerprint", "equal parts have the fingerprints {one} and {other}");
+        require!(part, "fingerprint", one == other; "equal parts have the fingerprints {one} and {other}");
     }
     Ok(())
 }

@@ -27,7 +27,8 @@
 //!     .build()?;
 //!
 //! // Watch the convection rolls, the height and the energy loss for 100 oscillations.
-//! let times = SampleTimes::every(10.0 * oscillation)?;
+//! // No whole number of oscillations between two samples, so that they see all phases of the base.
+//! let times = SampleTimes::every(9.9 * oscillation)?;
 //! let mut series = Series::new((OrderParameters, CenterOfMass), times);
 //! let mut energy = EnergyChange::default();
 //! simulation.run_until(100.0 * oscillation, &mut (&mut series, &mut energy))?;

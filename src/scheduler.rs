@@ -11,7 +11,7 @@
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |
 //!
-//! A scheduler of your own implements [`EventScheduler`], and [`laws::check`] tests it in one line.
+//! A custom scheduler implements [`EventScheduler`], and [`laws::check`] tests it in one line.
 
 mod bucket_queue;
 mod by_size;
@@ -48,6 +48,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
 /// 5. **Without disks**, as before the first `reset`, the answer is [`NOTHING_DUE`].
+/// 6. **Questions change nothing.** [`earliest`](Self::earliest) answers alike until the next `set` or
+///    `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
 ///
 /// # What the engine guarantees
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
@@ -59,13 +61,14 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///   slow.
 ///
 /// # Schedulers that break the contract
-/// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. If a scheduler loses
-/// a `set` and never names an event that is due, the engine notices when the epoch ends, or at the end of a
-/// run with at least as many events as disks, and ends the run with an error. To look at all disks more often
-/// would cost time, so the engine does not notice a lost event in shorter runs and in single steps within an
-/// epoch, nor two events in the wrong order that have both been named by then. [`laws::check`] finds all of
-/// these faults.
+/// The engine compares each answer with the event that it keeps: a disk
+/// that does not exist, or a time other than the last one set for it, ends the run with an error. If a
+/// scheduler loses a `set` and never names an event that is due, the engine notices when the epoch ends, or
+/// at the end of a run with at least as many events as disks, and ends the run with an error. To look at all
+/// disks more often would cost time, so the engine does not notice a lost event in shorter runs and in single
+/// steps within an epoch, nor two events in the wrong order that have both been named by then.
+/// [`laws::check`] finds such faults if they show within its scripts of up to fifty thousand operations;
+/// `docs/validation.md` tells which planted faults it finds.
 ///
 /// # Why the answer is a pair and not an `Option`
 /// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]

@@ -48,7 +48,7 @@ impl Violation {
 
 /// Returns a violation of this law from the function around it, unless the condition holds.
 macro_rules! require {
-    ($holds:expr, $part:expr, $law:expr, $($found:tt)+) => {
+    ($part:expr, $law:expr, $holds:expr; $($found:tt)+) => {
         let holds: bool = $holds;
         if !holds {
             return Err($crate::Violation::new($part, $law, format!($($found)+)));

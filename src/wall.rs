@@ -171,13 +171,16 @@ impl AccelerationBounds {
 ///    each time they are called with the same phase. Only `until` may be infinite.
 /// 2. The displacement lies within [`reach`](Self::reach).
 /// 3. A piece ends later than the phase asked for, and its bounds hold for the acceleration up to its end.
-/// 4. Inside a piece, displacement and velocity are continuous, and the displacement is the integral of the
-///    velocity. At the end of a piece, the velocity may jump. The displacement may jump there, too, but only
-///    away from the disks. The state at that phase is the one after the jump.
+/// 4. Inside a piece, displacement and velocity are continuous, the acceleration jumps a few times at most,
+///    and the displacement is the integral of the velocity, to $`10^{-8}`$ of it. At the end of a piece, the
+///    velocity may jump. The displacement may jump there, too, but only away from the disks. The state at
+///    that phase is the one after the jump.
 /// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
+/// 6. [`jumps`](Self::jumps) is true if the displacement jumps at the end of any piece.
+/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and equal motions have equal ones.
 ///
-/// [`laws::check`] tests all of this between two phases. A container calls the methods in any order and from
-/// any thread.
+/// [`laws::check`] tests the first six between two phases, and [`laws::check_fingerprints`] the last. A
+/// container calls the methods in any order and from any thread.
 ///
 /// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number

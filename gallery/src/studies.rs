@@ -83,10 +83,10 @@ pub fn complete<E: Experiment>(
         crate::say!("{} was damaged and has been done again", file.display());
     }
     if summary.warned > 0 {
-        let logs = folder.join("ramps/*/log.jsonl");
+        let logs = folder.join("logs/*.jsonl");
         crate::say!("{} values have warnings; {} say of what", summary.warned, logs.display());
     }
-    if (0..plan.ramp_count()).all(|ramp| matches!(study.status(ramp), Ok(RampStatus::Done))) {
+    if study.all_status()?.iter().all(|status| *status == RampStatus::Done) {
         return Ok(Some(study));
     }
     crate::say!(

@@ -1,5 +1,6 @@
 //! The rectangular container.
 
+mod room;
 mod shaken;
 
 use std::borrow::Cow;
@@ -258,21 +259,6 @@ impl Container {
 }
 
 impl Container {
-    /// Returns the rectangle in which the center of a disk of this radius is free at a time.
-    pub(super) fn room(&self, radius: f64, time: f64) -> Region {
-        let mut room = Region::new(self.corner, self.corner + DVec2::new(self.width, self.height));
-        for plane in &self.planes {
-            let place = plane.place(time);
-            match plane.wall {
-                Wall::Left => room.min.x = place.x + radius,
-                Wall::Right => room.max.x = place.x - radius,
-                Wall::Floor => room.min.y = place.y + radius,
-                Wall::Lid => room.max.y = place.y - radius,
-            }
-        }
-        room
-    }
-
     /// Makes a rectangle periodic where the container has no walls.
     fn with_sides(&self, domain: Domain) -> Domain {
         let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };

@@ -87,13 +87,14 @@ pub fn check<B: Boundary + ?Sized>(
     for wall in [0, boundary.wall_count(), usize::MAX] {
         drop(boundary.wall_name(wall));
     }
-    let mut trial = Trial::new(boundary, domain, radius, speed);
+    let mut boundary = boundary;
+    let mut trial = Trial::new(&mut boundary, domain, radius, speed);
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(seed));
     for number in 0..DISKS {
         trial.radius = radius * SIZES[number % SIZES.len()];
         trial.kind = Kind::new(KINDS[number % KINDS.len()]);
         let (origin, flight) = random.flight(&mut trial)?;
-        trial.set_origin(origin);
+        trial.begin(origin)?;
         check_flights(&mut trial, flight, FLIGHTS)?;
         // Each time, the disk is of another size.
         if number % 83 == 4 {
@@ -107,19 +108,15 @@ pub fn check<B: Boundary + ?Sized>(
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
     let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;
-    require!(
-        is_rectangle,
-        PART,
-        "domain",
-        "the domain {domain} is no rectangle with a finite bottom and sides"
-    );
+    require!(PART, "domain", is_rectangle;
+        "the domain {domain} is no rectangle with a finite bottom and sides");
     let is_inside = domain.left <= interior.left
         && interior.right <= domain.right
         && domain.bottom <= interior.bottom
         && interior.top <= domain.top
         && domain.periodic_sides == interior.periodic_sides
         && domain.periodic_ends == interior.periodic_ends;
-    require!(is_inside, PART, "interior", "the interior {interior} is not inside the domain {domain}");
+    require!(PART, "interior", is_inside; "the interior {interior} is not inside the domain {domain}");
     Ok(())
 }
 
@@ -132,12 +129,12 @@ impl Random {
     }
 
     /// Returns a time origin, and a flight that begins at a free place soon after it.
-    fn flight<B: Boundary + ?Sized>(&mut self, trial: &mut Trial<'_, B>) -> Result<(f64, Flight), Violation> {
+    fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
-        let late = self.between(-7.0 * 5.0, 5.0).max(0.0);
+        let late = self.between(-21.0, 3.0).max(0.0);
         let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let time = self.between(0.0, crossing);
-        trial.set_origin(origin);
+        trial.begin(origin)?;
         let position = self.place(trial, time)?;
         let speed = trial.speed * self.share();
         // The direction comes from a point in a square, not from an angle: sine and cosine differ
@@ -163,7 +160,7 @@ impl Random {
     }
 
     /// Returns a place in the domain where a disk overlaps no wall.
-    fn place<B: Boundary + ?Sized>(&mut self, trial: &Trial<'_, B>, time: f64) -> Result<DVec2, Violation> {
+    fn place(&mut self, trial: &Trial<'_>, time: f64) -> Result<DVec2, Violation> {
         let (low, high) = trial.rectangle();
         let place = (0..PLACES)
             .map(|_| DVec2::new(self.between(low.x, high.x), self.between(low.y, high.y)))

@@ -2,6 +2,7 @@
 
 mod constructors;
 mod corners;
+mod motion;
 mod polygon;
 mod travel;
 
@@ -12,11 +13,9 @@ use glam::DVec2;
 
 use super::brick::{Brick, Nearest};
 use super::conduct::Conduct;
-use super::vector::{finite_point, unit};
 use super::{Surface, Thermal, VesselError};
 use crate::collision::CollisionRule;
-use crate::quantity::{accept, finite};
-use crate::wall::{Motion, WallMotion};
+use crate::quantity::finite;
 use crate::{Fingerprint, Kind};
 
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
@@ -157,137 +156,6 @@ impl Part {
         Ok(Self { surface_speed: finite("surface speed", speed)?, ..self })
     }
 
-    /// Returns the same part with a motion along a direction, in place of an earlier motion along one.
-    ///
-    /// The vector `direction` can have any length except 0. A part that also [turns](Self::with_rotation)
-    /// moves along the same direction at all times, and takes the point about which it turns along.
-    ///
-    /// # Errors
-    /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`check_finite`](crate::wall::check_finite) looks at. Also if the motion jumps, as a
-    /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
-    /// would jump. A part that turns has no such side, so no motion of it may jump.
-    pub fn with_motion(
-        self,
-        direction: DVec2,
-        motion: impl WallMotion + Send + Sync + 'static,
-    ) -> Result<Self, VesselError> {
-        let direction = unit(direction)?;
-        let motion = Motion::new(motion).map_err(|violation| VesselError::Motion { violation })?;
-        self.moving(Along { direction, motion })
-    }
-
-    /// Returns the same part, turning about a point in place of an earlier rotation, counterclockwise at this
-    /// angular velocity.
-    ///
-    /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
-    /// and the displacement $`z`$, the place $`r`$ of the part as built is at the time $`t`$ in
-    ///
-    /// ```math
-    /// c + z(t)\,e + R(\omega t)\,(r - c),\qquad\text{at the velocity}\quad
-    /// \dot z(t)\,e + \omega\,R(\omega t)\,(r - c)_\perp .
-    /// ```
-    ///
-    /// A circle about that point stays in place; only its surface moves. Any other part is where it was built
-    /// at time 0, and after each whole turn.
-    ///
-    /// # Errors
-    /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
-    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn.
-    /// Also if the part has a motion that jumps.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
-    /// use granular_edmd::glam::DVec2;
-    /// use granular_edmd::wall::Tabulated;
-    ///
-    /// // A stirrer that turns, and travels by 10 to the right in a time of 20.
-    /// let stirrer = Part::polyline([DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.0)])?
-    ///     .with_rotation(DVec2::ZERO, 1.0)?
-    ///     .with_motion(DVec2::X, Tabulated::from_to(0.0, 10.0, 20.0)?)?;
-    /// let vessel = Vessel::around([("stirrer", stirrer)])?;
-    /// let wall = vessel.walls("stirrer").unwrap().start;
-    /// // Halfway, its middle moves at the speed 1.
-    /// let surface = vessel.surface(wall, DVec2::new(5.0, 0.0), 10.0);
-    /// assert!(surface.velocity.distance(DVec2::X) < 1e-12);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
-    /// ```
-    pub fn with_rotation(self, about: DVec2, angular_velocity: f64) -> Result<Self, VesselError> {
-        let about = finite_point(about)?;
-        if finite("angular velocity", angular_velocity)? == 0.0 {
-            return Ok(Self { travel: Travel { turning: None, ..self.travel }, ..self });
-        }
-        let turn = std::f64::consts::TAU / angular_velocity.abs();
-        let range = "such that a turn takes from 1e-60 to 1e60";
-        accept((1e-60..=1e60).contains(&turn), "angular velocity", range, angular_velocity)?;
-        let is_round = self.all_bricks().all(|brick| brick.is_circle_about(about));
-        let turning = Some(Turning { about, angular_velocity, is_round });
-        Self { travel: Travel { turning, ..self.travel }, ..self }.safe()
-    }
-
-    /// Returns the same part with a motion whose phase counts from this absolute time instead of 0.
-    ///
-    /// A moving part that is added to a run should start at the present time. It is then where it was built,
-    /// if its motion has no displacement at phase 0. The start is no delay: before it, the part goes through
-    /// the phases before 0.
-    ///
-    /// # Errors
-    /// If the time is not finite.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::{Boundary, Part, Probe, Vessel};
-    /// use granular_edmd::glam::DVec2;
-    ///
-    /// let wheel = Part::block([(0.0, 0.0), (8.0, 0.0), (8.0, 1.0), (0.0, 1.0)].map(DVec2::from))?;
-    /// let wheel = wheel.with_rotation(DVec2::new(4.0, 0.5), 0.7)?.starting_at(30.0)?;
-    /// let vessel = Vessel::around([("wheel", wheel)])?;
-    /// // At time 30 the wheel lies as it was built.
-    /// let probe = Probe::new(DVec2::new(1.0, 1.25), 0.5, 0.0);
-    /// let depth = |time| vessel.overlap(&probe.with_time(time)).map_or(0.0, |overlap| overlap.depth);
-    /// assert!((depth(30.0) - 0.25).abs() < 1e-12);
-    /// assert_eq!(depth(0.0), 0.0);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
-    /// ```
-    pub fn starting_at(self, time: f64) -> Result<Self, VesselError> {
-        Ok(Self { start: finite("start of a motion", time)?, ..self })
-    }
-
-    /// Returns the same part, shifted by a vector.
-    ///
-    /// If the part turns about a point, that point shifts with it.
-    ///
-    /// # Errors
-    /// If a coordinate would not be finite.
-    pub fn shifted(mut self, by: DVec2) -> Result<Self, VesselError> {
-        for brick in self.bricks.iter_mut().chain(&mut self.corners) {
-            *brick = brick.shifted(by)?;
-        }
-        if let Some(Turning { about, .. }) = &mut self.travel.turning {
-            *about = finite_point(*about + by)?;
-        }
-        Ok(self)
-    }
-
-    /// Returns the same part, rotated about a point, counterclockwise by this angle in radians.
-    ///
-    /// The direction of its motion and the point about which it turns rotate with it.
-    ///
-    /// # Errors
-    /// If an argument is not finite, or a coordinate would not be.
-    pub fn rotated(mut self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
-        for brick in self.bricks.iter_mut().chain(&mut self.corners) {
-            *brick = brick.rotated(about, angle)?;
-        }
-        let turn = super::vector::direction(angle);
-        if let Some(Along { direction, .. }) = &mut self.travel.along {
-            *direction = unit(turn.rotate(*direction))?;
-        }
-        if let Some(Turning { about: pivot, .. }) = &mut self.travel.turning {
-            *pivot = finite_point(about + turn.rotate(*pivot - about))?;
-        }
-        Ok(self)
-    }
-
     /// Returns the bricks, without the corners that were added.
     pub fn bricks(&self) -> &[Brick] {
         &self.bricks
@@ -325,20 +193,6 @@ impl Part {
     pub(super) fn is_patch(&self) -> bool {
         let is_plain = matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL;
         !is_plain || self.surface_speed != 0.0
-    }
-
-    /// Gives the part a motion along a direction, if the part can move in this way.
-    fn moving(self, along: Along) -> Result<Self, VesselError> {
-        Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()
-    }
-
-    /// Returns the part, if it never jumps into disks.
-    fn safe(self) -> Result<Self, VesselError> {
-        let Travel { along: Some(Along { direction, motion }), turning } = &self.travel else {
-            return Ok(self);
-        };
-        let faces = turning.is_none() && self.all_bricks().all(|brick| brick.faces(*direction));
-        if faces || !motion.jumps() { Ok(self) } else { Err(VesselError::Jump) }
     }
 
     /// Iterates over all bricks: as given, then the corners.

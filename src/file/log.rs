@@ -21,7 +21,8 @@ const START: u64 = 12;
 /// A log: a file to which one process appends, while any number of others may read.
 ///
 /// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or a
-/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be alone.
+/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be
+/// alone.
 ///
 /// ```
 /// use granular_edmd::file::{Log, Seal, read_piece};
@@ -56,6 +57,13 @@ pub struct Piece {
     pub length: u32,
 }
 
+impl Piece {
+    /// Creates the piece with this head whose contents stand at this place.
+    pub const fn new(head: [u8; HEAD], start: u64, length: u32) -> Self {
+        Self { head, start, length }
+    }
+}
+
 /// The pieces of a log, from some place on.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
@@ -74,7 +82,7 @@ impl Log {
     /// # Errors
     /// If the file cannot be opened, or is of another format or version ([`io::ErrorKind::InvalidData`]).
     pub fn open(path: &Path, seal: Seal) -> io::Result<Self> {
-        let end = if path.exists() { Self::read(path, seal, 0)?.end } else { 0 };
+        let end = if path.exists() { Self::each(path, seal, 0, drop)?.0 } else { 0 };
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
         let mut file = Growing::new(path, file, end, Vec::new());
         if end < START {
@@ -113,24 +121,34 @@ impl Log {
     /// # Errors
     /// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
     pub fn read(path: &Path, seal: Seal, from: u64) -> io::Result<Pieces> {
+        let mut pieces = Vec::new();
+        let (end, is_damaged) = Self::each(path, seal, from, |piece| pieces.push(piece))?;
+        Ok(Pieces { pieces, end, is_damaged })
+    }
+
+    /// Shows the pieces of a log from a place on, one by one, as [`read`](Self::read) finds them; returns the
+    /// end of the last one, and whether something that is no piece stands before a piece.
+    ///
+    /// # Errors
+    /// The same as for [`read`](Self::read).
+    pub fn each(path: &Path, seal: Seal, from: u64, mut show: impl FnMut(Piece)) -> io::Result<(u64, bool)> {
         let mut file = File::open(path)?;
-        let mut found = Pieces { end: from, ..Pieces::default() };
         let length = file.seek(SeekFrom::End(0))?;
         if from >= length {
-            return Ok(found);
+            return Ok((from, false));
         }
         file.seek(SeekFrom::Start(from))?;
         let mut input = BufReader::with_capacity(1 << 16, file);
         if from == 0 && !begins(&mut input, seal)? {
-            return Ok(found);
+            return Ok((from, false));
         }
-        found.end = from.max(START);
-        while let Some(piece) = next(&mut input, found.end, length)? {
-            found.is_damaged |= piece.start - BEFORE as u64 != found.end;
-            found.end = piece.start + u64::from(piece.length);
-            found.pieces.push(piece);
+        let (mut end, mut is_damaged) = (from.max(START), false);
+        while let Some(piece) = next(&mut input, end, length)? {
+            is_damaged |= piece.start - BEFORE as u64 != end;
+            end = piece.start + u64::from(piece.length);
+            show(piece);
         }
-        Ok(found)
+        Ok((end, is_damaged))
     }
 }
 
@@ -222,8 +240,8 @@ mod tests {
         found.iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
     }
 
-    /// However a log is cut, its whole pieces stay, and the next piece follows them. Whatever byte is changed,
-    /// no other piece is lost, and none is read as what it is not.
+    /// However a log is cut, its whole pieces stay, and the next piece follows them. Whatever byte is
+    /// changed, no other piece is lost, and none is read as what it is not.
     #[test]
     fn whole_pieces_survive_cuts_and_damage() {
         let path = std::env::temp_dir().join(format!("granular-edmd-pieces-{}", std::process::id()));

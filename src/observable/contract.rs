@@ -84,10 +84,13 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 3. After `on_start`, `next_sample` names no time before the start, except by rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
 ///    these calls, and would notice another change too late.
+/// 5. Samples do not depend on how a run is cut: if a run starts at the time at which the last one ended,
+///    `next_sample` is what it was at the end.
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
-/// breaks the third or the fourth, it gets samples at times that it did not mean.
-/// [`SampleTimes`](super::SampleTimes) keeps all four, and [`laws::check`](super::laws::check) tests them.
+/// breaks another, it gets samples at times that it did not mean. [`SampleTimes`](super::SampleTimes) keeps
+/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` tells which planted
+/// faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",

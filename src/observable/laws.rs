@@ -55,7 +55,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// ```
 pub fn check<O: Observer + ?Sized>(observer: &mut O) -> Result<(), Violation> {
     let next = observer.next_sample();
-    require!(!next.is_nan(), PART, "number", "before the first run, the next sample is at NaN");
+    require!(PART, "number", !next.is_nan(); "before the first run, the next sample is at NaN");
     let first = Script::new(observer, 0.0).run(0.5, None)?;
     let second = Script::new(observer, first.now).run(0.0, first.wanted())?;
     let third = Script::new(observer, second.now).run(0.0, second.wanted())?;
@@ -100,20 +100,12 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         self.observer.on_start(&snapshot(self.now, &disks(0)));
         self.wanted = self.next_sample()?;
         let (start, next, rounding) = (self.now, self.wanted, ROUNDING * self.now.abs());
-        require!(
-            next >= start - rounding,
-            PART,
-            "start",
-            "the run starts at {start:?}, and asks for a sample at {next:?}"
-        );
+        require!(PART, "start", next >= start - rounding;
+            "the run starts at {start:?}, and asks for a sample at {next:?}");
         let kept = kept.unwrap_or(next);
         let is_kept = next == kept || (next - kept).abs() <= rounding;
-        require!(
-            is_kept,
-            PART,
-            "cut",
-            "a run that is cut at {start:?} asks for a sample at {next:?}; without the cut, it was {kept:?}"
-        );
+        require!(PART, "cut", is_kept;
+            "a run that is cut at {start:?} asks for a sample at {next:?}; without the cut, it was {kept:?}");
         let mut goes_on = self.goes_on()?;
         for _ in 0..SAMPLES {
             goes_on = goes_on && self.collide()? && self.sample()?;
@@ -151,19 +143,15 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         self.observer.on_sample(&snapshot(self.now, &disks(self.collisions)));
         let next = self.next_sample()?;
         let sample = self.now;
-        require!(
-            next > sample,
-            PART,
-            "later",
-            "after the sample at {sample:?} the next one is not later, at {next:?}"
-        );
+        require!(PART, "later", next > sample;
+            "after the sample at {sample:?} the next one is not later, at {next:?}");
         self.wanted = next;
         self.goes_on()
     }
 
     fn next_sample(&self) -> Result<f64, Violation> {
         let next = self.observer.next_sample();
-        require!(!next.is_nan(), PART, "number", "after the time {:?} the next sample is at NaN", self.now);
+        require!(PART, "number", !next.is_nan(); "after the time {:?} the next sample is at NaN", self.now);
         Ok(next)
     }
 
@@ -171,12 +159,8 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
     fn goes_on(&mut self) -> Result<bool, Violation> {
         let goes_on = self.observer.verdict().is_ok_and(|verdict| verdict.is_continue());
         let (before, next) = (self.wanted, self.next_sample()?);
-        require!(
-            next == before,
-            PART,
-            "clock",
-            "between two samples the next one moved from {before:?} to {next:?}"
-        );
+        require!(PART, "clock", next == before;
+            "between two samples the next one moved from {before:?} to {next:?}");
         Ok(goes_on)
     }
 }

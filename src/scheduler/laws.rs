@@ -17,9 +17,9 @@ const PART: &str = "scheduler";
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
 /// have from none to some ten thousand disks, and up to fifty thousand operations. They contain times that
-/// advance, go back, or are before the last answer; ties and times that differ by their last bits, both zeros,
-/// negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as many
-/// and no disks. Each question is asked twice. Now and then the scripts ask for
+/// advance, go back, or are before the last answer; ties and times that differ by their last bits, both
+/// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
+/// many and no disks. Each question is asked twice. Now and then the scripts ask for
 /// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" tells
 /// which planted faults the check finds. The scripts never change within a version.
 ///
@@ -79,7 +79,7 @@ impl<S: EventScheduler> Performance<S> {
 
     fn run(mut self) -> Result<(), Violation> {
         self.compare(|| "before the first reset".to_owned())?;
-        let mut operation = (self.script.start)(&mut self.stage, self.disks);
+        let mut operation = self.script.start(&mut self.stage, self.disks);
         for step in 0..self.script.steps {
             self.step = step;
             self.stage.note(&operation);
@@ -119,12 +119,8 @@ impl<S: EventScheduler> Performance<S> {
         self.scheduler.upcoming(&mut named);
         let Self { script, disks, step, .. } = *self;
         let (name, sentence) = (script.name, "the look at upcoming disks changes others");
-        require!(
-            named.starts_with(&kept),
-            PART,
-            "hint",
-            "script \"{name}\" of {disks} disks, step {step}: {sentence}"
-        );
+        require!(PART, "hint", named.starts_with(&kept);
+            "script \"{name}\" of {disks} disks, step {step}: {sentence}");
         self.compare(|| "after a look at upcoming disks".to_owned())
     }
 }

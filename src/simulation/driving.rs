@@ -5,7 +5,7 @@
 //! | [`WhiteNoise`] | random kicks, which keep the total momentum |
 //! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
 //!
-//! A driving of your own implements [`Driving`]. The event loop knows nothing of it.
+//! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop knows nothing of it.
 
 pub mod laws;
 mod noise;
@@ -28,6 +28,20 @@ use crate::{Disk, ParameterError};
 /// It is lent to a run, as observers are, and keeps its clock and its random numbers. With the feature
 /// `serde`, write it with the state (`Checkpoint::write_with`): a run that is resumed between two kicks then
 /// has the bits of one that was not interrupted.
+///
+/// # Contract
+/// A driving guarantees:
+/// 1. A kick changes velocities and angular velocities, and nothing else: it neither moves, turns, renames,
+///    reorders nor resizes disks, nor changes their masses, kinds or images. A driving that also moves disks
+///    must leave them inside and apart, and says so to the check.
+/// 2. A kick treats disks alike wherever they are in the list, and may get none.
+/// 3. The same driving gives the same kicks to the same disks, to the bit: its random numbers are its own.
+/// 4. The clock goes on: after a kick it names a later time, and the same one each time it is asked. A run
+///    that is cut into pieces has the same kicks.
+/// 5. If it promises so, the total momentum stays, up to rounding.
+///
+/// [`laws::check`] tests all of this; `docs/validation.md` tells which planted faults it finds. The engine
+/// refuses disks that overlap, a change of their number, and a clock that stands still.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;

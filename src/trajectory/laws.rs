@@ -39,15 +39,10 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
     let frames: Vec<Vec<u8>> = frames.collect::<Result<_, _>>()?;
     for round in 1..ROUNDS {
         for (number, once) in frames.iter().enumerate() {
-            for _ in 0..1 + round % 2 {
+            for _ in 0..=round % 2 {
                 let is_same = *once == written(format, number, &snapshots[number])?;
-                require!(
-                    is_same,
-                    PART,
-                    "alike",
-                    "frame {number} of {} bytes is another when written again",
-                    once.len()
-                );
+                require!(PART, "alike", is_same;
+                    "frame {number} of {} bytes is another when written again", once.len());
             }
         }
     }
@@ -61,14 +56,10 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
         };
         let time = snapshot.time();
         let is_time = read.to_bits() == time.to_bits();
-        require!(is_time, PART, "time", "frame {number} of time {time:?} is read as one of time {read:?}");
+        require!(PART, "time", is_time; "frame {number} of time {time:?} is read as one of time {read:?}");
         let (written, skipped) = (frame.len(), before - rest.len());
-        require!(
-            written == skipped,
-            PART,
-            "length",
-            "frame {number} has {written} bytes, of which {skipped} are skipped"
-        );
+        require!(PART, "length", written == skipped;
+            "frame {number} has {written} bytes, of which {skipped} are skipped");
         check_torn(format, number, frame)?;
     }
     Ok(())
@@ -91,12 +82,8 @@ fn check_torn(format: &dyn Format, number: usize, frame: &[u8]) -> Result<(), Vi
     let written = frame.len();
     let passed = (1..written).find(|&kept| !matches!(format.skip_frame(&mut &frame[..kept]), Ok(None)));
     let kept = passed.unwrap_or_default();
-    require!(
-        passed.is_none(),
-        PART,
-        "cut short",
-        "frame {number}, cut after {kept} of its {written} bytes, does not answer `None`"
-    );
+    require!(PART, "cut short", passed.is_none();
+        "frame {number}, cut after {kept} of its {written} bytes, does not answer `None`");
     Ok(())
 }
 

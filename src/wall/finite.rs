@@ -54,10 +54,10 @@ pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation>
 pub(super) fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Violation> {
     let (low, high) = motion.reach();
     let is_ordered = low.is_finite() && high.is_finite() && low <= high;
-    require!(is_ordered, PART, "reach", "its reach from {low:?} to {high:?} must be finite and in order");
+    require!(PART, "reach", is_ordered; "its reach from {low:?} to {high:?} must be finite and in order");
     let period = motion.period().unwrap_or(1.0);
     let is_possible = period.is_finite() && period > 0.0;
-    require!(is_possible, PART, "period", "its period must be finite and positive, but is {period:?}");
+    require!(PART, "period", is_possible; "its period must be finite and positive, but is {period:?}");
     Ok((low, high))
 }
 
@@ -77,12 +77,8 @@ pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> R
     // shorter pieces.
     let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
     let sentence = "pieces of its motion lead only from phase";
-    require!(
-        phase > least,
-        PART,
-        "pieces",
-        "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short"
-    );
+    require!(PART, "pieces", phase > least;
+        "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short");
     Ok(())
 }
 
@@ -103,18 +99,14 @@ pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
     finite("upper bound of the acceleration", bounds.max, phase)?;
     let AccelerationBounds { until, min, max } = bounds;
     let sentence = "its lower bound of the acceleration";
-    require!(
-        min <= max,
-        PART,
-        "bounds",
-        "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}"
-    );
+    require!(PART, "bounds", min <= max;
+        "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}");
     let sentence = "the piece of its motion from phase";
-    require!(until > phase, PART, "pieces", "{sentence} {phase:?} on ends at {until:?}, which is not later");
+    require!(PART, "pieces", until > phase; "{sentence} {phase:?} on ends at {until:?}, which is not later");
     Ok(bounds)
 }
 
 fn finite(quantity: &str, value: f64, phase: f64) -> Result<(), Violation> {
-    require!(value.is_finite(), PART, "finite", "at phase {phase:?} its {quantity} is {value:?}");
+    require!(PART, "finite", value.is_finite(); "at phase {phase:?} its {quantity} is {value:?}");
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Checks of a wall motion's contract, for custom motions.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`](super::check_finite) tests only
+//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only
 //! that all answers are finite and that pieces advance; a container does this with every motion that it is
 //! given. [`check_fingerprints`] compares two motions.
 
@@ -36,6 +36,9 @@ const SLOPE: f64 = 3e-4;
 /// Number of phases at which two motions are compared, and the length of the interval in which they lie.
 const PHASES: u32 = 4000;
 const INTERVAL: f64 = 400.0;
+
+/// Number of later phases, each by a fifth later than the one before.
+const LATE: i32 = 40;
 
 /// Checks that a motion keeps its contract between two phases.
 ///
@@ -95,7 +98,7 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
 /// Checks that two motions which answer differently have different fingerprints, and that two which answer
 /// alike have the same. Motions without a fingerprint are not compared.
 ///
-/// The motions are compared at four thousand phases from −1 to 399.
+/// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
 ///
 /// # Errors
 /// If the fingerprints tell something else than the answers.
@@ -112,7 +115,8 @@ where
 {
     let differ = |&phase: &f64| first.state(phase) != second.state(phase);
     let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
-    let mut difference = phases.into_iter().find(differ).map(|phase| format!("at phase {phase:?}"));
+    let late = (0..LATE).map(|k| INTERVAL * 1.2_f64.powi(k));
+    let mut difference = phases.chain(late).find(differ).map(|phase| format!("at phase {phase:?}"));
     if (first.reach(), first.period()) != (second.reach(), second.period()) {
         difference = Some("in reach or period".to_owned());
     }
@@ -157,12 +161,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             }
             jumps += u32::from(!self.is_integral(last, next, &whole)?);
             let [from, to] = [start, next.phase];
-            require!(
-                jumps <= JUMPS,
-                PART,
-                "displacement",
-                "between the phases {from:?} and {to:?} its displacement is not the integral of its velocity"
-            );
+            require!(PART, "displacement", jumps <= JUMPS;
+                "between the phases {from:?} and {to:?} its displacement is not the integral of its \
+                 velocity");
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
             self.answers.push(next);
             last = next;
@@ -170,7 +171,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         self.strength(start, length, &whole)?;
         for sample in self.answers.iter().rev() {
             let again = self.sample(sample.phase)?;
-            require!(again == *sample, PART, "repeatable", "{sample:?} is {again:?} when asked for again");
+            require!(PART, "repeatable", again == *sample; "{sample:?} is {again:?} when asked for again");
         }
         Ok(whole.until)
     }
@@ -181,12 +182,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = ROUNDING * self.length();
         let is_inside = displacement >= low - slack && displacement <= high + slack;
         let sentence = "is beyond its reach";
-        require!(
-            is_inside,
-            PART,
-            "reach",
-            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}"
-        );
+        require!(PART, "reach", is_inside;
+            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}");
         Ok(Sample { phase, state })
     }
 
@@ -212,13 +209,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = self.speed_rounding(from, bounds);
         let is_within = gain >= least - slack && gain <= most + slack;
         let [start, end] = [from.phase, to.phase];
-        require!(
-            is_within,
-            PART,
-            "bounds",
-            "from phase {start:?} to {end:?} its velocity changes by {gain:?}, but the bounds of its acceleration \
-             allow {least:?} to {most:?}"
-        );
+        require!(PART, "bounds", is_within;
+            "from phase {start:?} to {end:?} its velocity changes by {gain:?}, but the bounds of its \
+             acceleration allow {least:?} to {most:?}");
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
         // Given the first and the last velocity, the displacement is extreme if the acceleration is first at
@@ -227,12 +220,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
         let is_integral =
             (rise - expected).abs() <= spread + self.length_rounding(from, bounds) + slack * wait;
-        require!(
-            is_integral,
-            PART,
-            "displacement",
-            "from phase {start:?} to {end:?} it advances by {rise:?}, but its velocity says {expected:?}"
-        );
+        require!(PART, "displacement", is_integral;
+            "from phase {start:?} to {end:?} it advances by {rise:?}, but its velocity says {expected:?}");
         Ok(())
     }
 
@@ -258,6 +247,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
 
     /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
+        if length < SHORT * (1.0 + start.abs()) {
+            return Ok(());
+        }
         let end = start + (1.0 - LAST) * length;
         for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
             let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
@@ -269,12 +261,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             let slack = 4.0 * self.speed_rounding(now, bounds) / step.abs() + EXACT * scale;
             let AccelerationBounds { min, max, .. } = *bounds;
             let is_within = found >= min - slack && found <= max + slack;
-            require!(
-                is_within,
-                PART,
-                "bounds",
-                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and {max:?}"
-            );
+            require!(PART, "bounds", is_within;
+                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and \
+                 {max:?}");
         }
         Ok(())
     }
@@ -289,19 +278,11 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let slack = bounds.min.abs().max(bounds.max.abs()) * wait * wait
             + self.length_rounding(before, &bounds)
             + self.speed_rounding(before, &bounds) * wait;
-        require!(
-            jump <= slack,
-            PART,
-            "jump",
-            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}"
-        );
+        require!(PART, "jump", jump <= slack;
+            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}");
         let is_told = self.jumps || jump >= -slack - 1e-6 * (self.high - self.low);
-        require!(
-            is_told,
-            PART,
-            "jump",
-            "at phase {until:?} it jumps by {jump:?}, but says that it never jumps"
-        );
+        require!(PART, "jump", is_told;
+            "at phase {until:?} it jumps by {jump:?}, but says that it never jumps");
         Ok(())
     }
 
@@ -325,12 +306,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
             let sentence = "is not that at phase";
-            require!(
-                !differs,
-                PART,
-                "period",
-                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}"
-            );
+            require!(PART, "period", !differs;
+                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}");
         }
         Ok(())
     }

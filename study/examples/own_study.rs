@@ -1,13 +1,13 @@
-//! A study of one's own: a rule, a boundary and a sample that the library does not know, swept over two axes.
+//! A custom study: a rule, a boundary and a sample that the library does not have, swept over two axes.
 //!
 //! Rough grains in a hot round drum that turns. How fast do they turn with it, for each loss and spin?
-//! Stopped or killed, the same command goes on; so does any number of them at the same time.
+//! After a stop or a kill, the same command continues; several of them at the same time share the work.
 //!
 //! ```text
-//! cargo run --release --features serde --example own_study
+//! cargo run --release --example own_study
 //! ```
 //!
-//! A moment. You learn what an experiment is, and find the tables of the study in `out/own_study`.
+//! It takes two seconds. You learn what an experiment is; the tables of the study are in `out/own_study`.
 
 use granular_edmd::boundary::{Overlap, Probe};
 use granular_edmd::prelude::*;

@@ -30,8 +30,8 @@ impl<E: Experiment> Study<E> {
     ///
     /// Any number of processes may call this and [`Self::run_ramp`] at the same time; each ramp is run by one
     /// of them. A run waits for ramps of other processes, and takes over the ramps of a process that was
-    /// killed. It runs ramps in parallel, in the thread pool of `rayon` from which it is called. A run that is
-    /// interrupted returns with all work saved. The next run continues from there, with the same result.
+    /// killed. It runs ramps in parallel, in the thread pool of `rayon` from which it is called. A run that
+    /// is interrupted returns with all work saved. The next run continues from there, with the same result.
     ///
     /// # Errors
     /// If plan or code of the study have changed, files cannot be read or written, or a value cannot be
@@ -51,7 +51,7 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_ramp(ramp)?;
-        self.run_blocks(ramp..ramp + 1, vec![ramp..ramp + 1], control)
+        self.run_blocks(ramp..ramp + 1, std::iter::once(ramp..ramp + 1).collect(), control)
     }
 
     fn run_blocks(

@@ -13,9 +13,9 @@
 //! for an experiment of your own. The chapter [`guide::sweep_it`] has all that a study can do.
 //!
 //! # Promises
-//! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed. So the
-//!    tables and the records of a complete study have the same bytes for any number of threads and processes,
-//!    however often these were interrupted or killed, and whether it was done at once or has grown
+//! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed. So
+//!    the tables and the records of a complete study have the same bytes for any number of threads and
+//!    processes, however often these were interrupted or killed, and whether it was done at once or has grown
 //!    ([`Control::with_earlier_studies`]). Only the division of the records into logs differs, and wall-clock
 //!    times. A value that [`Control::with_most_seconds`] ended depends on the machine.
 //! 2. A record is whole or absent. A study names damage and never reads it as data;
@@ -25,8 +25,9 @@
 //!    4 on. Two runs of the same ramp ([`Study::run_ramp`]) may do it twice, with one result.
 //! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
 //! 5. All records of a study come from one code. `provenance.json` keeps the
-//!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the experiment, and other code is refused by name
-//!    whatever it asks of the study ([`StudyError::Code`]), until [`Study::accept_changes`] lets it go on.
+//!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the
+//!    experiment, and other code is refused by name whatever it asks of the study ([`StudyError::Code`]),
+//!    until [`Study::accept_changes`] lets it go on.
 //! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
 //!
 //! ```

@@ -87,7 +87,7 @@ impl Store {
                 Some(file) => Ok(file),
                 none => File::open(&log.path).map(|file| none.insert(file)),
             };
-            (log.path.clone(), file.and_then(|file| read_piece(file, &entry.piece)))
+            (log.path.clone(), file.and_then(|file| read_piece(file, &entry.piece())))
         };
         let contents = contents.map_err(StudyError::io("read", &path))?;
         let read = contents.map_err(|_| "its checksum does not match");
@@ -144,15 +144,21 @@ impl State {
         let found: Vec<PathBuf> = logs(folder)?.into_iter().filter(|path| !known.contains(&**path)).collect();
         let new = found.into_iter().map(|path| LogFile { path, end: 0, is_damaged: false, file: None });
         self.logs.extend(new);
-        let mut more = Vec::new();
+        let sorted = self.entries.count();
         for (number, log) in self.logs.iter_mut().enumerate() {
-            let read = Log::read(&log.path, SEAL, log.end).map_err(|error| unreadable(&log.path, error))?;
-            log.end = read.end;
-            log.is_damaged |= read.is_damaged;
-            more.extend(read.pieces.into_iter().map(|piece| Entry { piece, log: number as u32 }));
+            let length = fs::metadata(&log.path).map_err(StudyError::io("read", &log.path))?.len();
+            if length <= log.end {
+                continue;
+            }
+            let entries = Arc::make_mut(&mut self.entries);
+            let show = |piece| entries.push(Entry::new(piece, number as u32));
+            let read = Log::each(&log.path, SEAL, log.end, show);
+            let (end, is_damaged) = read.map_err(|error| unreadable(&log.path, error))?;
+            log.end = end;
+            log.is_damaged |= is_damaged;
         }
-        if !more.is_empty() {
-            Arc::make_mut(&mut self.entries).add(more);
+        if self.entries.count() > sorted {
+            Arc::make_mut(&mut self.entries).settle(sorted);
         }
         Ok(Arc::clone(&self.entries))
     }

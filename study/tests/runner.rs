@@ -179,7 +179,7 @@ fn warnings_of_values_are_told() {
     let told = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(told.contains("of them have warnings; study/logs/*.jsonl say of what"), "{told}");
     let log = logs::lines(&scratch.0.join("study"));
-    assert!(log.contains("longer than the time between collisions"), "{log}");
+    assert!(log.contains("the contact duration is"), "{log}");
 }
 
 /// A larger plan takes over what a smaller one has done, into a folder of its own.

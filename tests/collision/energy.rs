@@ -29,6 +29,8 @@ proptest! {
     /// motion.
     #[test]
     fn the_loss_is_that_of_the_formulas(law in law(), contact in contact()) {
+        // A contact-duration model replaces the formula soon after a collision.
+        let contact = contact.with_time_since_last_collision(f64::INFINITY);
         let change = law.rule().impulse(&contact).energy_change(&contact);
         let expected = expected_change(&law, &contact);
         let available = contact.available_energy();

@@ -143,7 +143,7 @@ fn numbers_that_are_not_finite() {
     let root = pushing(|contact| 1.5 + (contact.closing_speed() - 1e-20).sqrt());
     assert_eq!(caught(root, Promises::new().with_energy_gain()).law(), "finite");
     let angle =
-        rubbing(|contact, normal| 0.1 * normal * (contact.slip_speed() / contact.closing_speed()).cos());
+        rubbing(|contact, normal| 0.1 * normal * (contact.slip_speed() / contact.closing_speed()).sin());
     let violation = caught(angle, Promises::new().with_energy_gain());
     assert_eq!(violation.law(), "finite");
     assert!(violation.found().contains("closing speed 0.0"), "{violation}");

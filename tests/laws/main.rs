@@ -3,6 +3,7 @@
 
 #![expect(clippy::type_complexity, reason = "a fault is a function in the place of a method")]
 
+mod alarms;
 mod faults;
 #[path = "../support/measured.rs"]
 mod measured;

@@ -24,30 +24,30 @@ type Verdict = Result<(), Violation>;
 /// The verdicts of a check about a catalogue, by the names of the faults.
 type Verdicts = Vec<(String, Verdict)>;
 
-fn judged<T>(catalogue: Vec<Planted<T>>, check: impl Fn(usize, T) -> Verdict) -> Verdicts {
-    let verdict = |(index, fault): (usize, Planted<T>)| {
+fn judged<T>(catalogue: Vec<Planted<T>>, check: impl Fn(usize, &mut T) -> Verdict) -> Verdicts {
+    let verdict = |(index, mut fault): (usize, Planted<T>)| {
         let name = format!("{}: {}", fault.family, fault.name);
-        (name, check(index, fault.part))
+        (name, check(index, &mut fault.part))
     };
     catalogue.into_iter().enumerate().map(verdict).collect()
 }
 
-fn check_rule(_: usize, fault: Promised) -> Verdict {
+fn check_rule(_: usize, fault: &mut Promised) -> Verdict {
     collision_laws::check(&*fault.rule, &fault.promises)
 }
 
 /// Twenty periods of the motions of the catalogue.
-fn check_motion(_: usize, motion: Motion) -> Verdict {
-    wall_laws::check(&*motion, -1.0, 13.0)
+fn check_motion(_: usize, motion: &mut Motion) -> Verdict {
+    wall_laws::check(&**motion, -1.0, 13.0)
 }
 
-fn check_boundary(_: usize, mut fault: Walled) -> Verdict {
+fn check_boundary(_: usize, fault: &mut Walled) -> Verdict {
     // Gravity is 1, and so is the speed of a fall through a radius.
     let speed = (2.0 * fault.gravity * fault.radius).sqrt();
     (1..=3).try_for_each(|seed| boundary_laws::check(&mut *fault.boundary, fault.radius, speed, seed))
 }
 
-fn check_scheduler(_: usize, make: Maker) -> Verdict {
+fn check_scheduler(_: usize, make: &mut Maker) -> Verdict {
     scheduler_laws::check(make)
 }
 
@@ -72,12 +72,12 @@ fn judged_drivings(catalogue: fn() -> Vec<Planted<Driven>>) -> Verdicts {
     })
 }
 
-fn check_pair(_: usize, pair: Pair) -> Verdict {
-    let verdict = match pair.parts {
-        Parts::Rules([one, other]) => collision_laws::check_fingerprints(&*one, &*other),
-        Parts::Motions([one, other]) => wall_laws::check_fingerprints(&*one, &*other),
-        Parts::Boundaries([mut one, mut other]) => {
-            boundary_laws::check_fingerprints(&mut *one, &mut *other, 0.5, 1.0)
+fn check_pair(_: usize, pair: &mut Pair) -> Verdict {
+    let verdict = match &mut pair.parts {
+        Parts::Rules([one, other]) => collision_laws::check_fingerprints(&**one, &**other),
+        Parts::Motions([one, other]) => wall_laws::check_fingerprints(&**one, &**other),
+        Parts::Boundaries([one, other]) => {
+            boundary_laws::check_fingerprints(&mut **one, &mut **other, 0.5, 1.0)
         }
     };
     if let Err(violation) = &verdict {
@@ -117,15 +117,13 @@ fn all() -> BTreeMap<(&'static str, &'static str), Verdicts> {
         ),
         halves(
             "observer",
-            judged(blind::observers::catalogue(), |_, mut observer| observable::laws::check(&mut *observer)),
-            judged(informed::observers::catalogue(), |_, mut observer| {
-                observable::laws::check(&mut *observer)
-            }),
+            judged(blind::observers::catalogue(), |_, observer| observable::laws::check(&mut **observer)),
+            judged(informed::observers::catalogue(), |_, observer| observable::laws::check(&mut **observer)),
         ),
         halves(
             "format",
-            judged(blind::formats::catalogue(), |_, format| trajectory::laws::check(&*format)),
-            judged(informed::formats::catalogue(), |_, format| trajectory::laws::check(&*format)),
+            judged(blind::formats::catalogue(), |_, format| trajectory::laws::check(&**format)),
+            judged(informed::formats::catalogue(), |_, format| trajectory::laws::check(&**format)),
         ),
         halves(
             "fingerprint",
@@ -174,8 +172,8 @@ fn honest_parts_pass() {
         judged(blind::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
         judged_drivings(blind::drivings::honest),
-        judged(blind::observers::honest(), |_, mut observer| observable::laws::check(&mut *observer)),
-        judged(blind::formats::honest(), |_, format| trajectory::laws::check(&*format)),
+        judged(blind::observers::honest(), |_, observer| observable::laws::check(&mut **observer)),
+        judged(blind::formats::honest(), |_, format| trajectory::laws::check(&**format)),
         judged(blind::fingerprints::honest(), check_pair),
     ];
     for (name, verdict) in all.into_iter().flatten() {

@@ -5,7 +5,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{SampleTimes, Series, Snapshot, WallStress, from_fn};
 use granular_edmd::statistics::BlockedMean;
 use granular_edmd::wall::Piston;
-use granular_edmd::{Simulation, initial};
+use granular_edmd::{Disk, Simulation, initial};
 
 use crate::{Outcome, agrees};
 
@@ -30,7 +30,7 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
     for pressure in [0.07, 0.2, 0.5, 1.0, 1.8, 2.6] {
         let force = pressure * WIDTH;
         let lid = Piston::new(MASS, 0.0, TOP - 9.0)?.with_force(force)?;
-        let start = (2.5 * DISKS as f64 / force).max(26.0);
+        let start = (1.2 * DISKS as f64 / force).max(26.0);
         let lid = lid.starting_at(TOP - start, 0.0)?;
         let container = Container::closed(WIDTH, TOP)?.with_periodic_sides()?.with_piston(Wall::Lid, lid)?;
         let disks = initial::random(&container, DISKS, 0.5, start, 1)?;
@@ -38,7 +38,7 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
         let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
         run.run_until(1000.0, &mut ())?;
         let look = from_fn(|snapshot: &Snapshot<'_>| {
-            let kinetic = snapshot.mean(|disk| disk.translational_energy());
+            let kinetic = snapshot.mean(Disk::translational_energy);
             let height = snapshot.wall_point(LID).map_or(f64::NAN, |point| point.y);
             let speed = snapshot.wall_velocity(LID).map_or(f64::NAN, |velocity| velocity.y);
             // The middle third, far from the layers at lid and floor.

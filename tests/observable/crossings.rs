@@ -42,7 +42,7 @@ fn disks_above_a_line_are_those_that_crossed_it() -> Outcome {
         let line = if periodic { [DVec2::new(0.0, HEIGHT), DVec2::new(12.0, HEIGHT)] } else { line };
         let all = Crossings::new(line, SampleTimes::every(1.0)?)?;
         let mut both = (all.clone(), OfKind::new(RED, all));
-        let mut noise = WhiteNoise::new(0.2, SampleTimes::every(0.5)?, 3)?;
+        let mut noise = WhiteNoise::new(2.0, SampleTimes::every(0.5)?, 3)?;
         run.run_driven(&Limits::until(100.0), &mut noise, &mut both)?;
         assert!(both.0.forward().iter().sum::<u64>() > 100);
         assert_eq!(net(&both.0), above(&run.disks(), None) - above(&disks, None), "{periodic}");

@@ -47,8 +47,9 @@ where
         return check_pair(PART, fingerprints, Some(format!("in their domains {domain} and {other}")));
     }
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(7));
-    let mut one = Trial::new(first, domain, radius, speed);
-    let mut other = Trial::new(second, domain, radius, speed);
+    let (mut first, mut second) = (first, second);
+    let mut one = Trial::new(&mut first, domain, radius, speed);
+    let mut other = Trial::new(&mut second, domain, radius, speed);
     for number in 0..FLIGHTS {
         one.kind = Kind::new(KINDS[number % KINDS.len()]);
         other.kind = one.kind;
@@ -66,7 +67,7 @@ where
 }
 
 /// Returns the answers of a boundary about a flight, in words.
-fn answer<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight, until: f64) -> String {
+fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
     let (start, boundary) = (flight.time(), &*trial.boundary);
     let place = flight.position(start);
     let depth = trial.depth(place, trial.length(), start).map(|found| found.depth);

@@ -27,44 +27,24 @@ const EXACT: f64 = 5e-8;
 const SAME: f64 = 1e-6;
 
 /// Checks the surface that a disk touches at this place.
-pub(super) fn check_surface<B: Boundary + ?Sized>(
-    trial: &mut Trial<'_, B>,
-    touch: Touch,
-    place: DVec2,
-) -> Result<(), Violation> {
+pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let surface = trial.boundary.surface(wall, place, time);
     let (normal, velocity, radius) = (surface.normal, surface.velocity, surface.radius);
     let is_unit = normal.is_finite() && (normal.length_squared() - 1.0).abs() <= UNIT;
-    require!(
-        is_unit,
-        PART,
-        "unit normal",
-        "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}"
-    );
-    require!(
-        velocity.is_finite(),
-        PART,
-        "finite velocity",
-        "the velocity {velocity:?} of wall {wall} at {time:?}"
-    );
+    require!(PART, "unit normal", is_unit;
+        "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}");
+    require!(PART, "finite velocity", velocity.is_finite();
+        "the velocity {velocity:?} of wall {wall} at {time:?}");
     let masses = [surface.mass, surface.tangential_mass];
     let are_possible = radius != 0.0 && !radius.is_nan() && masses.iter().all(|&mass| mass > 0.0);
-    require!(
-        are_possible,
-        PART,
-        "surface",
-        "wall {wall} has the radius {radius:?} and the masses {masses:?}"
-    );
+    require!(PART, "surface", are_possible;
+        "wall {wall} has the radius {radius:?} and the masses {masses:?}");
     let around = Around { trial, wall, place, time };
     let step = FAR * trial.radius;
     let goes_in = around.at(-step * normal, 0.0).0 - around.at(DVec2::ZERO, 0.0).0 >= (1.0 - SLOPE) * step;
-    require!(
-        goes_in,
-        PART,
-        "normal",
-        "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}"
-    );
+    require!(PART, "normal", goes_in;
+        "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}");
     // A wall that has the same surface there, such as the next brick of a corner, will do.
     let deepest = around.at(DVec2::ZERO, 0.0).1;
     let other = || around.trial.boundary.surface(deepest, place, time).normal;
@@ -73,7 +53,7 @@ pub(super) fn check_surface<B: Boundary + ?Sized>(
         around.check_normal(normal)?;
         around.check_velocity(&surface)?;
         around.check_radius(normal, radius)?;
-        around.check_tip(&surface)?;
+        around.check_point(&surface)?;
     }
     let [touched, named] = &mut trial.touches[wall];
     (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
@@ -81,14 +61,14 @@ pub(super) fn check_surface<B: Boundary + ?Sized>(
 }
 
 /// Overlaps with a wall around a touch.
-struct Around<'a, 'b, B: ?Sized> {
-    trial: &'a Trial<'b, B>,
+struct Around<'a, 'b> {
+    trial: &'a Trial<'b>,
     wall: usize,
     place: DVec2,
     time: f64,
 }
 
-impl<B: Boundary + ?Sized> Around<'_, '_, B> {
+impl Around<'_, '_> {
     /// Returns the depth of a somewhat larger disk that is moved, and the wall in which it is.
     fn at(&self, moved: DVec2, later: f64) -> (f64, usize) {
         let larger = WIDE * self.trial.radius;
@@ -96,8 +76,8 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         found.map_or((-larger, self.wall), |found| (found.depth - larger, found.with))
     }
 
-    /// Returns whether a function of a step has this slope at 0: from both sides, or from one, since the other
-    /// may lie beyond a corner or beyond a change of the motion.
+    /// Returns whether a function of a step has this slope at 0: from both sides, or from one, since the
+    /// other may lie beyond a corner or beyond a change of the motion.
     fn has_slope(&self, slope: f64, step: f64, slack: f64, depth: impl Fn(f64) -> f64) -> bool {
         let slack = slack + 16.0 * f64::EPSILON * self.trial.extent() / step;
         let [low, below, here, above, high] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|count| depth(count * step));
@@ -112,12 +92,9 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         let along = |direction: DVec2| move |step: f64| self.at(step * direction, 0.0).0;
         let is_gradient = self.has_slope(-1.0, step, EXACT, along(normal))
             && self.has_slope(0.0, step, EXACT, along(normal.perp()));
-        require!(
-            is_gradient,
-            PART,
-            "normal",
-            "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}, is not the gradient of the gap"
-        );
+        require!(PART, "normal", is_gradient;
+            "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}, is not the gradient of the \
+             gap");
         Ok(())
     }
 
@@ -127,46 +104,45 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         let speed = surface.velocity.dot(surface.normal);
         let scale = speed.abs().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
-        let slack = EXACT + 8.0 * f64::EPSILON * time.abs() * scale / step;
+        let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
         // A step is the length that the wall goes at most. No question is about a time before the origin.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_rate = *time < 2.0 * step / scale || self.has_slope(speed / scale, step, slack, depth);
-        require!(
-            is_rate,
-            PART,
-            "velocity",
-            "wall {wall} has the velocity {speed:?} along its normal, but moves otherwise, at {place:?}, {time:?}"
-        );
+        require!(PART, "velocity", is_rate;
+            "wall {wall} has the velocity {speed:?} along its normal, but moves otherwise, at {place:?}, \
+             {time:?}");
         Ok(())
     }
 
-    /// Checks that a disk that touches the same point from another side finds the same velocity there, since
-    /// it is the velocity of the material. Only at a tip do two disks touch the same point.
-    fn check_tip(&self, surface: &Surface<'_>) -> Result<(), Violation> {
-        let Self { wall, place, time, .. } = self;
-        let (normal, size) = (surface.normal, self.trial.radius);
+    /// Checks that other disks that touch the same point find the same velocity there, since it is the
+    /// velocity of the material: a larger one, and at a tip one from another side. A belt that runs around a
+    /// tip has the same speed on either side.
+    fn check_point(&self, surface: &Surface<'_>) -> Result<(), Violation> {
+        let Self { wall, place, time, .. } = *self;
+        let (normal, size, velocity) = (surface.normal, self.trial.radius, surface.velocity);
+        let slack = EXACT * (velocity.length() + self.trial.speed);
+        let larger = self.trial.boundary.surface(wall, place + 0.5 * size * normal, time);
+        let is_same = larger.normal.distance(normal) > UNIT || larger.velocity.distance(velocity) <= slack;
+        let other = larger.velocity;
+        require!(PART, "velocity", is_same;
+            "wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} for a larger one");
         for turn in [DVec2::new(1.0, ANGLE), DVec2::new(1.0, -ANGLE)] {
-            let moved = size * (turn.normalize().rotate(normal) - normal);
-            let deeper = self.at(moved, 0.0).0 - self.at(DVec2::ZERO, 0.0).0;
+            let step = turn.normalize().rotate(normal) - normal;
+            let deeper = self.at(size * step, 0.0).0 - self.at(DVec2::ZERO, 0.0).0;
             if deeper.abs() > self.trial.rounding() {
                 continue;
             }
-            let (velocity, other) =
-                (surface.velocity, self.trial.boundary.surface(*wall, *place + moved, *time).velocity);
-            let is_same = velocity.distance(other) <= EXACT * (velocity.length() + self.trial.speed);
-            require!(
-                is_same,
-                PART,
-                "velocity",
-                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} \
-                 for one moved by {moved:?}"
-            );
+            let other = self.trial.boundary.surface(wall, place + size * step, time).velocity;
+            let is_same = (other - velocity).dot(step.normalize()).abs() <= slack;
+            require!(PART, "velocity", is_same;
+                "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} for \
+                 one beside it");
         }
         Ok(())
     }
 
-    /// Checks that the radius is that of the curvature, if the wall is smooth near the touch. At a corner or a
-    /// tip it may be any.
+    /// Checks that the radius is that of the curvature, if the wall is smooth near the touch. At a corner or
+    /// a tip it may be any.
     fn check_radius(&self, normal: DVec2, radius: f64) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
         let size = self.trial.radius;
@@ -180,13 +156,9 @@ impl<B: Boundary + ?Sized> Around<'_, '_, B> {
         let is_smooth = (wide - narrow).abs() <= slack;
         let is_close = |expected: f64| (narrow - expected).abs() <= slack;
         let is_curvature = !is_smooth || is_close(-1.0 / (radius + size)) || is_close(-1.0 / size);
-        require!(
-            is_curvature,
-            PART,
-            "radius",
+        require!(PART, "radius", is_curvature;
             "wall {wall} has the radius {radius:?}, but depths around {place:?}, time {time:?}, have the \
-             curvature {narrow:?}"
-        );
+             curvature {narrow:?}");
         Ok(())
     }
 }

@@ -22,25 +22,27 @@ const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 const TOUCHES: u32 = 8;
 
 /// A boundary, and the numbers of its trial.
-pub(super) struct Trial<'a, B: ?Sized> {
-    pub(super) boundary: &'a mut B,
+pub(super) struct Trial<'a> {
+    pub(super) boundary: &'a mut dyn Boundary,
     pub(super) domain: Domain,
     pub(super) wall_count: usize,
     pub(super) radius: f64,
     pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
+    /// The state of the walls at first.
+    pub(super) state: Vec<f64>,
     /// Number of flights that graze a wall.
     pub(super) grazes: usize,
     /// For each wall, the number of its touches, and of the overlaps at these that name it.
     pub(super) touches: Vec<[u32; 2]>,
 }
 
-impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
-    pub(super) fn new(boundary: &'a mut B, domain: Domain, radius: f64, speed: f64) -> Self {
+impl<'a> Trial<'a> {
+    pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
-        let touches = vec![[0; 2]; wall_count];
-        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, grazes: 0, touches }
+        let (touches, state) = (vec![[0; 2]; wall_count], boundary.state());
+        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, state, grazes: 0, touches }
     }
 
     /// Returns the size of the domain. If the domain is open above, this is its width.
@@ -71,6 +73,21 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         self.origin = origin;
     }
 
+    /// Sets an origin at which walls that react are as they were at first.
+    pub(super) fn begin(&mut self, origin: f64) -> Result<(), Violation> {
+        self.set_origin(origin);
+        self.take_state(&self.state.clone())
+    }
+
+    /// Checks that the boundary takes this state.
+    pub(super) fn take_state(&mut self, state: &[f64]) -> Result<(), Violation> {
+        let answer = self.boundary.set_state(state);
+        require!(PART, "state", answer.is_ok(); "the state {state:?} is refused: {answer:?}");
+        let again = self.boundary.state();
+        require!(PART, "state", again == state; "the state {state:?} is {again:?} after it is set");
+        Ok(())
+    }
+
     /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end,
     /// this asks again, as the engine does.
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
@@ -98,14 +115,10 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     /// Checks that the domain and the number of walls have not changed.
     pub(super) fn check_constants(&self) -> Result<(), Violation> {
         let (before, now, walls) = (self.domain, self.boundary.domain(), self.boundary.wall_count());
-        require!(now == before, PART, "constant domain", "the domain was {before} and is now {now}");
+        require!(PART, "constant domain", now == before; "the domain was {before} and is now {now}");
         let count = self.wall_count;
-        require!(
-            walls == count,
-            PART,
-            "constant walls",
-            "there were {count} walls, and now there are {walls}"
-        );
+        require!(PART, "constant walls", walls == count;
+            "there were {count} walls, and now there are {walls}");
         Ok(())
     }
 
@@ -114,12 +127,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn check_names(&self) -> Result<(), Violation> {
         let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
         let wall = unnamed.unwrap_or_default();
-        require!(
-            unnamed.is_none(),
-            PART,
-            "overlapped wall",
-            "disks touch wall {wall}, but overlap others there"
-        );
+        require!(PART, "overlapped wall", unnamed.is_none();
+            "disks touch wall {wall}, but overlap others there");
         Ok(())
     }
 
@@ -141,19 +150,11 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     fn check_region(&self, Touch { time, wall, .. }: Touch, region: Region) -> Result<(), Violation> {
         for radius in [self.radius, 1.5 * self.radius] {
             let may = self.boundary.may_touch(&region, radius);
-            require!(
-                may,
-                PART,
-                "may_touch",
-                "a disk of radius {radius:?} touches in {region:?}, where it is denied"
-            );
+            require!(PART, "may_touch", may;
+                "a disk of radius {radius:?} touches in {region:?}, where it is denied");
             let may = self.boundary.may_meet(wall, &region, radius, time);
-            require!(
-                may,
-                PART,
-                "may_meet",
-                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied"
-            );
+            require!(PART, "may_meet", may;
+                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied");
         }
         Ok(())
     }

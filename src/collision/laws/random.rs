@@ -79,7 +79,7 @@ impl Random {
 
     fn slip(&mut self, closing: f64) -> f64 {
         let size = match self.below(8) {
-            0 => 0.0,
+            0 => return 0.0,
             1..=3 => 5.0 * closing * uniform(&mut self.0),
             _ => self.speed(),
         };

@@ -1,7 +1,7 @@
 //! The simplest contact at which a rule still breaks a law.
 
-use crate::Violation;
 use crate::collision::Contact;
+use crate::{Kind, Violation};
 
 /// Returns the violation at the simplest contact that still breaks the same law.
 pub(super) fn simplest(
@@ -33,6 +33,11 @@ fn simpler(contact: &Contact) -> Vec<Contact> {
         plain,
         contact.with_spin(0.0, 0.125 * contact.normal_mass(), 0.0),
         contact.with_kinds(plain.kinds()).with_radii(plain.radii()),
+        if contact.kinds()[1] == Kind::WALL {
+            contact.with_radii([0.5, f64::INFINITY])
+        } else {
+            contact.with_radii(plain.radii())
+        },
         with(closing, slip, f64::INFINITY),
         with(closing, 0.0, time),
         with(1.0, slip, time),

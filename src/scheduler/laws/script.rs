@@ -30,10 +30,17 @@ pub(super) struct Script {
     /// Numbers of disks at the start.
     pub(super) disks: &'static [usize],
     pub(super) steps: usize,
-    /// Makes the first operation, for a number of disks.
-    pub(super) start: fn(&mut Stage, usize) -> Operation,
+    /// Makes the times of the first operation, a reset.
+    time: fn(&mut Stage) -> f64,
     /// Makes the next operation from the earliest disk and its time. It is called only while there are disks.
-    next: fn(&mut Stage, usize, f64) -> Operation,
+    /// Without it, the first or any other disk gets another time.
+    next: Option<fn(&mut Stage, usize, f64) -> Operation>,
+}
+
+impl Script {
+    pub(super) fn start(&self, stage: &mut Stage, disks: usize) -> Operation {
+        reset(stage, disks, self.time)
+    }
 }
 
 /// Zero, a few, and powers of two and of four with their neighbors.
@@ -47,26 +54,30 @@ const SOME: &[usize] = &[600];
 const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
 
 pub(super) const SCRIPTS: [Script; 13] = [
-    Script { name: "a run", disks: FEW, steps: 300, start: spread, next: run },
-    Script { name: "to and fro", disks: FEW, steps: 300, start: spread, next: to_and_fro },
-    Script { name: "ties", disks: FEW, steps: 300, start: tied, next: tie },
-    Script { name: "extremes", disks: FEW, steps: 300, start: extreme, next: to_extremes },
-    Script { name: "one busy disk", disks: FEW, steps: 300, start: idle, next: one_busy },
-    Script { name: "resets", disks: FEW, steps: 300, start: spread, next: reset_often },
-    Script { name: "near ties", disks: FEW, steps: 300, start: near, next: to_near },
-    Script { name: "ties of a few", disks: FEW, steps: 300, start: late, next: to_late },
-    Script {
-        name: "resets to as many",
-        disks: &[1, 2, 20],
-        steps: 4000,
-        start: spread,
-        next: reset_to_as_many,
-    },
-    Script { name: "a long run", disks: SOME, steps: 8000, start: spread, next: run },
-    Script { name: "a longer run", disks: &[40], steps: 50_000, start: spread, next: run },
-    Script { name: "a large run", disks: MANY, steps: 200, start: spread, next: run },
-    Script { name: "large and small", disks: MANY, steps: 12, start: spread, next: reset_to_few },
+    script("a run", FEW, 300, Stage::spread_time, Some(run)),
+    script("to and fro", FEW, 300, Stage::spread_time, None),
+    script("ties", FEW, 300, Stage::tied_time, None),
+    script("extremes", FEW, 300, Stage::extreme_time, None),
+    script("near ties", FEW, 300, Stage::near_time, None),
+    script("ties of a few", FEW, 300, Stage::late_time, None),
+    script("one busy disk", FEW, 300, |_| f64::INFINITY, Some(one_busy)),
+    script("resets", FEW, 300, Stage::spread_time, Some(reset_often)),
+    script("resets to as many", &[1, 2, 20], 4000, Stage::spread_time, Some(reset_to_as_many)),
+    script("a long run", SOME, 8000, Stage::spread_time, Some(run)),
+    script("a longer run", &[40], 50_000, Stage::spread_time, Some(run)),
+    script("a large run", MANY, 200, Stage::spread_time, Some(run)),
+    script("large and small", MANY, 12, Stage::spread_time, Some(reset_to_few)),
 ];
+
+const fn script(
+    name: &'static str,
+    disks: &'static [usize],
+    steps: usize,
+    time: fn(&mut Stage) -> f64,
+    next: Option<fn(&mut Stage, usize, f64) -> Operation>,
+) -> Script {
+    Script { name, disks, steps, time, next }
+}
 
 /// Random numbers, and the present and previous times of the disks.
 pub(super) struct Stage {
@@ -91,7 +102,11 @@ impl Stage {
 
     /// Returns the next operation of a script. Without disks, only a reset is possible.
     pub(super) fn next(&mut self, script: &Script, (first, now): (usize, f64)) -> Operation {
-        if self.due.is_empty() { few(self) } else { (script.next)(self, first, now) }
+        match script.next {
+            _ if self.due.is_empty() => few(self),
+            Some(next) => next(self, first, now),
+            None => self.any(first, script.time),
+        }
     }
 
     pub(super) fn is_time_to_look(&mut self) -> bool {
@@ -100,6 +115,12 @@ impl Stage {
 
     fn below(&mut self, count: usize) -> usize {
         (uniform(&mut self.generator) * count as f64) as usize
+    }
+
+    /// Sets the first or any other disk to another time.
+    fn any(&mut self, first: usize, time: fn(&mut Self) -> f64) -> Operation {
+        let other = self.any_disk();
+        Operation::Set([first, other][self.below(2)], time(self))
     }
 
     fn any_disk(&mut self) -> usize {
@@ -160,40 +181,16 @@ fn reset(stage: &mut Stage, disks: usize, time: fn(&mut Stage) -> f64) -> Operat
     Operation::Reset((0..disks).map(|_| time(stage)).collect())
 }
 
-fn spread(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, Stage::spread_time)
-}
-
-fn tied(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, Stage::tied_time)
-}
-
-fn near(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, Stage::near_time)
-}
-
-fn late(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, Stage::late_time)
-}
-
-fn extreme(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, Stage::extreme_time)
-}
-
-fn idle(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, |_| f64::INFINITY)
-}
-
 fn few(stage: &mut Stage) -> Operation {
     let disks = stage.below(70);
-    extreme(stage, disks)
+    reset(stage, disks, Stage::extreme_time)
 }
 
 /// Makes the operations of a run: the disk whose event is due gets a later time. Now and then another disk
 /// gets one, or returns to its previous time.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
-        return to_and_fro(stage, first, now);
+        return stage.any(first, Stage::spread_time);
     }
     let wait = stage.wait();
     let other = stage.any_disk();
@@ -202,32 +199,6 @@ fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
         7 | 8 => Operation::Set(other, now + wait),
         _ => Operation::Set(other, stage.before[other]),
     }
-}
-
-/// Sets the first or any other disk to any time.
-fn to_and_fro(stage: &mut Stage, first: usize, _: f64) -> Operation {
-    let other = stage.any_disk();
-    Operation::Set([first, other][stage.below(2)], stage.spread_time())
-}
-
-fn tie(stage: &mut Stage, first: usize, _: f64) -> Operation {
-    let other = stage.any_disk();
-    Operation::Set([first, other][stage.below(2)], stage.tied_time())
-}
-
-fn to_near(stage: &mut Stage, first: usize, _: f64) -> Operation {
-    let other = stage.any_disk();
-    Operation::Set([first, other][stage.below(2)], stage.near_time())
-}
-
-fn to_late(stage: &mut Stage, first: usize, _: f64) -> Operation {
-    let other = stage.any_disk();
-    Operation::Set([first, other][stage.below(2)], stage.late_time())
-}
-
-fn to_extremes(stage: &mut Stage, first: usize, _: f64) -> Operation {
-    let other = stage.any_disk();
-    Operation::Set([first, other][stage.below(2)], stage.extreme_time())
 }
 
 /// Gives one disk many events, far apart, while all others wait forever.
@@ -245,14 +216,14 @@ fn reset_often(stage: &mut Stage, first: usize, now: f64) -> Operation {
 
 fn reset_to_as_many(stage: &mut Stage, first: usize, now: f64) -> Operation {
     let disks = stage.due.len();
-    if stage.below(3) == 0 { spread(stage, disks) } else { run(stage, first, now) }
+    if stage.below(3) == 0 { reset(stage, disks, Stage::spread_time) } else { run(stage, first, now) }
 }
 
 /// Resets to few disks after many, and back to many.
 fn reset_to_few(stage: &mut Stage, first: usize, now: f64) -> Operation {
     match stage.below(4) {
         0 => few(stage),
-        1 => spread(stage, MANY[0]),
+        1 => reset(stage, MANY[0], Stage::spread_time),
         _ => run(stage, first, now),
     }
 }

@@ -77,7 +77,7 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
     let disks = disks().map_err(failed)?;
     let (mut whole, mut cut) = (make(), make());
     let (mut first, mut second) = (disks.clone(), disks);
-    let mut squares = [0.0; DISKS];
+    let (mut squares, mut counted) = ([0.0; DISKS], 0);
     whole.kick(&mut []).and_then(|()| cut.kick(&mut [])).map_err(failed)?;
     let mut last = 0.0;
     for driving in [&mut whole, &mut cut] {
@@ -89,20 +89,19 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
         }
         let again = number % 4;
         let (time, other) = (upcoming(&mut whole, last, again)?, upcoming(&mut cut, last, again)?);
-        require!(
-            time == other,
-            PART,
-            "clock",
-            "kick {number} is at {time:?}, and at {other:?} if the run is cut"
-        );
+        require!(PART, "clock", time == other;
+            "kick {number} is at {time:?}, and at {other:?} if the run is cut");
         let before = first.clone();
         whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(failed)?;
-        check_kick(&before, &first, promises, number)?;
-        require!(first == second, PART, "repeatable", "kick {number} of two equal drivings differs");
-        for (square, (new, old)) in squares.iter_mut().zip(first.iter().zip(&before)) {
-            let gain = new.velocity() - old.velocity();
-            let turned = old.radius() * (new.angular_velocity() - old.angular_velocity());
-            *square += old.mass() * (gain.length_squared() + turned * turned);
+        check_kick(&before, &first, *promises, number)?;
+        require!(PART, "repeatable", first == second; "kick {number} of two equal drivings differs");
+        let kicks = squares_of(&before, &first);
+        let energy: f64 = before.iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
+        let all: f64 = kicks.iter().sum();
+        // A kick that is none up to rounding tells nothing about shares.
+        if all > ROUNDING * energy {
+            counted += 1;
+            squares.iter_mut().zip(&kicks).for_each(|(square, kick)| *square += kick / all);
         }
         for driving in [&mut whole, &mut cut] {
             driving.times().advance_past(time);
@@ -112,56 +111,57 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
         first.rotate_left(1);
         second.rotate_left(1);
     }
-    check_shares(&squares, promises)
+    if counted < KICKS / 2 || promises.is_ordered { Ok(()) } else { check_shares(&squares) }
+}
+
+/// Returns the squares of the kicks of all disks, times their masses.
+fn squares_of(before: &[Disk], after: &[Disk]) -> [f64; DISKS] {
+    std::array::from_fn(|place| {
+        let (old, new) = (&before[place], &after[place]);
+        let turned = old.radius() * (new.angular_velocity() - old.angular_velocity());
+        old.mass() * ((new.velocity() - old.velocity()).length_squared() + turned * turned)
+    })
 }
 
 /// Returns the time of the next kick, which is later than the last one, and the same when asked again.
 fn upcoming<D: Driving>(driving: &mut D, last: f64, again: usize) -> Result<f64, Violation> {
     let next = driving.times().upcoming();
-    require!(next > last, PART, "clock", "after the time {last:?}, the next kick is at {next:?}");
+    require!(PART, "clock", next > last; "after the time {last:?}, the next kick is at {next:?}");
     for _ in 0..again {
         let again = driving.times().upcoming();
-        require!(
-            next == again,
-            PART,
-            "clock",
-            "the next kick is at {next:?}, and at {again:?} when asked again"
-        );
+        require!(PART, "clock", next == again;
+            "the next kick is at {next:?}, and at {again:?} when asked again");
     }
     Ok(next)
 }
 
 /// Checks a kick by the disks before and after it.
-fn check_kick(before: &[Disk], after: &[Disk], promises: &Promises, number: usize) -> Result<(), Violation> {
+fn check_kick(before: &[Disk], after: &[Disk], promises: Promises, number: usize) -> Result<(), Violation> {
     for (old, new) in before.iter().zip(after) {
         let (mut place, mut angle, mut image) = (old.position(), old.angle(), old.image());
         if promises.moves {
             (place, angle, image) = (new.position(), new.angle(), new.image());
         }
         let allowed = old.with_motion(place, new.velocity(), angle, new.angular_velocity()).with_image(image);
-        require!(allowed == *new, PART, "velocities only", "kick {number} makes {new:?} of {old:?}");
+        require!(PART, "velocities only", allowed == *new; "kick {number} makes {new:?} of {old:?}");
     }
     if promises.momentum {
         let momentum = |disks: &[Disk]| disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>();
         let gained = (momentum(after) - momentum(before)).length();
         let size: f64 = before.iter().chain(after).map(|disk| disk.mass() * disk.velocity().length()).sum();
-        require!(gained <= ROUNDING * size, PART, "momentum", "kick {number} adds the momentum {gained:?}");
+        require!(PART, "momentum", gained <= ROUNDING * size; "kick {number} adds the momentum {gained:?}");
     }
     Ok(())
 }
 
 /// Checks that no place in the list gets much more or less than others.
-fn check_shares(squares: &[f64; DISKS], promises: &Promises) -> Result<(), Violation> {
+fn check_shares(squares: &[f64; DISKS]) -> Result<(), Violation> {
     let mean = squares.iter().sum::<f64>() / DISKS as f64;
     for (place, square) in squares.iter().enumerate() {
         let share = square / mean;
-        let is_fair = promises.is_ordered || mean == 0.0 || (FAIR[0]..=FAIR[1]).contains(&share);
-        require!(
-            is_fair,
-            PART,
-            "alike",
-            "disks at place {place} of the list get {share:?} of the mean square kick"
-        );
+        let is_fair = (FAIR[0]..=FAIR[1]).contains(&share);
+        require!(PART, "alike", is_fair;
+            "disks at place {place} of the list get {share:?} of the mean square kick");
     }
     Ok(())
 }

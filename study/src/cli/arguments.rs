@@ -14,10 +14,10 @@ const MOST_THREADS: i64 = 4096;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 5
-/// slower than before, 6 the runs differ, 7 done but some values were not finished, 8 nobody does the rest, 130
-/// stopped with all saved.
+/// slower than before, 6 the runs differ, 7 done but some values were not finished, 8 nobody does the rest,
+/// 130 stopped with all saved.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "granular-edmd", version)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,

@@ -14,7 +14,7 @@ use crate::experiment::record::{Contents, Cycles, Measured, Origin, Outcome, Rec
 use crate::opening::Study;
 use crate::plan::refinement::Step;
 use crate::seed::derived_seed;
-use crate::{Experiment, Interval, Plan, Protocol, Run, Start};
+use crate::{Experiment, Interval, Plan, Protocol, Run, SavedDriving, Start};
 
 /// A value to be run.
 pub(super) struct Value<'a, E: Experiment> {
@@ -86,23 +86,28 @@ impl<'a, E: Experiment> Value<'a, E> {
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
         let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
         let work = Work { start, steps: 0, is_prepared: false, is_under_way: false, counters, measured };
-        let riders = self.riders(run.time(), None).map_err(|source| self.cannot_start(source))?;
+        let riders = self.riders(run.time(), self.driving()?, false)?;
         Ok(Active { value: self, work, run, riders })
     }
 
-    /// Returns driving and companion; with a driving that was saved, those of a value that goes on.
-    fn riders(&self, time: f64, saved: Option<Option<&[u8]>>) -> Result<Riders, ExperimentError> {
-        let Origin { ramp, value, seed, .. } = self.origin;
+    /// Returns the driving at the start of the value.
+    fn driving(&self) -> Result<Option<Box<dyn SavedDriving>>, StudyError> {
         // The seeds of 0 and 1 are those of disks and rule.
-        let mut driving = self.experiment.driving(derived_seed(seed, value as u64 + 2))?;
-        match (&mut driving, saved.flatten()) {
-            (Some(driving), Some(bytes)) => driving.load(bytes)?,
-            (None, Some(_)) => return Err("it was driven".into()),
-            (Some(_), None) if saved.is_some() => return Err("it was not driven".into()),
-            _ => {}
-        }
-        let start = Start { folder: self.folder, ramp, value, seed, time, is_resumed: saved.is_some() };
-        Ok(Riders { driving, companion: self.experiment.companion(&start)?, is_under_way: false })
+        let seed = derived_seed(self.origin.seed, self.origin.value as u64 + 2);
+        self.experiment.driving(seed).map_err(|source| self.cannot_start(source))
+    }
+
+    /// Returns what rides along from this time on.
+    fn riders(
+        &self,
+        time: f64,
+        driving: Option<Box<dyn SavedDriving>>,
+        is_resumed: bool,
+    ) -> Result<Riders, StudyError> {
+        let Origin { ramp, value, seed, .. } = self.origin;
+        let start = Start { folder: self.folder, ramp, value, seed, time, is_resumed };
+        let companion = self.experiment.companion(&start).map_err(|source| self.cannot_start(source))?;
+        Ok(Riders { driving, companion, is_under_way: false })
     }
 
     /// Returns whether a record of the same ramp in another study has all that the record of this value
@@ -127,15 +132,21 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// # Errors
     /// If the companion cannot be made.
     pub(super) fn go_on(&'a self, partial: Partial<E>) -> Result<Result<Active<'a, E>, String>, StudyError> {
-        let driving = partial.3.clone();
+        let (saved, mut driving) = (partial.3.clone(), self.driving()?);
+        let is_loaded = match (&mut driving, saved) {
+            (Some(driving), Some(bytes)) => driving.load(&bytes).is_ok(),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_loaded {
+            return Ok(Err("its driving is another".to_owned()));
+        }
         let (work, run) = match self.state_of(partial) {
             Ok(found) => found,
             Err(reason) => return Ok(Err(reason)),
         };
-        match self.riders(run.time(), Some(driving.as_deref())) {
-            Ok(riders) => Ok(Ok(Active { value: self, work, run, riders })),
-            Err(source) => Err(self.cannot_start(source)),
-        }
+        let riders = self.riders(run.time(), driving, true)?;
+        Ok(Ok(Active { value: self, work, run, riders }))
     }
 
     #[expect(clippy::type_complexity, reason = "the parts of a value that goes on")]
@@ -217,6 +228,11 @@ impl<E: Experiment> Study<E> {
 }
 
 impl<E: Experiment> Active<'_, E> {
+    /// Returns what the simulation noticed and survived.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        self.run.warnings().iter().map(ToString::to_string).collect()
+    }
+
     /// Returns the number of steps that are done.
     pub(super) const fn steps(&self) -> u64 {
         self.work.steps

@@ -101,9 +101,9 @@ impl<'a> Control<'a> {
     /// [`Outcome::Limited`](crate::Outcome::Limited).
     ///
     /// Whether a value ends so depends on the machine. It counts as one that failed: its record stays until
-    /// [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result everywhere is
-    /// [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a value that was
-    /// interrupted counts from its resumption.
+    /// [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result everywhere
+    /// is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a value that
+    /// was interrupted counts from its resumption.
     ///
     /// # Errors
     /// If the time is not positive.
@@ -154,7 +154,7 @@ pub struct Summary {
     /// Number of values that were not finished: they stalled, failed, or reached a limit. They have fewer
     /// samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
-    /// Number of values whose runs have [warnings](granular_edmd::simulation::Counters::warnings). The files
+    /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The files
     /// `logs/*.jsonl` of the study say of what.
     pub warned: usize,
     /// Number of values of the study, or of the ramps that were to be run.

@@ -25,6 +25,15 @@ enum Pause {
     Early(Early),
 }
 
+/// A value that is new in the store.
+struct Made<E: Experiment> {
+    record: Record<E>,
+    /// True if an earlier study has made it.
+    is_taken: bool,
+    /// What its simulation noticed and survived.
+    warnings: Vec<String>,
+}
+
 /// The way through a ramp.
 struct Walk<'a, 's, E: Experiment> {
     session: &'a Session<'s, E>,
@@ -99,10 +108,10 @@ impl<E: Experiment> Walk<'_, '_, E> {
             _ => self.last.take(),
         };
         let started = Instant::now();
-        let Some((record, is_taken)) = self.new_value(step, before.as_ref())? else { return Ok(false) };
-        self.seen.push(study.plan().seen(&record));
-        self.keep(&record, (!is_taken).then(|| started.elapsed()))?;
-        self.last = Some(record);
+        let Some(made) = self.new_value(step, before.as_ref())? else { return Ok(false) };
+        self.seen.push(study.plan().seen(&made.record));
+        self.keep(&made, (!made.is_taken).then(|| started.elapsed()))?;
+        self.last = Some(made.record);
         Ok(true)
     }
 
@@ -127,13 +136,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(record)
     }
 
-    /// Runs the next value from a record, or takes it over from an earlier study, which the flag tells; `None`
-    /// if it was interrupted.
-    fn new_value(
-        &mut self,
-        step: Step,
-        before: Option<&Record<E>>,
-    ) -> Result<Option<(Record<E>, bool)>, StudyError> {
+    /// Runs the next value from a record, or takes it over from an earlier study; `None` if it was
+    /// interrupted.
+    fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<Option<Made<E>>, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
         // A plan of many values has not tried all of them.
         let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
@@ -142,19 +147,23 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let mut earlier = self.earlier.next(&study.plan, &self.seen, step)?;
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
-            return Ok(Some((work.taken_over(record), true)));
+            let record = work.taken_over(record);
+            let warnings = record.counters().warnings().iter().map(ToString::to_string).collect();
+            return Ok(Some(Made { record, is_taken: true, warnings }));
         }
         let mut active = match self.saved(&work)? {
             Some(active) => active,
             None => work.begin(earlier)?,
         };
         self.advance(active.steps());
-        let record = match self.steps(&mut active)? {
+        let pause = self.steps(&mut active)?;
+        let warnings = active.warnings();
+        let record = match pause {
             Pause::Done => active.record()?,
             Pause::Interrupted => return Ok(None),
             Pause::Early(early) => active.ended(early)?,
         };
-        Ok(Some((record, false)))
+        Ok(Some(Made { record, is_taken: false, warnings }))
     }
 
     /// Returns an unfinished value as it was saved, if there is one.
@@ -213,16 +222,16 @@ impl<E: Experiment> Walk<'_, '_, E> {
     }
 
     /// Keeps the record of a value, the last one that was seen.
-    fn keep(&self, record: &Record<E>, time: Option<Duration>) -> Result<(), StudyError> {
-        let study = self.session.study;
+    fn keep(&self, made: &Made<E>, time: Option<Duration>) -> Result<(), StudyError> {
+        let (study, record) = (self.session.study, &made.record);
         self.session.open_study()?;
         let is_last = study.plan.next(&self.seen).is_none();
         let marks = Marks::default().with(Marks::LAST, is_last);
         let marks = marks.with(Marks::FAILED, record.outcome().reason().is_some());
-        let marks = marks.with(Marks::WARNED, !record.counters().warnings().is_empty());
+        let marks = marks.with(Marks::WARNED, !made.warnings.is_empty());
         let seconds = time.map_or(f32::NAN, |time| time.as_secs_f32());
         let head = Head { ramp: self.ramp, value: record.value_index(), edition: 0, marks, seconds };
-        let line = line(record, time);
+        let line = line(made, time);
         study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents, &line)?;
         self.forget_partial(record.value_index())
     }
@@ -241,12 +250,11 @@ impl<E: Experiment> Walk<'_, '_, E> {
 }
 
 /// Returns the line of a record for people, with the time that it took, unless it was taken over.
-fn line<E: Experiment>(record: &Record<E>, time: Option<Duration>) -> String {
+fn line<E: Experiment>(Made { record, warnings, .. }: &Made<E>, time: Option<Duration>) -> String {
     let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
     let line = Object::default().with("ramp", record.ramp_index()).with("value", record.value_index());
     let line = line.text("outcome", record.outcome().name());
     let line = record.outcome().reason().into_iter().fold(line, |line, reason| line.text("reason", reason));
-    let warnings: Vec<String> = record.counters().warnings().iter().map(ToString::to_string).collect();
     let line = if warnings.is_empty() { line } else { line.text("warnings", &warnings.join("; ")) };
     let line = line.with("collisions", record.counters().disk_collisions);
     let line = match time {

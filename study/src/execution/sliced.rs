@@ -1,5 +1,6 @@
 //! Runs in slices, of which an observer notices nothing.
 
+use granular_edmd::Disk;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
@@ -108,6 +109,14 @@ impl<O: Observer> Observer for Sliced<'_, O> {
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.observer.on_sample(snapshot);
+    }
+
+    fn on_insert(&mut self, disk: &Disk, time: f64) {
+        self.observer.on_insert(disk, time);
+    }
+
+    fn on_remove(&mut self, disk: &Disk, time: f64) {
+        self.observer.on_remove(disk, time);
     }
 
     #[inline]

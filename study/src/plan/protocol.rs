@@ -79,8 +79,8 @@ impl Protocol {
 
     /// Returns the same protocol with at most this number of collisions in a value, with disks or walls.
     ///
-    /// A value that reaches it ends with [`Outcome::Limited`](super::Outcome::Limited), so that one value of a
-    /// sweep cannot take as long as all others together.
+    /// A value that reaches it ends with [`Outcome::Limited`](crate::Outcome::Limited), so that one value of
+    /// a sweep cannot take as long as all others together.
     ///
     /// # Errors
     /// If the number is 0, or above 2^63 − 1, the largest one that a plan can hold.

@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use crate::{PlanError, Scalar, Steps};
 
 /// Largest number of values that are tried when a plan is made.
-const MOST_TRIED: usize = 1024;
+pub(crate) const MOST_TRIED: usize = 1024;
 
 /// Returns the indices, of this many, that are tried when a plan is made: all if they are few, otherwise the
 /// ends and some between at equal distances, so that a plan of a million values is made as fast as a small

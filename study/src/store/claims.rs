@@ -150,7 +150,7 @@ mod tests {
         let Claimed::Ours(claim) = claims.claim(&all[1]).unwrap() else { panic!("it is free") };
         assert!(matches!(claims.claim(&(7..8)).unwrap(), Claimed::Theirs));
         assert!(matches!(claims.claim(&all[1 + LOCKS]).unwrap(), Claimed::Collision));
-        assert_eq!(claims.taken().unwrap(), [5..10]);
+        assert_eq!(claims.taken().unwrap(), vec![Range { start: 5, end: 10 }]);
         drop(claim);
         assert_eq!(claims.taken().unwrap(), []);
         assert!(matches!(claims.claim(&(7..8)).unwrap(), Claimed::Ours(_)));

@@ -63,15 +63,27 @@ impl Head {
 }
 
 /// A record, or a value that counts as not done: its head, and the place of its contents.
+///
+/// There may be a million of them in memory, so it has no room to spare.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
-    pub(super) piece: Piece,
+    head: [u8; HEAD],
+    start: u64,
+    length: u32,
     pub(super) log: u32,
 }
 
 impl Entry {
+    pub(super) const fn new(Piece { head, start, length, .. }: Piece, log: u32) -> Self {
+        Self { head, start, length, log }
+    }
+
+    pub(super) const fn piece(&self) -> Piece {
+        Piece::new(self.head, self.start, self.length)
+    }
+
     pub(crate) fn head(&self) -> Head {
-        Head::of(&self.piece.head)
+        Head::of(&self.head)
     }
 
     fn place(&self) -> (usize, usize) {
@@ -89,15 +101,23 @@ impl Entry {
 pub(crate) struct Entries(Vec<Entry>);
 
 impl Entries {
-    /// Adds entries of logs.
-    pub(super) fn add(&mut self, more: impl IntoIterator<Item = Entry>) {
-        let before = self.0.len();
-        self.0.extend(more);
-        if self.0.len() == before {
-            return;
+    pub(super) const fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Adds an entry of a log, out of order.
+    pub(super) fn push(&mut self, entry: Entry) {
+        self.0.push(entry);
+    }
+
+    /// Puts all in order, of which the first `sorted` entries are.
+    pub(super) fn settle(&mut self, sorted: usize) {
+        let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
+        // A stable sort takes a time in proportion to the entries that are in order, and memory.
+        match sorted {
+            0 => self.0.sort_unstable_by_key(key),
+            _ => self.0.sort_by_key(key),
         }
-        // The entries so far are in order, so this takes a time in proportion to their number.
-        self.0.sort_by_key(|entry| (entry.place(), std::cmp::Reverse(entry.head().edition)));
         self.0.dedup_by_key(|entry| entry.place());
     }
 

@@ -33,7 +33,8 @@ impl Writer {
         let mut known = logs(folder)?;
         known.sort();
         let count = known.len();
-        // The standard library seeds its hash tables from the system: a random number that needs no dependency.
+        // The standard library seeds its hash tables from the system: a random number that needs no
+        // dependency.
         let start =
             RandomState::new().build_hasher().finish().checked_rem(count as u64).unwrap_or(0) as usize;
         known.rotate_left(start);
@@ -64,7 +65,9 @@ impl Writer {
         if self.at_risk > AT_RISK {
             self.sync()?;
         }
-        line.into_iter().for_each(|line| self.note(line));
+        if let Some(line) = line {
+            self.note(line);
+        }
         Ok(())
     }
 

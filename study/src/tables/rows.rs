@@ -1,5 +1,6 @@
 //! Rows of cells, written to a file one after the other.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use granular_edmd::file::Draft;
@@ -40,13 +41,20 @@ pub(super) struct Row(String);
 impl Row {
     /// Begins a row with these cells.
     pub(super) fn of(cells: impl IntoIterator<Item = impl Into<Scalar>>) -> Self {
-        let cells: Vec<String> = cells.into_iter().map(|cell| cell_of(&cell.into())).collect();
-        Self(cells.join(","))
+        let mut row = String::with_capacity(256);
+        for (index, cell) in cells.into_iter().enumerate() {
+            row.push_str(if index == 0 { "" } else { "," });
+            write_cell(&mut row, &cell.into());
+        }
+        Self(row)
     }
 
     /// Adds a cell.
     pub(super) fn with(self, value: &Scalar) -> Self {
-        Self(self.0 + "," + &cell_of(value))
+        let Self(mut row) = self;
+        row.push(',');
+        write_cell(&mut row, value);
+        Self(row)
     }
 
     /// Adds a mean, its error, and its number of independent samples.
@@ -57,12 +65,15 @@ impl Row {
     }
 }
 
-/// Returns the text of a cell. One without a number is empty, which every reader of tables takes for a
+/// Adds the text of a cell. One without a number is empty, which every reader of tables takes for a
 /// missing value; the text `NaN` spoils the means of some.
-fn cell_of(value: &Scalar) -> String {
+fn write_cell(row: &mut String, value: &Scalar) {
     match value {
-        Scalar::Number(number) if number.is_nan() => String::new(),
-        value => value.to_string(),
+        Scalar::Number(number) if number.is_nan() => {}
+        value => {
+            // Writing to a string does not fail.
+            let _ = write!(row, "{value}");
+        }
     }
 }
 

@@ -39,8 +39,8 @@ fn own_plan() -> Plan<Mixture> {
     Plan::new(mixture(), Protocol::new(10, 80, 2).unwrap(), 5).unwrap().with_axis(axis).unwrap()
 }
 
-/// Returns all files of a study whose bytes do not depend on how often it was stopped, and each record as if it
-/// were a file.
+/// Returns all files of a study whose bytes do not depend on how often it was stopped, and each record as if
+/// it were a file.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = logs::records(folder);
     let mut folders = vec![folder.to_owned()];

@@ -87,7 +87,7 @@ fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
         logs::replace(&scratch.0, 1, value, b"cut");
         let study = Study::<Mixture>::open(&scratch.0)?;
         assert!(matches!(study.record(1, value as usize), Err(StudyError::Damaged { .. })));
-        assert_eq!(study.run(&Control::default().with_verification())?.redone, [log.clone()]);
+        assert_eq!(study.run(&Control::default().with_verification())?.redone, std::slice::from_ref(&log));
         assert!(contents(&scratch.0) == before);
     }
     // The place in the record of another half shows that it is another one.

@@ -50,8 +50,8 @@ impl Drop for Scratch {
     }
 }
 
-/// Returns all files of a study whose bytes do not depend on how its work was divided, and each record as if it
-/// were a file.
+/// Returns all files of a study whose bytes do not depend on how its work was divided, and each record as if
+/// it were a file.
 pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = logs::records(folder);
     let mut folders = vec![folder.to_owned()];

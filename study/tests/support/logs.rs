@@ -79,7 +79,8 @@ fn end(piece: &Piece) -> usize {
     piece.start as usize + piece.length as usize
 }
 
-/// Writes a log anew, with the contents that `change` makes of each piece; without those of which it makes none.
+/// Writes a log anew, with the contents that `change` makes of each piece; without those of which it makes
+/// none.
 fn rewrite(log: &Path, mut change: impl FnMut([u32; 2], Vec<u8>) -> Option<Vec<u8>>) {
     let all: Vec<_> =
         pieces(log).into_iter().map(|found| (found.piece.head, found.place, found.contents())).collect();

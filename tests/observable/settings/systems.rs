@@ -35,7 +35,7 @@ pub(super) struct Setting {
     pub(super) is_free: fn(DVec2, &State) -> bool,
     /// A rectangle to be measured, which holds most of the disks.
     pub(super) region: Region,
-    /// A rectangle that is away from all walls by 1.5.
+    /// A rectangle that is away from all walls by 1.5; it may reach to periodic seams.
     pub(super) bulk: Region,
 }
 
@@ -182,22 +182,36 @@ fn put_elsewhere(run: &mut Run) -> Result<(), Failure> {
 
 /// Returns all settings, the columns of the table.
 pub(super) fn settings() -> Vec<Setting> {
-    let triangle =
-        |place: DVec2, _: &State| place.min_element() >= 0.0 && place.x / 14.0 + place.y / 9.0 <= 1.0;
+    let boxes = boxes().into_iter().chain(vessels()).chain(walls_that_move());
+    boxes.chain(others()).collect()
+}
+
+fn boxes() -> Vec<Setting> {
     vec![
         Setting::new("closed box", || gas(closed()?, 0.0)),
-        Setting::new("periodic sides", || gas(closed()?.with_periodic_sides()?, 0.1)),
-        Setting::new("periodic both ways", || {
-            let container = Container::periodic(10.0, 8.0)?;
-            let disks = initial::random(&container, 24, 0.4, 8.0, 1)?;
-            of(container, disks, Elastic, 0.0)
-        }),
+        Setting {
+            bulk: rectangle(0.0, 2.5, 10.0, 6.0),
+            ..Setting::new("periodic sides", || gas(closed()?.with_periodic_sides()?, 0.1))
+        },
+        Setting {
+            bulk: rectangle(0.0, 0.0, 10.0, 8.0),
+            ..Setting::new("periodic both ways", || {
+                let container = Container::periodic(10.0, 8.0)?;
+                let disks = initial::random(&container, 24, 0.4, 8.0, 1)?;
+                of(container, disks, Elastic, 0.0)
+            })
+        },
         Setting {
             is_free: |place, _| place.x >= 0.0 && place.x <= 10.0 && place.y >= 0.0,
             ..Setting::new("open top", || gas(Container::open(10.0)?, 0.3))
         },
+    ]
+}
+
+fn vessels() -> Vec<Setting> {
+    vec![
         Setting {
-            is_free: triangle,
+            is_free: |place, _| place.min_element() >= 0.0 && place.x / 14.0 + place.y / 9.0 <= 1.0,
             region: rectangle(0.0, 0.0, 14.0, 9.0),
             bulk: rectangle(1.75, 1.75, 4.0, 3.5),
             ..Setting::new("triangle", || {
@@ -223,6 +237,11 @@ pub(super) fn settings() -> Vec<Setting> {
             bulk: rectangle(3.5, 2.5, 6.0, 5.5),
             ..Setting::new("block and peg", obstructed)
         },
+    ]
+}
+
+fn walls_that_move() -> Vec<Setting> {
+    vec![
         Setting {
             is_free: |place, state| {
                 let inward = floor(state.time);
@@ -242,6 +261,11 @@ pub(super) fn settings() -> Vec<Setting> {
                 gas(closed()?.with_piston(Wall::Lid, lid)?, 0.1)
             })
         },
+    ]
+}
+
+fn others() -> Vec<Setting> {
+    vec![
         Setting::new("tilted gravity", || gas(closed()?, Gravity::tilted(0.2, PI / 5.0)?)),
         Setting::new("sizes and masses", mixed),
         Setting::new("kinds", of_two_kinds),

@@ -68,7 +68,9 @@ fn disks(drivings: &mut Drivings) {
         disk.with_position(1.000_001 * disk.position()).map(|moved| *disk = moved)
     });
     drivings.kick("image", "each kick counts a period more", true, |_, disks, _| {
-        disks.iter_mut().for_each(|disk| *disk = disk.with_image([disk.image()[0] + 1, disk.image()[1]]));
+        for disk in disks {
+            *disk = disk.with_image([disk.image()[0] + 1, disk.image()[1]]);
+        }
         Ok(())
     });
     for n in [8, 11] {
