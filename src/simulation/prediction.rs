@@ -1,5 +1,7 @@
-//! Predictions of the time at which two disks collide. `exits.rs` has those of the time at which a disk leaves
-//! its cell, and `vector.rs` the same arithmetic in vector instructions.
+//! Predictions of the time at which two disks collide.
+//!
+//! `exits.rs` has those of the time at which a disk leaves its cell, and `vector.rs` the same arithmetic in
+//! vector instructions.
 
 mod exits;
 #[cfg(target_arch = "x86_64")]
