@@ -128,8 +128,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         decide(instructions, self);
     }
 
-    /// Sets a player's time. Returns whether winner and runner-up must be found by [`Self::find_first`], which
-    /// is rare.
+    /// Sets a player's time. Returns whether winner and runner-up must be found by [`Self::find_first`],
+    /// which is rare.
     #[inline(always)]
     fn play(&mut self, player: Player, earliest: impl Earliest) -> bool {
         if player.disk != self.winner.disk {
