@@ -62,9 +62,9 @@ impl Record<VibratedBox> {
 pub(super) fn columns() -> Vec<Column<VibratedBox>> {
     vec![
         Column::of_record("state", "", |record| VibratedBox::state(record).unwrap_or_default()),
-        Column::sampled("one_roll", "1", |s: &Sample| s.one_roll),
-        Column::averaged("one_roll_magnitude", "1", |s: &Sample| s.one_roll.abs()),
-        Column::sampled("two_rolls", "1", |s: &Sample| s.two_rolls),
+        Column::sampled("one_roll", "velocity", |s: &Sample| s.one_roll),
+        Column::averaged("one_roll_magnitude", "velocity", |s: &Sample| s.one_roll.abs()),
+        Column::sampled("two_rolls", "velocity", |s: &Sample| s.two_rolls),
         Column::sampled("center_of_mass_height", "diameter", |s: &Sample| s.height),
         Column::sampled("translational_energy", "energy", |s: &Sample| s.translational_energy),
         Column::sampled("rotational_energy", "energy", |s: &Sample| s.rotational_energy),
@@ -72,7 +72,7 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
         Column::of_sample("collisions", "1", |s: &Sample| s.collisions),
         Column::of_sample("energy_change", "energy", |s: &Sample| s.energy_change),
         Column::estimated("energy_change", "energy", Record::energy_change),
-        Column::of_record("thermal_noise", "1", Record::thermal_noise),
+        Column::of_record("thermal_noise", "velocity", Record::thermal_noise),
         Column::of_record("densest_packing", "1", |record| {
             record.densest_layer().map_or(f64::NAN, |layer| layer.packing_fraction)
         }),

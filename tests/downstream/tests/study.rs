@@ -82,7 +82,7 @@ fn a_stranger_s_study_is_run_read_and_recorded() -> Result<(), ExperimentError> 
     let study = Study::open_or_create(&folder, &plan)?;
     assert!(study.run(&Control::default())?.is_complete());
     let energy = |ramp| study.record(ramp, 0).unwrap().unwrap().mean(|energy| *energy).mean();
-    assert_ne!(energy(1), energy(0), "the spin of the drum counts");
+    assert!(energy(0) > 0.0 && energy(1) != energy(0), "the drum acts: {} {}", energy(0), energy(1));
     let frames = std::fs::read_to_string(folder.join("1-0.xyz"))?;
     assert_eq!(frames.matches("Lattice=").count(), 3);
     assert!(std::fs::read_to_string(folder.join("values.csv"))?.starts_with("ramp,value,leg,spin,seed,"));
