@@ -400,7 +400,9 @@ impl Format for Faulty {
         input.read_line(&mut line)?;
         input.consume(self.kept.min(1));
         let time: Option<f64> = line.split(' ').next().and_then(|time| time.parse().ok());
-        Ok(time.filter(|_| line.ends_with('\n') || self.ends_early).map(|time| time + self.time))
+        Ok(time
+            .filter(|_| line.ends_with('\n') || self.ends_early)
+            .map(|time| if self.time == 0.0 { time } else { time + self.time }))
     }
 }
 
