@@ -82,6 +82,24 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// walls that move reduces it by whole periods to a phase of their motion, as
 /// [`WallMotion`](crate::wall::WallMotion) explains.
 ///
+/// # Who asks what, and when
+/// ```text
+/// when                          the engine asks                         for
+/// ----------------------------  --------------------------------------  ---------------------------------
+/// a run is built, or its walls  set_time_origin, domain, interior,      cells of neighbors; disks that do
+/// are set                       wall_count, overlap, tight_fit          not fit are refused
+/// cells are made                may_touch of each cell                  cells away from walls, never asked again
+/// a disk's flight is predicted  first_touch (in cells at walls)         the end of the flight
+/// the touch is due              surface, overlap                        the contact; the rule gives an impulse,
+///                                                                       or the wall emits or takes the disk
+/// after the blow                react; if Moved, may_meet of disks      walls with a mass; flights that end
+///                               at walls, and first_touch again         otherwise now
+/// the epoch moves               set_time_origin                         late times that keep their digits
+/// a checkpoint, a resumption    fingerprint, state; set_state           the same walls, where they were
+/// a sample, a picture           wall_point, area, wall_lines            observables and files
+/// an initial state              interior, overlap                       places for disks
+/// ```
+///
 /// # Contract
 /// An implementation guarantees:
 /// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
