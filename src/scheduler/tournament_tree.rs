@@ -42,13 +42,20 @@ impl TournamentTree {
 impl EventScheduler for TournamentTree {
     fn reset(&mut self, due: &[f64]) {
         self.instructions = Instructions::detected();
-        self.form = match due.len() {
-            0 => Form::default(),
-            _ if self.instructions.level() == Level::Built => Form::default(),
-            disks if disks <= Wide::<2>::MOST_DISKS => Form::Two(Wide::new(disks)),
-            disks if disks <= Wide::<3>::MOST_DISKS => Form::Three(Wide::new(disks)),
-            _ => Form::default(),
+        let rounds = match due.len() {
+            0 => 0,
+            _ if self.instructions.level() == Level::Built => 0,
+            disks if disks <= Wide::<2>::MOST_DISKS => 2,
+            disks if disks <= Wide::<3>::MOST_DISKS => 3,
+            _ => 0,
         };
+        // A form that suits stays, with its memory.
+        match (&self.form, rounds) {
+            (Form::Fours(_), 0) | (Form::Two(_), 2) | (Form::Three(_), 3) => {}
+            (_, 2) => self.form = Form::Two(Wide::new()),
+            (_, 3) => self.form = Form::Three(Wide::new()),
+            _ => self.form = Form::default(),
+        }
         match &mut self.form {
             Form::Fours(fours) => fours.reset(due),
             Form::Two(wide) => wide.reset(self.instructions, due),

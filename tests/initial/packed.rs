@@ -185,7 +185,7 @@ fn what_has_no_room_is_refused_at_once() {
     };
     let periodic = Container::periodic(10.0, 10.0).unwrap();
     assert!(place(&container, 0.5, 0.9).is_err() && place(&container, 0.5, 1.0).is_ok());
-    assert!(place(&periodic, 6.0, 10.0).is_err() && place(&periodic, 4.0, 10.0).is_ok());
+    assert!(place(&periodic, 1.25, 10.0).is_err() && place(&periodic, 1.2, 10.0).is_ok());
     for seed in 0..20 {
         let disks = vec![Disk::new(DVec2::ZERO, 0.5).unwrap(); 10];
         let disks = initial::placed_at_random(&periodic, disks, 5.0, seed).unwrap();

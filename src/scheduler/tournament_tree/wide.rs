@@ -87,11 +87,21 @@ pub(super) struct Wide<const ROUNDS: usize> {
 impl<const ROUNDS: usize> Wide<ROUNDS> {
     pub(super) const MOST_DISKS: usize = PLAYERS.pow(ROUNDS as u32);
 
-    pub(super) fn new(disks: usize) -> Self {
-        let matches = |round: usize| vec![Match::EMPTY; disks.div_ceil(PLAYERS.pow(round as u32 + 1))];
-        let nobody = [Player::NOBODY; ROUNDS];
+    /// Creates a tournament without players.
+    pub(super) fn new() -> Self {
+        let (rounds, beside) = (std::array::from_fn(|_| Vec::new()), [Player::NOBODY; ROUNDS]);
         let [winner, runner_up] = [Player::NOBODY; 2];
-        Self { rounds: std::array::from_fn(matches), winner, beside: nobody, runner_up }
+        Self { rounds, winner, beside, runner_up }
+    }
+
+    /// Empties all matches, of which there are as many as this number of disks needs. The memory is kept, since
+    /// a run resets its scheduler whenever its epoch moves.
+    fn empty(&mut self, disks: usize) {
+        for (round, matches) in self.rounds.iter_mut().enumerate() {
+            matches.clear();
+            matches.resize(disks.div_ceil(PLAYERS.pow(round as u32 + 1)), Match::EMPTY);
+        }
+        self.beside = [Player::NOBODY; ROUNDS];
     }
 
     #[inline(always)]
@@ -100,6 +110,7 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
     }
 
     pub(super) fn reset(&mut self, instructions: Instructions, due: &[f64]) {
+        self.empty(due.len());
         for (disk, &due) in due.iter().enumerate() {
             self.rounds[0][disk / PLAYERS].seat(disk, Player { due: due + 0.0, disk });
         }
@@ -253,9 +264,9 @@ mod tests {
             match due.len() {
                 0 => {}
                 disks if disks <= Wide::<ROUNDS>::MOST_DISKS => {
-                    self.1.insert(Wide::new(disks)).reset(self.0, due);
+                    self.1.insert(Wide::new()).reset(self.0, due);
                 }
-                disks => self.2.insert(Wide::new(disks)).reset(self.0, due),
+                _ => self.2.insert(Wide::new()).reset(self.0, due),
             }
         }
 
