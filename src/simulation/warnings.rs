@@ -19,6 +19,9 @@ const FEWEST: u64 = 1000;
 /// Contact duration, relative to the time between two collisions of a disk, that is long.
 const LONG: f64 = 0.05;
 
+/// Way of a typical disk in the contact duration, in diameters, below which matter is at rest.
+const FAR: f64 = 0.005;
+
 /// Speed across an axis, relative to the speed along it, that is none.
 const STRAIGHT: f64 = 1e-9;
 
@@ -194,12 +197,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // Of a collision of two disks, both take part.
         let rate = |count: u64| 2.0 * count as f64 / (self.len() as f64 * elapsed);
         let free = longest_contact * rate(collisions - elastic);
-        // If the model decides nearly all collisions, few are left to count. Matter at rest is like that,
-        // too, but its disks go nowhere in the contact duration.
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
-        let is_flow = elastic > collisions / 2 && way > LONG * self.bodies.typical_diameter;
-        let share_of_time = if is_flow { longest_contact * rate(collisions) } else { free };
-        let is_long = collisions >= FEWEST && (is_flow || free > LONG);
+        let way = way / self.bodies.typical_diameter;
+        // Matter that collapses has very many collisions before it rests, and few of those in which it flowed.
+        // But its disks go nowhere in the contact duration. If the model decides nearly all collisions of a flow,
+        // on the other hand, few are left to count.
+        let is_flow = way > FAR;
+        let share_of_time = if elastic > collisions / 2 { longest_contact * rate(collisions) } else { free };
+        let is_long = collisions >= FEWEST && is_flow && share_of_time > LONG;
         is_long.then_some(Warning::LongContactDuration { share_of_time, elastic, collisions })
     }
 

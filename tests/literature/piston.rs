@@ -2,6 +2,7 @@
 
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, Series, Snapshot, WallStress, from_fn};
 use granular_edmd::statistics::BlockedMean;
 use granular_edmd::wall::Piston;
@@ -23,6 +24,17 @@ fn henderson(packing: f64) -> (f64, f64) {
     (above / (below * below), packing * (packing / 4.0 / above + 2.0 / below))
 }
 
+/// Returns the density at which disks of temperature 1 have this pressure.
+fn density_at(pressure: f64) -> f64 {
+    let of = |density: f64| density * henderson(0.25 * std::f64::consts::PI * density).0;
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if of(middle) < pressure { low = middle } else { high = middle }
+    }
+    low
+}
+
 /// At six loads, from a dilute gas to a dense fluid. With periodic sides, the force of the lid is that of the
 /// pressure in the bulk, far from lid and floor, on the whole width.
 #[test]
@@ -30,10 +42,12 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
     for pressure in [0.07, 0.2, 0.5, 1.0, 1.8, 2.6] {
         let force = pressure * WIDTH;
         let lid = Piston::new(MASS, 0.0, TOP - 9.0)?.with_force(force)?;
-        let start = (1.2 * DISKS as f64 / force).max(26.0);
+        // Near its mean height, so that it need not lose a swing to the gas first.
+        let start = DISKS as f64 / (WIDTH * density_at(pressure));
         let lid = lid.starting_at(TOP - start, 0.0)?;
         let container = Container::closed(WIDTH, TOP)?.with_periodic_sides()?.with_piston(Wall::Lid, lid)?;
-        let disks = initial::random(&container, DISKS, 0.5, start, 1)?;
+        let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; DISKS];
+        let disks = initial::packed_at_random(&container, disks, start, 1)?;
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
         let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
         run.run_until(1000.0, &mut ())?;

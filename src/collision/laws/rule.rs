@@ -110,10 +110,11 @@ impl Promises {
     /// ```
     /// use granular_edmd::Kind;
     /// use granular_edmd::collision::laws::{Promises, check};
-    /// use granular_edmd::collision::{Elastic, RulesByKind, Smooth};
+    /// use granular_edmd::collision::{RulesByKind, Smooth};
     ///
     /// const SAND: Kind = Kind::new(40);
-    /// let rules = RulesByKind::new(Elastic).with(SAND, SAND, Smooth::from_inelasticity(0.1)?);
+    /// let (hard, soft) = (Smooth::from_inelasticity(0.0)?, Smooth::from_inelasticity(0.1)?);
+    /// let rules = RulesByKind::new(hard).with(SAND, SAND, soft);
     /// check(&rules, &Promises::new().with_kinds(const { &[Kind::DEFAULT, SAND] }))?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

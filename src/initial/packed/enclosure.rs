@@ -83,7 +83,10 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
             None => self
                 .boundary
                 .surface(wall - self.sides().count(), position, time)
-                .with_response(Response::Shared),
+                .with_response(Response::Shared)
+                // A wall that reacts stands still here, like all others.
+                .with_mass(f64::INFINITY)
+                .with_tangential_mass(f64::INFINITY),
         }
     }
 

@@ -27,6 +27,7 @@ compiled_for_each! {
 
 /// Returns whether the vector instructions are written for this gravity: straight down, or none.
 #[inline(always)]
+#[cfg(target_arch = "x86_64")]
 fn pulls_down(bodies: &Bodies) -> bool {
     bodies.gravity.rightward() == 0.0 && bodies.gravity.downward() >= 0.0
 }
