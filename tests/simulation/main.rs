@@ -41,6 +41,6 @@ mod steps;
 mod stopping;
 mod thermal;
 mod traffic;
-#[cfg(feature = "serde")]
 mod warned;
+#[cfg(feature = "serde")]
 mod whole_files;
