@@ -2,13 +2,13 @@
 
 use std::collections::VecDeque;
 
-use granular_edmd::analysis::{StateCriteria, thermal_noise};
 use granular_edmd::boundary::Container;
 use granular_edmd::observable::{
     Accumulator, Collision, ConvectionOrder, DenseLayer, HeightProfile, Observable, OrderParameters, Partner,
     Temperatures,
 };
 use granular_edmd::{ParameterError, Simulation};
+use granular_edmd_study::analysis::{StateCriteria, thermal_noise};
 
 use crate::flow::Flow;
 use crate::plan::Rule;
