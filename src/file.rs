@@ -2,6 +2,7 @@
 //! trajectories and studies are made of, for stores of other packages.
 //!
 //! ```
+//! # #[cfg(feature = "serde")] {
 //! use granular_edmd::file::{Damage, Seal, write_whole};
 //!
 //! const SEAL: Seal = Seal::new(*b"MY STORE", 1);
@@ -14,6 +15,7 @@
 //! bytes[50] ^= 1;
 //! assert_eq!(SEAL.open(&bytes), Err(Damage::Changed));
 //! # std::fs::remove_file(&path)?;
+//! # }
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
