@@ -88,10 +88,10 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// ----------------------------  --------------------------------------  ---------------------------------
 /// a run is built, or its walls  set_time_origin, domain, interior,      cells of neighbors; disks that do
 /// are set                       wall_count, overlap, tight_fit          not fit are refused
-/// cells are made                may_touch of each cell                  cells away from walls, never asked again
+/// cells are made                may_touch of each cell                  cells away from walls, asked once
 /// a disk's flight is predicted  first_touch (in cells at walls)         the end of the flight
-/// the touch is due              surface, overlap                        the contact; the rule gives an impulse,
-///                                                                       or the wall emits or takes the disk
+/// the touch is due              surface, overlap                        contact; a rule gives an impulse,
+///                                                                       or the wall emits or takes it
 /// after the blow                react; if Moved, may_meet of disks      walls with a mass; flights that end
 ///                               at walls, and first_touch again         otherwise now
 /// the epoch moves               set_time_origin                         late times that keep their digits

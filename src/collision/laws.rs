@@ -76,7 +76,8 @@ pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violatio
     let change = impulse.energy_change(contact);
     let mut available = contact.available_energy();
     if impulse.couple() != 0.0 {
-        available += 0.5 * contact.spin_inertia() * contact.relative_spin().powi(2);
+        let spin = contact.relative_spin();
+        available += 0.5 * contact.spin_inertia() * spin * spin;
     }
     unless(change <= ROUNDING * available + LEAST, "energy", contact, impulse, || {
         format!("gains the energy {change:?}")

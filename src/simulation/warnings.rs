@@ -199,9 +199,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;
-        // Matter that collapses has very many collisions before it rests, and few of those in which it flowed.
-        // But its disks go nowhere in the contact duration. If the model decides nearly all collisions of a flow,
-        // on the other hand, few are left to count.
+        // Matter that collapses has very many collisions before it rests, and few while it flowed. But its
+        // disks go nowhere in the contact duration. If the model decides nearly all collisions of a flow, on
+        // the other hand, few are left to count.
         let is_flow = way > FAR;
         let share_of_time = if elastic > collisions / 2 { longest_contact * rate(collisions) } else { free };
         let is_long = collisions >= FEWEST && is_flow && share_of_time > LONG;

@@ -115,7 +115,7 @@ where
 {
     let differ = |&phase: &f64| first.state(phase) != second.state(phase);
     let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
-    let late = (0..LATE).map(|k| INTERVAL * 1.2_f64.powi(k));
+    let late = (0..LATE).map(|k| INTERVAL * libm::pow(1.2, f64::from(k)));
     let mut difference = phases.chain(late).find(differ).map(|phase| format!("at phase {phase:?}"));
     if (first.reach(), first.period()) != (second.reach(), second.period()) {
         difference = Some("in reach or period".to_owned());

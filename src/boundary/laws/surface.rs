@@ -152,7 +152,8 @@ impl Around<'_, '_> {
             (16.0 * first - second - 15.0 * here) / (12.0 * step * step)
         };
         let (wide, narrow) = (bend(WIDE * size), bend(0.5 * WIDE * size));
-        let slack = EXACT / size + 256.0 * f64::EPSILON * self.trial.extent() / (WIDE * size).powi(2);
+        let widest = WIDE * size;
+        let slack = EXACT / size + 256.0 * f64::EPSILON * self.trial.extent() / (widest * widest);
         let is_smooth = (wide - narrow).abs() <= slack;
         let is_close = |expected: f64| (narrow - expected).abs() <= slack;
         let is_curvature = !is_smooth || is_close(-1.0 / (radius + size)) || is_close(-1.0 / size);

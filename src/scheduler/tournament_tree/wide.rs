@@ -94,8 +94,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         Self { rounds, winner, beside, runner_up }
     }
 
-    /// Empties all matches, of which there are as many as this number of disks needs. The memory is kept, since
-    /// a run resets its scheduler whenever its epoch moves.
+    /// Empties all matches, of which there are as many as this number of disks needs. The memory is kept,
+    /// since a run resets its scheduler whenever its epoch moves.
     fn empty(&mut self, disks: usize) {
         for (round, matches) in self.rounds.iter_mut().enumerate() {
             matches.clear();
