@@ -14,7 +14,7 @@ use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Control, Experiment, Plan, Protocol, Study};
 
 use crate::limits::{Limits, in_child};
-use crate::logs;
+use crate::logs::{self, contents};
 use crate::mixture::{Mixture, mixture};
 use crate::report::report;
 use crate::specimens::{Scratch, checkpoint};
@@ -37,25 +37,6 @@ fn plan() -> Plan<VibratedBox> {
 fn own_plan() -> Plan<Mixture> {
     let axis = Axis::new("loss", [0.0, 0.1, 0.2]).unwrap();
     Plan::new(mixture(), Protocol::new(10, 80, 2).unwrap(), 5).unwrap().with_axis(axis).unwrap()
-}
-
-/// Returns all files of a study whose bytes do not depend on how often it was stopped, and each record as if
-/// it were a file.
-fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = logs::records(folder);
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.strip_prefix(folder).unwrap().to_owned();
-            if path.is_dir() {
-                folders.push(path);
-            } else if logs::is_the_same_always(&name) {
-                files.insert(name, fs::read(&path).unwrap());
-            }
-        }
-    }
-    files
 }
 
 fn expected<E: Experiment>(name: &str, plan: &Plan<E>) -> BTreeMap<PathBuf, Vec<u8>> {

@@ -1,6 +1,5 @@
 //! A small study, and the files in its folder.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -10,7 +9,7 @@ use std::time::Duration;
 use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Control, Course, Experiment, Plan, Progress, Protocol, Ramp, Study};
 
-use crate::logs;
+pub(crate) use crate::logs::contents;
 
 pub(crate) type AnyError = Box<dyn std::error::Error>;
 
@@ -48,25 +47,6 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
-}
-
-/// Returns all files of a study whose bytes do not depend on how its work was divided, and each record as if
-/// it were a file.
-pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = logs::records(folder);
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.strip_prefix(folder).unwrap().to_owned();
-            if path.is_dir() {
-                folders.push(path);
-            } else if logs::is_the_same_always(&name) {
-                files.insert(name, fs::read(&path).unwrap());
-            }
-        }
-    }
-    files
 }
 
 /// Does the study of a plan without a break.

@@ -114,6 +114,25 @@ pub(crate) fn lines(folder: &Path) -> String {
 
 /// Returns whether a file of a study has the same bytes however its work was divided: not those of logs and
 /// locks.
-pub(crate) fn is_the_same_always(name: &Path) -> bool {
+fn is_the_same_always(name: &Path) -> bool {
     !name.starts_with("logs") && !name.starts_with("locks")
+}
+
+/// Returns all files of a study whose bytes do not depend on how its work was divided or how often it was
+/// stopped, and each record as if it were a file.
+pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = records(folder);
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(folder).unwrap().to_owned();
+            if path.is_dir() {
+                folders.push(path);
+            } else if is_the_same_always(&name) {
+                files.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
 }

@@ -29,7 +29,7 @@ pub(crate) struct Pair {
 }
 
 /// An honest part with a fingerprint of its own.
-struct Marked<P>(P, Fingerprint);
+pub(crate) struct Marked<P>(pub(crate) P, pub(crate) Fingerprint);
 
 impl<P: CollisionRule> CollisionRule for Marked<P> {
     fn impulse(&self, contact: &Contact) -> Impulse {

@@ -2,46 +2,15 @@
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Impulse, Smooth};
-use granular_edmd::wall::{AccelerationBounds, Delayed, Sinusoidal, WallMotion, WallState};
+use granular_edmd::wall::{Delayed, Sinusoidal, WallMotion};
 use granular_edmd::{Fingerprint, Kind};
 
 use crate::faults::blind::boundaries::marked;
-use crate::faults::blind::fingerprints::{Pair, Parts};
+use crate::faults::blind::fingerprints::{Marked, Pair, Parts};
 use crate::faults::blind::motions::Motion;
 use crate::faults::{List, Planted};
 
 const NAME: Fingerprint = Fingerprint::of("part");
-
-/// A part whose fingerprint is its name.
-struct Nameless<P>(P, Fingerprint);
-
-impl<P: CollisionRule> CollisionRule for Nameless<P> {
-    fn impulse(&self, contact: &Contact) -> Impulse {
-        self.0.impulse(contact)
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(self.1)
-    }
-}
-
-impl<P: WallMotion> WallMotion for Nameless<P> {
-    fn state(&self, phase: f64) -> WallState {
-        self.0.state(phase)
-    }
-
-    fn acceleration(&self, phase: f64) -> AccelerationBounds {
-        self.0.acceleration(phase)
-    }
-
-    fn reach(&self) -> (f64, f64) {
-        self.0.reach()
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(self.1)
-    }
-}
 
 /// A rule that loses more between two disks of this kind.
 struct Soft(Kind);
@@ -55,12 +24,11 @@ impl CollisionRule for Soft {
 
 fn rules<R: CollisionRule + 'static>(parts: [R; 2], marks: [Fingerprint; 2]) -> Parts {
     let [one, other] = parts;
-    Parts::Rules([Box::new(Nameless(one, marks[0])), Box::new(Nameless(other, marks[1]))])
+    Parts::Rules([Box::new(Marked(one, marks[0])), Box::new(Marked(other, marks[1]))])
 }
 
 fn motions<M: WallMotion + Send + Sync + 'static>([one, other]: [M; 2], marks: [Fingerprint; 2]) -> Parts {
-    let [first, second]: [Motion; 2] =
-        [Box::new(Nameless(one, marks[0])), Box::new(Nameless(other, marks[1]))];
+    let [first, second]: [Motion; 2] = [Box::new(Marked(one, marks[0])), Box::new(Marked(other, marks[1]))];
     Parts::Motions([first, second])
 }
 
@@ -120,7 +88,7 @@ pub(crate) fn catalogue() -> Vec<Planted<Pair>> {
         Parts::Boundaries([0.1, 0.2].map(sliding)),
     );
     let kinds = |kind| -> Box<dyn Boundary> {
-        let rule = Nameless(Soft(Kind::new(kind)), NAME);
+        let rule = Marked(Soft(Kind::new(kind)), NAME);
         marked(
             Container::closed(10.0, 12.0).expect("a size").with_rule(Wall::Floor, rule).expect("a floor"),
             NAME,
