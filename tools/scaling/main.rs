@@ -91,6 +91,7 @@ fn finish(rows: &[Row]) -> Outcome<()> {
     draw(&rows.iter().map(table::Time::of).collect::<Vec<_>>())
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the form that it has with the picture")]
 #[cfg(not(feature = "picture"))]
 fn finish(_: &[Row]) -> Outcome<()> {
     println!("\nFor the picture, add `--features picture`.");
