@@ -245,8 +245,10 @@ impl<M: WallMotion + Debug + Send + Sync> Shown for M {}
 /// use proptest::prelude::*;
 ///
 /// let few = ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() };
-/// proptest!(few, |(motion in strategies::motion())| prop_assert_eq!(laws::check(&motion, -1.0, 2.0),
-/// Ok(()))); ```
+/// proptest!(few, |(motion in strategies::motion())| {
+///     prop_assert_eq!(laws::check(&motion, -1.0, 2.0), Ok(()));
+/// });
+/// ```
 pub fn motion() -> impl Strategy<Value = impl WallMotion + Debug + Clone + Send + Sync + 'static> {
     fn of<M: Shown + 'static>(motion: Result<M, impl Debug>) -> Option<Arc<dyn Shown>> {
         motion.ok().map(|motion| Arc::new(motion) as Arc<dyn Shown>)
