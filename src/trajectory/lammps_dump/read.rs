@@ -4,6 +4,7 @@ use std::io::BufRead;
 
 use crate::boundary::Domain;
 use crate::trajectory::ReadError;
+use crate::trajectory::column::Quantity;
 use crate::trajectory::found::Found;
 use crate::trajectory::lines::{Input, Text, checked_box, finite, is_upright, whole};
 use crate::trajectory::table::Table;
@@ -68,6 +69,7 @@ impl Head {
     /// Reads the disks.
     fn table(&self, names: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
         let mut table = Table::of_lammps(names.split_whitespace(), line)?;
+        table.is_own = table.has(Quantity::Angle, 0);
         table.time = self.time.as_ref().map(|(time, line)| finite("the time", time, *line)).transpose()?;
         if let Some((words, bounds)) = &self.bounds {
             let [extent, domain] = domains(words, bounds)?;
