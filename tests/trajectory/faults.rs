@@ -204,8 +204,8 @@ fn faults_of_data_of_lammps() {
     let moving = format!("{atoms}1 1 1 1 4 4 0\n\nVelocities\n\n");
     told(&format!("{moving}3 0 0 0 0 0 0\n"), "line 15: the atom 3, which has a velocity here, is missing");
     told(
-        &format!("{moving}1 0 0 1 0 0 0\n"),
-        "line 10: vz must be 0, for disks move in a plane, but is \"1\"",
+        &format!("{moving}1 0 0 1 0 0 0\n2 0 0 0 0 0 0\n"),
+        "line 11: vz must be 0, for disks move in a plane, but is \"1\"",
     );
     told(
         &format!("{moving}1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),

@@ -118,7 +118,7 @@ fn domains(words: &str, bounds: &[(String, usize); 3]) -> Result<[Domain; 2], Re
     };
     let [left, right, bottom, top] = sides;
     if !is_upright([right - left, top - bottom], tilts) {
-        return Err(ReadError::unexpected(line, "the box", "a rectangle", &bounds[0].0));
+        return Err(ReadError::unexpected(bounds[0].1, "the box", "a rectangle", &bounds[0].0));
     }
     let [sides, ends, _] = flags(words).unwrap_or(["ff"; 3]);
     let extent = Domain::new(left, right, bottom, top);
