@@ -138,6 +138,11 @@ impl Table {
         self.values.chunks(stride).zip(self.lines.iter().copied())
     }
 
+    /// Returns the lines of the rows alone, to free the rest.
+    pub(super) fn into_lines(self) -> Vec<usize> {
+        self.lines
+    }
+
     /// Returns the names of kinds by their numbers.
     pub(super) fn names(&self) -> Vec<&str> {
         let mut names: Vec<(&str, usize)> =
