@@ -99,10 +99,10 @@ use crate::forward::forward;
 /// wall. The engine guarantees about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed and the relative spin are finite, of either sign or zero;
-/// - the masses are finite and positive, the tangential one not above the normal one; those of disks are
-///   between $`10^{-30}`$ and $`10^{30}`$, and so are their radii;
+/// - the masses are finite and positive, the tangential one not above the normal one; masses and radii of
+///   disks are between $`10^{-30}`$ and $`10^{30}`$;
 /// - the radius of a wall is infinite if it is straight, negative if it is hollow, and never zero;
-/// - partner 2 is the wall, if there is one. Of two disks, either may be partner 1.
+/// - in a collision with a wall, partner 2 is the wall. Of two disks, either may be partner 1.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
@@ -141,7 +141,7 @@ pub trait CollisionRule {
 
     /// Returns the rule as data, if it is a rule of this crate, or a remedy or a table of such rules.
     ///
-    /// Files of walls hold their rules in this form. A rule of your own has none.
+    /// Files of walls hold their rules in this form. A custom rule has none.
     fn known(&self) -> Option<KnownRule> {
         None
     }

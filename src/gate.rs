@@ -1,4 +1,4 @@
-//! The gate for values from files: they pass the same checks as those of a constructor.
+//! The gate for values from files: they pass the same checks as a constructor's arguments.
 
 /// Implements `Deserialize`: reads exactly these fields, then evaluates the expression. Its error is a
 /// `ParameterError` unless another type is named.

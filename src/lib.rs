@@ -3,9 +3,10 @@
 //!
 //! The disks are inelastic, rotate and have friction (normal and tangential restitution, static and dynamic
 //! friction). They move under gravity in a box whose base vibrates or is a thermal wall. The engine computes
-//! one collision after the other. The system is that of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction
-//! and convection in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005), called “the
-//! paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, for studies beyond it.
+//! one collision after the other. The system was studied by D. Risso, R. Soto, S. Godoy and P. Cordero,
+//! *Friction and convection in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005),
+//! called “the paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, for
+//! studies beyond it.
 //!
 //! ```
 //! use granular_edmd::prelude::*;

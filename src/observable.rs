@@ -6,9 +6,9 @@
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!
-//! An [`Accumulator`] adds up snapshots, whoever gives them: a [`Sampled`] around it in a run, or a program
-//! with snapshots of its own. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`]
-//! have a clock of their own, since the sampling interval is part of what they measure.
+//! An [`Accumulator`] adds up snapshots, from a [`Sampled`] around it in a run or from your program.
+//! [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have their own clocks,
+//! since the sampling interval is part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|

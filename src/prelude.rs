@@ -1,7 +1,7 @@
 //! The names that most programs need, in one line: `use granular_edmd::prelude::*;`.
 //!
 //! The prelude has everything that a run needs, and all types for a rule, a wall motion, a boundary, a
-//! scheduler, an observable or an observer of your own.
+//! scheduler, an observable or a custom observer.
 
 pub use crate::boundary::{
     Boundary, Brick, Container, Domain, FirstTouch, Obstacles, Part, Region, Response, Surface, Thermal,

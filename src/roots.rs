@@ -1,7 +1,7 @@
 //! First descents of parabolas and quartics: the time at which a gap between two surfaces closes.
 //!
-//! A boundary of your own can find its touches with these functions: write the gap as a polynomial of the
-//! time since the flight began, and ask for its first descent. A straight wall gives a parabola
+//! A custom boundary can find its touches with these functions: write the gap as a polynomial of the time
+//! since the flight began, and ask for its first descent. A straight wall gives a parabola
 //! ([`first_descent`]). A circle gives a polynomial of degree four ([`first_descent_of_quartic`]): the
 //! difference of two squared distances.
 //!

@@ -241,7 +241,7 @@ pub trait WallMotion {
         None
     }
 
-    /// Tells whether the displacement jumps where a piece ends, as that of a [`Sawtooth`] does.
+    /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`].
     ///
     /// Unless given, the answer comes from a look at the first period, or at the first thousand pieces if
     /// they are over earlier.

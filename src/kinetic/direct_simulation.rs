@@ -119,7 +119,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
                 let pairs = self.density * (self.disks.len() - 1) as f64 * PI;
                 self.time -= libm::log(uniform(&mut self.generator)) / (pairs * self.largest_rate());
                 if self.time >= end {
-                    // The waits have no memory, so that of the next run begins anew.
+                    // Waiting times have no memory, so the next run draws a new one.
                     self.time = end;
                     return Ok(());
                 }

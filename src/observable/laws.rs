@@ -30,9 +30,9 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
 /// samples each, at the times that the observer asks for. The first run starts at time 0 and is cut twice:
 /// between two samples, and after a sample; the runs that continue it must ask for the sample that was next.
-/// Then come runs that start later and off the beat, at a late time, and before 0. A run ends early if the
-/// observer stops it or fails. The observer keeps what it has collected in the check, so make a new one for a
-/// measurement. The page "Validation" tells which planted faults the check finds.
+/// Then come runs that start later and between two sampling times, at a late time, and before 0. A run ends
+/// early if the observer stops it or fails. The observer keeps what it has collected in the check, so make a
+/// new one for a measurement. The page "Validation" tells which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -133,7 +133,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(true)
     }
 
-    /// Takes the sample that is wanted, if there is one.
+    /// Takes the sample that is due, or none if the clock names no time.
     fn sample(&mut self) -> Result<bool, Violation> {
         if !self.wanted.is_finite() {
             return Ok(true);

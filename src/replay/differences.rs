@@ -24,7 +24,7 @@ pub struct Differences {
     pub apart: Option<TooFarApart>,
 }
 
-/// A collision of a disk, and the one of as many before that it has in the other run.
+/// The n-th collision of a disk in one run, and its n-th collision in the other.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct OtherPartner {

@@ -40,7 +40,7 @@ pub(super) const SPARE_DISKS: usize = 64;
 /// The disks in the cells of a grid.
 ///
 /// A ring of ghost cells surrounds the grid. Beyond walls, ghosts are empty; at periodic sides and ends, they
-/// mirror the cells of the opposite side. Where disks differ in size, the grid is that of the smallest class,
+/// mirror the cells of the opposite side. Where disks differ in size, the grid belongs to the smallest class,
 /// and each larger class has a layer above it.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
@@ -127,13 +127,13 @@ impl Cells {
         Layouts { smallest: self.grid.layout, larger, classes: self.classes.clone() }
     }
 
-    /// Tells whether a disk of this diameter is of one of the classes for which the cells were made.
+    /// Returns whether a disk of this diameter is of one of the classes for which the cells were made.
     pub(super) fn suit(&self, diameter: f64) -> bool {
         let class = self.classes.get(usize::from(class_of(&self.classes, diameter)));
         class.is_some_and(|class| self.layers.is_none() || diameter >= class.smallest)
     }
 
-    /// Tells whether there are far more or far fewer disks than when the cells were made.
+    /// Returns whether there are far more or far fewer disks than when the cells were made.
     pub(super) fn are_outgrown(&self) -> bool {
         let (before, now) = (count(&self.classes), self.places.len());
         now > 2 * before + SPARE_DISKS || before > 2 * now + SPARE_DISKS
@@ -177,7 +177,7 @@ impl Cells {
         }
     }
 
-    /// Tells whether a disk is of a larger class than the smallest.
+    /// Returns whether a disk is of a larger class than the smallest.
     #[inline]
     pub(super) fn is_large(&self, disk: usize) -> bool {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())

@@ -88,7 +88,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// depend on how a run is cut into pieces.
     ///
     /// # Errors
-    /// The same as for [`Self::run`], and those of kicks: [`RunError::Driving`].
+    /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].
     pub fn run_driven<D: Driving + ?Sized, O: Observer + ?Sized>(
         &mut self,
         limits: &Limits,

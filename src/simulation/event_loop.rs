@@ -218,7 +218,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Tells whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
+    /// Returns whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
         // The answer is no for a velocity that is not a number. Spins need no test: an impulse that makes the

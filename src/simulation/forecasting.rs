@@ -30,8 +30,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.end_flight(disk);
     }
 
-    /// Finds another partner for a disk whose partner has collided meanwhile. The end of the disk's own
-    /// flight in its cell stays.
+    /// Finds another partner for a disk whose partner has collided since. The end of the disk's own flight in
+    /// its cell stays.
     #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
@@ -103,7 +103,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Enlarges the buffer for neighbors to the size that the cells need.
     ///
-    /// The need grows when a cell gets crowded. So this method is called wherever disks enter cells.
+    /// The need grows when a cell gets crowded, so this method is called wherever disks enter cells.
     #[inline]
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;

@@ -67,8 +67,8 @@ impl Inlet {
     ///
     /// Its center is in the rectangle between the two places, the lower left and the upper right corner. The
     /// copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models have
-    /// no meaning. So a distribution is a list of as many disks as it takes, with radii of
-    /// [`Radii`](crate::initial::Radii), for example.
+    /// no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws, for
+    /// example.
     ///
     /// # Errors
     /// If there are no models, or the places are not finite or not in this order.
@@ -155,7 +155,7 @@ impl Inlet {
         if let Source::TakenOut { velocity, .. } = self.source { Some(velocity) } else { None }
     }
 
-    /// Tells whether the inlet puts back what sinks take out.
+    /// Returns whether the inlet puts back what sinks take out.
     pub(super) fn takes_back(&self) -> bool {
         matches!(self.source, Source::TakenOut { .. })
     }

@@ -61,8 +61,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if exit != Exit::Wall || exit_due > now || usize::from(next) != wall {
                 return;
             }
-            // The speed relative to the wall is a difference of speeds, so its rounding error is that of
-            // these speeds.
+            // The speed relative to the wall is a difference of speeds, so it has the rounding error of these
+            // speeds.
             let fallen = self.bodies.fall(now).1.length();
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
             let before = self.bodies.velocity(disk, now);

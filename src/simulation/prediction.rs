@@ -1,6 +1,6 @@
 //! Predictions of the time at which two disks collide.
 //!
-//! `exits.rs` has those of the time at which a disk leaves its cell, and `vector.rs` the same arithmetic in
+//! `exits.rs` computes the time at which a disk leaves its cell, and `vector.rs` the same arithmetic in
 //! vector instructions.
 
 mod exits;
@@ -111,8 +111,8 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Tells whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic would
-/// round differently, and a pair that seems to part here could be predicted to collide.
+/// Returns whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic
+/// would round differently, and a pair that seems to part here could be predicted to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, periods: DVec2, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());
@@ -126,8 +126,8 @@ compiled_for_each! {
     /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known`
     /// if that is earlier.
     ///
-    /// The candidates may include the disk itself, which never meets itself. So the room behind the
-    /// candidates is filled with the disk.
+    /// The candidates may include the disk itself, which never meets itself: the room behind the candidates
+    /// is filled with it.
     #[inline(never)]
     pub(super) earliest_collision(
         bodies: &Bodies, periods: DVec2, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest

@@ -17,8 +17,8 @@ use crate::random::{normal, rayleigh};
 const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
-/// The normal comes from a difference of positions, so its rounding error is that of 1, times the ratio of
-/// the vessel's size to the disks'.
+/// The normal comes from a difference of positions, so its rounding error is ε times the ratio of the
+/// vessel's size to the disks'.
 const GRAZING: f64 = 1e-6;
 
 /// The change of a disk's motion in a collision.
@@ -40,7 +40,7 @@ impl Kick {
         }
     }
 
-    /// Tells whether the kick leads to a motion within the engine's bounds.
+    /// Returns whether the kick leads to a motion within the engine's bounds.
     pub(super) fn is_possible(&self) -> bool {
         let velocity = self.after.velocity.abs();
         velocity.x <= LARGEST && velocity.y <= LARGEST && self.may_spin()
@@ -155,15 +155,15 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     (collision, kick)
 }
 
-/// Tells whether two disks part so fast after a collision that rounding cannot make them approach. Nearly all
-/// do.
+/// Returns whether two disks part so fast after a collision that rounding cannot make them approach. Nearly
+/// all do.
 #[inline]
 pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     let velocity = (kicks[0].after.velocity - kicks[1].after.velocity).abs();
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Tells whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
+/// Returns whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
 /// radius is neither zero nor NaN, and its masses are positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();

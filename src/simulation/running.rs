@@ -89,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let is_due = ended.is_ok() && is_long;
         let ended = if is_due { self.check_all(self.clock.now).and(ended) } else { ended };
         observer.on_end(&self.snapshot());
-        // A verdict to stop comes too late now. A failure, such as that of a last write, must still be
+        // A verdict to stop comes too late now. A failure, of a last write for example, must still be
         // reported.
         let last = self.verdict_of(observer);
         ended.and_then(|end| last.map(|_| end))

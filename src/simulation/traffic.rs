@@ -2,8 +2,8 @@
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
 //! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
-//! of date: their count of collisions is not that of the disk which has this index now. They are made anew
-//! when they come up, like those with a partner that has collided meanwhile.
+//! of date: their collision count does not match the disk that has this index now. They are made anew when
+//! they come up, as for any partner that has collided since.
 
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
@@ -135,7 +135,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Puts a disk in where there is room for it, into cells that suit it.
     fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
-        // The place of a disk at an epoch long ago would lack digits, and so would that of a fast one.
+        // The place of a disk at an epoch long ago would lack digits, and so would the place of a fast disk.
         if self.clock.now > self.clock.epoch_length {
             self.move_epoch(self.clock.now)?;
         }
@@ -160,7 +160,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Makes new cells if these do not suit disks of this diameter. Tells whether the domain has room for
+    /// Makes new cells if these do not suit disks of this diameter. Returns whether the domain has room for
     /// such disks.
     fn make_cells_suit(&mut self, diameter: f64) -> bool {
         self.cells.suit(diameter) || self.renew_cells(self.cells.grid().cell_size(), Some(diameter))

@@ -77,7 +77,7 @@ pub enum Warning {
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
     /// them aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small
-    /// velocities at the start mend it, such as those of
+    /// velocities at the start mend it, for example by
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.

@@ -118,7 +118,7 @@ fn paper_box(inelasticity: f64, friction: f64) -> Result<PaperBox, StateError> {
     Ok(run)
 }
 
-/// Returns the side of a square in which this many disks of diameter 1 have this area fraction.
+/// Returns the side of a square in which `disks` disks of diameter 1 have this area fraction.
 fn side(disks: f64, area_fraction: f64) -> f64 {
     (0.25 * PI * disks / area_fraction).sqrt()
 }

@@ -7,8 +7,8 @@ use super::{Estimate, RunningMean};
 ///
 /// The type keeps the scatter of blocks of 1, 2, 4, … numbers. Its memory grows with the logarithm of their
 /// count, and each number costs constant time on average. [`Self::estimate`] takes the error from the
-/// smallest blocks that are long enough. The result has the same bits as that of
-/// [`block_average`](super::block_average) for a series in memory.
+/// smallest blocks that are long enough. The result has the same bits as
+/// [`block_average`](super::block_average) gives for a series in memory.
 ///
 /// ```
 /// use granular_edmd::statistics::{BlockedMean, block_average};

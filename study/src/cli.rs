@@ -1,8 +1,8 @@
 //! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `replay`, `diff`,
 //! `accept` and `bench`, for any experiment.
 //!
-//! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
-//! the paper's box.
+//! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
+//! paper's box.
 //!
 //! ```no_run
 //! use granular_edmd_study::vibrated_box::{Base, VibratedBox};

@@ -192,8 +192,8 @@ pub enum StudyError {
         /// The file.
         path: PathBuf,
     },
-    /// A record was made with another rule, other walls or another revision than those of the experiment now:
-    /// its code changed.
+    /// A record was made with another rule, other walls or another revision than the experiment has now: its
+    /// code changed.
     #[error(
         "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
         path.display()

@@ -102,7 +102,7 @@ impl Arc {
         Some(Beside { quantities: [after, before], one_is_enough: sector.is_wide })
     }
 
-    /// Tells whether the path stays too far from the brick for a touch. Most paths do.
+    /// Returns whether the path stays too far from the brick for a touch. Most paths do.
     pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
         const LESS: f64 = 1.0 - 1e-9;
         let (from, to) = (path.place - self.center, path.at(wait) - self.center);
@@ -142,7 +142,7 @@ impl Arc {
         Sight { distance, normal, side, weight: if self.radius == 0.0 { 0.0 } else { distance } }
     }
 
-    /// Tells whether a point of the brick may be within `reach` of a region.
+    /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         let nearest = self.center.clamp(region.min, region.max).distance(self.center);
         let farthest = (region.min - self.center).abs().max((region.max - self.center).abs()).length();

@@ -121,7 +121,7 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// Tells whether the condition holds at this time.
+    /// Returns whether the condition holds at this time.
     pub(super) fn holds(&self, time: f64) -> bool {
         let [first, second] = self.quantities.map(|quantity| quantity.at(time) >= 0.0);
         if self.one_is_enough { first || second } else { first && second }

@@ -49,7 +49,8 @@ impl Brick {
     }
 
     /// Returns the first time, not later than `wait`, at which a disk is in the ring of a brick that turns
-    /// about a point: its distance from the point is then that of some place of the brick, up to the radius.
+    /// about a point: its distance from the point then equals the distance of some position on the brick, up
+    /// to the radius.
     pub(in crate::boundary) fn wait_to_enter_ring(
         &self,
         path: &Path,

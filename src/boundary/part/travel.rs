@@ -14,7 +14,7 @@ use crate::{Fingerprint, Flight};
 /// error.
 const PIECES: f64 = 16.0;
 
-/// The motion of a part: along a direction, about a point, both, or none.
+/// The motion of a part: along a direction, about a point, both, or neither.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::boundary) struct Travel {
@@ -186,8 +186,8 @@ impl Travel {
         along.into_iter().chain(turning).reduce(|a, b| a + b).unwrap_or(DVec2::ZERO)
     }
 
-    /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase is
-    /// that of time 0.
+    /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase
+    /// belongs to time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
         let path = Path::exact(place, velocity, pull, flight.radius());
@@ -201,7 +201,7 @@ impl Travel {
         }
     }
 
-    /// Returns the shortest period of the motions, if there is one.
+    /// Returns the shortest period of the motions, or `None` if none of them is periodic.
     pub(in crate::boundary) fn period(&self) -> Option<f64> {
         let along = self.along.as_ref().and_then(|along| along.motion.period());
         along.into_iter().chain(self.frame().map(Turning::period)).reduce(f64::min)
@@ -242,7 +242,7 @@ impl Travel {
         }
     }
 
-    /// Tells whether a brick of the part comes within `reach` of a region at any time.
+    /// Returns whether a brick of the part comes within `reach` of a region at any time.
     pub(in crate::boundary) fn may_reach(&self, brick: &Brick, region: &Region, reach: f64) -> bool {
         let (low, high) = self.reach();
         let reach = reach + low.abs().max(high.abs());

@@ -28,7 +28,7 @@ const COLLISIONS: usize = 4;
 /// Longest time between two steps, in which a disk of the largest size moves by about its radius.
 const LONGEST: f64 = 1.0;
 
-/// Least mass, in units of that of the largest disk.
+/// Least mass, in units of the largest disk's mass.
 const LEAST_MASS: f64 = 1e-20;
 
 /// Fraction of a gap that a disk may grow into, so that it touches nothing.
@@ -60,7 +60,7 @@ impl<'a> Packing<'a> {
         Ok(Self { full, grown: placed(room, full, scale, seed)? })
     }
 
-    /// Tells whether all disks have their full radii.
+    /// Returns whether all disks have their full radii.
     pub(super) fn is_done(&self) -> bool {
         self.grown.iter().zip(self.full).all(|(disk, full)| disk.radius() >= full.radius())
     }

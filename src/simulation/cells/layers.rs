@@ -19,14 +19,14 @@
 //!
 //! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
 //! class, cell and home are the same. A large disk needs both: from anywhere in a home of its own size it
-//! could touch so many small disks that it would have to predict them all, and cells as small as `c` would be
-//! too many to look into.
+//! could touch thousands of small disks and would have to predict them all, and cells as small as `c` would
+//! be too many to look into.
 //!
 //! A pair must find each other from both sides, whichever of the two is searched for. The large disk looks
 //! into the homes of its reach. The small disk cannot look up: the cells above it that reach its home are too
-//! many. So each home keeps a list of *visitors*, the larger disks in whose reach it lies. When the large
-//! disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought up to
-//! date there, and only the small disks there are new partners.
+//! many. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it lies. When the
+//! large disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought
+//! up to date there, and only the small disks there are new partners.
 
 use glam::DVec2;
 
@@ -71,8 +71,7 @@ pub(super) fn layouts(
     highest: f64,
 ) -> Option<Layouts> {
     let SizeClass { largest: diameter, count, .. } = classes[0];
-    // Large disks look into many of these cells. So there are fewer of them than if all disks had the same
-    // cells.
+    // Large disks look into many of these cells, so they are made fewer than if all disks had the same cells.
     let most = cells_per_small_disk(cell_size) * count as f64 + SPARE_SMALL_CELLS;
     let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
     let grid = Grid::new(domain, smallest, diameter);
@@ -104,7 +103,7 @@ impl Layers {
         let mut larger: Vec<Layer> = layouts.iter().map(|&layout| Layer::empty(domain, layout)).collect();
         let distances = |a: usize, b: usize| Distances {
             most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
-            // The least distance is smaller than that of a touch, with room for overlaps by rounding. Within
+            // The least distance is below the distance of a touch, with room for overlaps by rounding. Within
             // a class there is no hole, since a home is too large to fit inside a disk.
             least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
@@ -248,7 +247,7 @@ impl Layers {
     }
 }
 
-/// Tells whether a disk in its home and a disk of a larger class in its cell are less than half a period
+/// Returns whether a disk in its home and a disk of a larger class in its cell are less than half a period
 /// apart as long as they are within each other's reach. Then they keep meeting at the same image.
 fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) -> bool {
     let touching = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a + 1].largest + classes[b + 1].largest);

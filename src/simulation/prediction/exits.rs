@@ -25,7 +25,7 @@ compiled_for_each! {
         }
 }
 
-/// Returns whether the vector instructions are written for this gravity: straight down, or none.
+/// Returns whether the vector instructions are written for this gravity: straight down, or zero.
 #[inline(always)]
 #[cfg(target_arch = "x86_64")]
 fn pulls_down(bodies: &Bodies) -> bool {

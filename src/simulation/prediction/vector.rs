@@ -9,7 +9,7 @@
 //!    [`load`](crate::instructions::load) read as much as they say, and arguments come in registers or from
 //!    tables, never as an array or a rectangle that was just built.
 //! 2. **Two searches in one loop.** After a collision, neither of the two depends on the other, and the root
-//!    and the quotient of a search take most of its time. So one is computed while the other waits.
+//!    and the quotient of a search take most of its time, so one is computed while the other waits.
 //! 3. **Two exits in one vector**, with one root and two quotients for both.
 
 pub(super) mod exits;

@@ -90,7 +90,7 @@ impl Protocol {
         Ok(Self { most_collisions: Some(most), ..self })
     }
 
-    /// Returns the largest number of collisions in a value, if there is one.
+    /// Returns the largest number of collisions in a value, or `None` if there is no limit.
     pub const fn most_collisions(&self) -> Option<u64> {
         self.most_collisions
     }
