@@ -69,6 +69,8 @@ impl Cells {
         let largest =
             classes.last().map_or_else(|| SizeClass::of_nobody(&domain).largest, |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
+        // Also where layers are used: this layout says whether the domain has room for the largest disk at
+        // all.
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // All disks share the cells of the largest if periodic sides or ends are too close for layers.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
@@ -153,6 +155,7 @@ impl Cells {
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
         self.change(disk, Contents::remove);
+        // The last disk is found by its old number for the last time, and is written anew under the free one.
         if disk != last {
             self.change(last, Contents::remove);
         }
@@ -318,6 +321,8 @@ impl Cells {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
+        // Where two images cannot be told apart, a disk seen from the last cell may be met at another image
+        // now, so all are taken again.
         layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
     }
 

@@ -89,7 +89,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
         let nobody = earliest.partner as usize >= self.bodies.len();
+        // The disk stands in for nobody, since the count of some disk is read in any case.
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
+        // A known collision keeps the count of its own prediction. With the partner's present count, a
+        // prediction that the partner's last collision has outdated would count as valid.
         let counted = self.forecast(disk).partner_collisions;
         let collisions = select_unpredictable(earliest == known, counted, self.forecast(partner).collisions);
         self.forecast_mut(disk).set_collision(earliest, collisions);
@@ -139,6 +142,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (time, exit) = match self.boundary.first_touch(&flight, until) {
             FirstTouch::At(Touch { time, wall }) => {
                 self.forecast_mut(disk).wall = wall as u16;
+                // A prediction cannot return an error. An impossible touch is due immediately, and is
+                // reported when its turn comes.
                 let is_possible = time >= now && time <= until && wall < self.wall_count;
                 if is_possible { (time, Exit::Wall) } else { (now, Exit::Impossible) }
             }

@@ -173,6 +173,8 @@ fn search<const COPY: u8>(
     candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
     let candidates = &candidates[..count.next_multiple_of(LANES)];
     let image = |x: f64, y: f64| (nearest_image(x, periods.x), nearest_image(y, periods.y));
+    // The choice is made outside the loop over pairs, so each of the four loops tests neither sizes nor
+    // periods.
     match (bodies.common_diameter(), periods == DVec2::ZERO) {
         (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x, y| (x, y)),
         (Some(diameter), false) => scan(bodies, disk, candidates, now, known, |_| diameter, image),

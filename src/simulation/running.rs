@@ -165,6 +165,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                     return Ok(RunEnd::Observer);
                 }
             }
+            // Before a sample at the same time, which then sees the new disks.
             if opening <= stop {
                 self.open_inlets(opening, observer)?;
                 continue;
@@ -203,6 +204,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
+        // The difference is rounded, and must not take the run back behind its last event.
         self.clock.now = self.clock.now.max(stop - self.clock.origin);
         Ok(Reached::Time)
     }

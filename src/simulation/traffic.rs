@@ -124,8 +124,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let last = self.len() - 1;
         self.cells.take_out(disk);
         self.bodies.swap_remove(disk);
+        // The lookahead holds indices, of which the last one no longer exists.
         self.lookahead.forget();
         self.make_room();
+        // The scheduler cannot remove a disk. One that is never due is the same to it.
         self.scheduler.set(last, f64::INFINITY);
         if disk != last {
             self.schedule(disk);
@@ -140,6 +142,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.move_epoch(self.clock.now)?;
         }
         let velocity = disk.velocity() - self.bodies.fall(self.clock.now).1;
+        // The length of an epoch is measured in the typical diameter, which no disk has defined yet.
         if self.is_empty() {
             self.bodies.typical_diameter = 2.0 * disk.radius();
         }

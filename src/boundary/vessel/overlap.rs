@@ -24,6 +24,8 @@ impl Vessel {
         let mut near: Vec<(usize, Entry)> = near.collect();
         near.sort_by_key(|(part, _)| *part);
         let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
+            // If the disk does not reach the nearest brick of these cells, a nearer one may lie in other
+            // cells.
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
                 Some((wall, sighted)) if sighted.distance() <= radius => {
                     Some(Overlap::new(wall, radius - sighted.signed_distance()))

@@ -55,6 +55,8 @@ impl Vessel {
         let mut moving: Vec<Entry> = Vec::new();
         let mut last = None;
         for entry in self.index.near(low, high) {
+            // A brick that lies in several cells comes several times, mostly in a row. A second search of a
+            // brick at rest costs time and changes nothing.
             if last.replace(entry) == Some(entry) {
                 continue;
             }
@@ -104,6 +106,8 @@ impl Vessel {
         let end = until.min(other.time());
         let (mut from, mut steps) = (flight.time(), 0);
         loop {
+            // All bricks take turns. The back of an arm never meets the disk that its front is about to hit,
+            // and a search of the back alone would use up all steps.
             let mut first = other;
             for &entry in moving {
                 let wall = &self.walls[entry.wall as usize];

@@ -181,6 +181,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
             // Both play in the last match. The climber is compared last of all, since its time is known last.
             let others = matches[0].earliest_without(winners_seat, seat, earliest);
             matches[0].seat(seat, climber);
+            // If both came from the same match of the round before, the climber was compared there, in
+            // `beside`.
             let is_beside = seat == winners_seat;
             let late = Player { due: if is_beside { f64::INFINITY } else { climber.due }, ..climber };
             self.runner_up = self.runner_up.or(others).or(late);

@@ -74,6 +74,7 @@ impl Contents {
     fn remove_from_crowded(&mut self, cell: usize, disk: u32) {
         let block = &mut self.blocks[cell];
         let Some(crowd) = block.crowd() else { return };
+        // The crowd gives up its last disk, which then fills the gap, be it in the block or in the crowd.
         let (last, left) = self.crowds.pop(crowd);
         match left {
             Some(crowd) => block.set_crowd(crowd),
