@@ -111,7 +111,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
 ///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`. A search
 ///    that cannot come to an end says how far the way is free, which is later than the flight begins.
-/// 4. If the disk already touches a wall, even if only by rounding, that touch is found at once while the
+/// 4. If the disk already touches a wall, even if only by rounding, that touch is found immediately while the
 ///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives the unit normal that points from the wall to the disk, the gradient of
 ///    the gap, to $`10^{-8}`$. The velocity is the velocity of the wall's material at the touch, whatever the
@@ -156,13 +156,13 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
-/// `docs/validation.md` tells which planted faults they find. The engine notices many faults, too. At each
+/// `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
 /// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, and it must be no deeper
 /// in one than 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a
 /// disk that has left the domain, and a disk that overlaps a wall at the end of a search that found no touch.
 /// A missed touch with a thin wall that disks meet from both sides stays unseen. A touch with a wall that the
-/// disk is leaving comes again at once, until the run fails for lack of progress. A velocity or a normal that
-/// is not finite is an error of the run.
+/// disk is leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal
+/// that is not finite is an error of the run.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -266,8 +266,8 @@ pub trait Boundary {
 
     /// Returns the first touch of this flight, not later than `until`.
     ///
-    /// If the disk already touches a wall, that touch is found at once while the disk approaches the wall,
-    /// and never while the disk leaves it.
+    /// If the disk already touches a wall, that touch is found immediately while the disk approaches the
+    /// wall, and never while the disk leaves it.
     ///
     /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up
     /// to which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time, so a

@@ -108,8 +108,8 @@ use crate::forward::forward;
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
 ///    the contact. Otherwise, a run would depend on earlier calls, and a resumed run would differ.
 /// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and the contact.
-/// 3. The surfaces no longer close after the collision. Otherwise, they collide again at once, until the run
-///    ends as stalled.
+/// 3. The surfaces no longer close after the collision. Otherwise, they collide again immediately, until the
+///    run ends as stalled.
 /// 4. The collision gains no energy, of the relative motion of the surfaces and of the relative spin, unless
 ///    the rule is meant to drive. Otherwise, the system heats up unnoticed.
 /// 5. The partners exchanged give the same physics: the same normal and tangential impulse, and the opposite
@@ -120,7 +120,7 @@ use crate::forward::forward;
 ///
 /// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
 /// [`laws::check`] tests it. The promises that it takes say which of 4 to 6 a rule does not give, and which
-/// others it gives: friction and rolling friction within their limits. `docs/validation.md` tells which
+/// others it gives: friction and rolling friction within their limits. `docs/validation.md` says which
 /// planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",

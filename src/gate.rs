@@ -39,7 +39,7 @@ pub(crate) use from_file;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Empty {}
 
-/// Lets files hold a type without fields as [`Empty`].
+/// Implements reading and writing of a type without fields as [`Empty`].
 macro_rules! without_fields {
     ($($name:ident),+) => {
         $(#[cfg(feature = "serde")]

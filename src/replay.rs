@@ -151,7 +151,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// If the parts of the run do not answer as they did the first time.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
         let start = &self.states[0];
-        // Disks that touch at the start collide at once.
+        // Disks that touch at the start collide immediately.
         let run = if from < start.time() { Some(start.clone()) } else { self.at(from)? };
         run.filter(|run| run.time() <= to).map_or(Ok(Vec::new()), |run| self.played(run, to))
     }

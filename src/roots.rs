@@ -7,7 +7,7 @@
 //!
 //! Both functions follow the stable event detection of Bannerman et al. (2014). Rounding leaves a gap
 //! slightly open or slightly closed at each touch. A search that looked at the sign alone would either find
-//! the same touch again at once, or miss the next one and let the surfaces pass through each other.
+//! the same touch again immediately, or miss the next one and let the surfaces pass through each other.
 //! Therefore, a closed gap counts only while it closes.
 
 mod parabola;

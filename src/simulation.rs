@@ -301,8 +301,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets other walls from now on.
     ///
-    /// Moving walls are where their motions are at the present time. A wall that is thereby elsewhere at once
-    /// is a [`Warning`].
+    /// Moving walls are where their motions are at the present time. A wall that is thereby suddenly
+    /// elsewhere is a [`Warning`].
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation

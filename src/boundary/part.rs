@@ -188,8 +188,8 @@ impl Part {
         self.kinds.is_empty() || self.kinds.contains(&kind)
     }
 
-    /// Returns whether the part treats disks otherwise than a plain wall, so that it replaces the section of
-    /// a wall in which it lies.
+    /// Returns whether the part treats disks differently from a plain wall, so that it replaces the section
+    /// of a wall in which it lies.
     pub(super) fn is_patch(&self) -> bool {
         let is_plain = matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL;
         !is_plain || self.surface_speed != 0.0

@@ -78,7 +78,7 @@ pub struct Vessel {
     index: Index,
     /// The parts that move and that disks may not overlap.
     moving: Vec<u32>,
-    /// True if a part treats disks otherwise than a plain wall.
+    /// True if a part treats disks differently from a plain wall.
     has_patches: bool,
     /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,

@@ -100,7 +100,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         self.collisions
     }
 
-    /// Lets the disks collide until this time.
+    /// Runs collisions until this time.
     ///
     /// # Errors
     /// If the time is not finite or has passed, or the rule makes a disk faster than 1e60 or its velocity

@@ -89,7 +89,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
 /// breaks another, it gets samples at times that it did not mean. [`SampleTimes`](super::SampleTimes) keeps
-/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` tells which planted
+/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` says which planted
 /// faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",

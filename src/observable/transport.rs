@@ -51,7 +51,7 @@ type Moments = [DVec2; MOMENTS];
 /// One observer measures one gas, in one run or in runs that continue each other. A run ends with an error if
 /// it does not continue the previous one, if the domain is not periodic in both directions or another one, if
 /// there is gravity, if a disk meets a wall, if a collision of disks changes the energy by more than 1e-6 of
-/// theirs, or if disks change otherwise than by collisions, be it by an inlet, by a driving, or between two
+/// theirs, or if disks change by anything but collisions, be it by an inlet, by a driving, or between two
 /// runs. The first interval, as long as the longest lag, only finds the pressure. The errors come from blocks
 /// of origins.
 ///
@@ -120,7 +120,7 @@ impl Mover {
         }
     }
 
-    /// Returns whether two motions are the same but for this rounding of speeds.
+    /// Returns whether two motions are the same up to this rounding of speeds.
     fn is_like(&self, other: &Self, rounding: f64) -> bool {
         let spin = (self.radius * (self.angular_velocity - other.angular_velocity)).abs();
         (self.mass, self.moment_of_inertia, self.radius)

@@ -23,7 +23,7 @@ use crate::{Disk, ParameterError};
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
 /// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas with the same
 /// number of disks. All cumulants of a Maxwellian gas are therefore 0, for any number of disks. Errors come
-/// from blocks of samples. A sample is left out if its disks all move alike, but for rounding.
+/// from blocks of samples. A sample is left out if its disks all move alike, up to rounding.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity.

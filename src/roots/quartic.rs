@@ -16,7 +16,7 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 ///
 /// It means the same as [`first_descent`], which handles polynomials of degree two and less:
 /// - An open gap counts at the first zero through which it falls.
-/// - A gap that is closed and closes further counts at once, at time 0.
+/// - A gap that is closed and closes further counts immediately, at time 0.
 /// - A gap that is closed but rises counts when it closes next. If it has not opened by then, it counts when
 ///   it falls back to its first value.
 ///

@@ -187,7 +187,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Takes a disk out of the run that has come to a sink.
+    /// Removes a disk that has come to a sink from the run.
     #[cold]
     #[inline(never)]
     fn absorb<O: Observer + ?Sized>(
@@ -278,7 +278,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.forecast_mut(disk).count_collision();
     }
 
-    /// Takes a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an
+    /// Moves a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an
     /// earlier partner.
     #[inline(always)]
     fn cross(&mut self, disk: usize, exit: Exit) {
@@ -306,7 +306,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk);
     }
 
-    /// Takes a disk of a larger class to its next cell.
+    /// Moves a disk of a larger class to its next cell.
     #[inline(never)]
     fn cross_large(&mut self, disk: usize, exit: Exit) {
         self.counters.cell_crossings += 1;

@@ -80,7 +80,7 @@ pub struct Counters {
     pub removals: u64,
     /// Disks that inlets let in.
     pub insertions: u64,
-    /// Walls that were elsewhere at once when the boundary was set between runs.
+    /// Walls that were suddenly elsewhere when the boundary was set between runs.
     pub wall_jumps: u64,
     /// Farthest way of such a wall.
     pub farthest_jump: f64,

@@ -17,7 +17,7 @@ const EVENTS_BETWEEN_LOOKS: u64 = 256;
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
 /// flag that another thread sets.
 ///
-/// [`Simulation::run`](crate::Simulation::run) tells which of them ended the run. In each case, the next run
+/// [`Simulation::run`](crate::Simulation::run) says which of them ended the run. In each case, the next run
 /// continues with the bits that the run would have had without the limit. Observers end runs by their
 /// [verdict](crate::observable::Observer::verdict).
 ///

@@ -23,8 +23,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// approach.
     ///
     /// Velocities are rounded relative to themselves, not to their difference. A rule that takes all of the
-    /// closing speed leaves some 1e-17 of it, of either sign. Disks that touch and still approach collide at
-    /// once, again and again. Therefore, the speed at which the disks part is raised in steps of its
+    /// closing speed leaves about 1e-17 of it, of either sign. Disks that touch and still approach collide
+    /// immediately, again and again. Therefore, the speed at which the disks part is raised in steps of its
     /// rounding, until the prediction sees them part.
     #[cold]
     #[inline(never)]

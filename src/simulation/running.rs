@@ -48,7 +48,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Errors
     /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
     /// scheduler or observer gives an impossible answer, times become too coarse, or an observer fails. The
-    /// simulation then keeps the state of that moment.
+    /// simulation then keeps the state of that time.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
         limits: &Limits,

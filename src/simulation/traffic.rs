@@ -46,7 +46,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         &self.inlets
     }
 
-    /// Takes all inlets away, and returns them with the disks that wait.
+    /// Removes all inlets, and returns them with the disks that wait.
     pub fn remove_inlets(&mut self) -> Vec<Inlet> {
         std::mem::take(&mut self.inlets)
     }
@@ -119,7 +119,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Takes a disk out. The last one gets its index.
+    /// Removes a disk. The last one gets its index.
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.len() - 1;
         self.cells.take_out(disk);

@@ -41,7 +41,7 @@ const JUMP: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A wall was elsewhere at once when the boundary was set between two runs, and hit no disk. A motion
+    /// A wall was suddenly elsewhere when the boundary was set between two runs, and hit no disk. A motion
     /// that begins at another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
     WallJumped {
         /// The wall that jumped farthest.

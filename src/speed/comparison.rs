@@ -1,4 +1,4 @@
-//! Two runs in turn, and what their times say about each other.
+//! Two runs in alternation, and what their times say about each other.
 
 use std::fmt;
 
@@ -37,7 +37,7 @@ const OUTSIDE: usize = 78;
 /// # }
 /// ```
 ///
-/// Criterion does not run two benches in turn: a difference of some percent is for a [`Comparison`].
+/// Criterion does not alternate two benches: a difference of some percent is for a [`Comparison`].
 ///
 /// # Errors
 /// The same as for [`Simulation::run`].
@@ -53,7 +53,7 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
     Ok(meter.report(&run))
 }
 
-/// The time of a collision in one run over that in another, from stretches in turn.
+/// The time of a collision in one run over that in another, from alternating stretches.
 ///
 /// Stretches of the two runs follow each other in pairs, and each pair gives a ratio, so what slows both
 /// cancels. Stretches of one run do the same work each time, from the same state. A rule with other physics

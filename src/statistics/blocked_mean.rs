@@ -44,7 +44,7 @@ impl BlockedMean {
         Self(Vec::with_capacity(u64::BITS as usize))
     }
 
-    /// Takes one more number.
+    /// Adds a number.
     #[inline]
     pub fn push(&mut self, value: f64) {
         let mut block = value;

@@ -62,7 +62,7 @@ impl Histogram {
         Ok(Self { bins, before: counts.clone(), counts, below: 0, above: 0, count: 0, shares })
     }
 
-    /// Takes one more number.
+    /// Adds a number.
     ///
     /// NaN is left out.
     #[inline]

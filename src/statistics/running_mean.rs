@@ -19,7 +19,7 @@ use super::{Estimate, Moments};
 pub struct RunningMean(Moments);
 
 impl RunningMean {
-    /// Takes one more number.
+    /// Adds a number.
     #[inline]
     pub fn push(&mut self, value: f64) {
         self.0.push(value, 1.0);

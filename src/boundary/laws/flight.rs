@@ -245,7 +245,7 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
     bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
 }
 
-/// Returns whether two surfaces are the same but for the rounding of late times, which is a place on a wall
+/// Returns whether two surfaces are the same up to the rounding of late times, which is a place on a wall
 /// that moves.
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();

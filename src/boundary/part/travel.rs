@@ -65,7 +65,7 @@ impl Phase {
     }
 }
 
-/// A flight in the frame of a part, from one moment to a later one.
+/// A flight in the frame of a part, from one time to a later one.
 pub(in crate::boundary) struct Look {
     pub(in crate::boundary) path: Path,
     pub(in crate::boundary) until: f64,

@@ -77,7 +77,7 @@ impl<'a> Packing<'a> {
         self.grown.iter().map(Disk::position)
     }
 
-    /// Lets the disks move and collide for a while.
+    /// Moves the disks for a while, with collisions.
     pub(super) fn stir<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), PlacementError> {
         let disks = self.grown.iter().copied();
         let mut run = Simulation::builder(Elastic, room.clone()).disks(disks).build()?;
@@ -92,7 +92,7 @@ impl<'a> Packing<'a> {
         Ok(())
     }
 
-    /// Lets each disk grow into the room around it.
+    /// Grows each disk into the room around it.
     pub(super) fn grow<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), ParameterError> {
         let domain = room.domain();
         let mut squares = Squares::new(&domain, self.full.iter().map(Disk::radius));

@@ -6,7 +6,7 @@ use crate::disk::MOST_DISKS;
 pub(super) const SLOTS: usize = 4;
 
 /// Bits of the number of a disk. In the first slot, the bits above these hold the number of slots taken, or
-/// [`CROWDED`] if the last slot links to more disks. The highest bit tells whether the disks of the cell can
+/// [`CROWDED`] if the last slot links to more disks. The highest bit is set if the disks of the cell can
 /// touch a wall.
 const DISK: u32 = (1 << 28) - 1;
 const ONE: u32 = DISK + 1;

@@ -62,7 +62,7 @@ impl Crowds {
         crowd
     }
 
-    /// Takes any disk out of a crowd. Returns the disk, and the new number of the crowd if disks are left in
+    /// Removes any disk from a crowd. Returns the disk, and the new number of the crowd if disks are left in
     /// it.
     pub(super) fn pop(&mut self, crowd: u32) -> (u32, Option<u32>) {
         let first = &mut self.parts[crowd as usize];

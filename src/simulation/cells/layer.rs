@@ -201,7 +201,7 @@ impl Layer {
         self.contents.is_at_wall(self.home(place))
     }
 
-    /// Takes a disk from one cell to another.
+    /// Moves a disk from one cell to another.
     pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
         let (old, new) = (self.home(from), self.home(to));
         if old != new {

@@ -162,7 +162,7 @@ impl Layers {
         }
     }
 
-    /// Takes a disk of a larger class from one cell to another.
+    /// Moves a disk of a larger class from one cell to another.
     pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;

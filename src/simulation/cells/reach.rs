@@ -4,11 +4,11 @@
 //! columns and its rows, each with the columns or rows of the hole. They are tables, one entry for each
 //! column and row of the disk's own grid: the searches of large disks read them all the time, and a table
 //! costs one load, where the edges of uneven rows would have to be searched. Homes of a column lie next to
-//! each other in memory, so the reach is walked through in runs of rows.
+//! each other in memory, so the reach is traversed in runs of rows.
 //!
-//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back at once.
-//! Rows are kept as they are counted, so that reach, hole and difference of two reaches are plain intervals,
-//! and are brought back only when a run is handed out, then in two pieces.
+//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back
+//! immediately. Rows are kept as they are counted, so that reach, hole and difference of two reaches are
+//! plain intervals, and are brought back only when a run is handed out, then in two pieces.
 
 use super::grid::{Grid, Place};
 
@@ -75,7 +75,7 @@ impl Reach {
         let periods = homes.grid.periods();
         // Half the width of the square in the circle on which the nearest possible centers lie. A home in
         // this square is nearer than a touch even with its corners. The homes between square and circle hold
-        // no disks either, but a rectangle is quicker to walk around than what would be left.
+        // no disks either, but a rectangle is quicker to traverse than what would be left.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
             // A disk is in its home up to a margin beyond the edge, so the reach goes as much further. The

@@ -4,7 +4,7 @@
 //! Three things here are not in the plain code, and are what makes it faster:
 //! 1. **Nothing is read that was just written in pieces.** The processor can pass a number on from a write to
 //!    a read only if the write covers all of the read. Otherwise the read waits until the writes have left
-//!    for the cache, some 15 cycles, and the whole search waits with it. From the plain code, the compiler
+//!    for the cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler
 //!    makes such reads: it merges four numbers that lie side by side into one vector. The functions of
 //!    [`load`](crate::instructions::load) read as much as they say, and arguments come in registers or from
 //!    tables, never as an array or a rectangle that was just built.
