@@ -48,12 +48,15 @@ type Moments = [DVec2; MOMENTS];
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
-/// One observer measures one gas, in one run or in runs that continue each other. A run ends with an error if
-/// it does not continue the previous one, if the domain is not periodic in both directions or another one, if
-/// there is gravity, if a disk meets a wall, if a collision of disks changes the energy by more than 1e-6 of
-/// theirs, or if disks change by anything but collisions, be it by an inlet, by a driving, or between two
-/// runs. The first interval, as long as the longest lag, only finds the pressure. The errors come from blocks
-/// of origins.
+/// One observer measures one gas, in one run or in runs that continue each other. The first interval, as long
+/// as the longest lag, only finds the pressure. The errors come from blocks of origins.
+///
+/// A run ends with an error if
+/// - it does not continue the previous run;
+/// - the domain is not periodic in both directions, or is another one than before;
+/// - there is gravity, or a disk meets a wall;
+/// - a collision of disks changes the energy by more than 1e-6 of their energy;
+/// - disks change by anything but collisions: an inlet, a driving, or a change between two runs.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

@@ -253,7 +253,7 @@ impl PlanError {
     }
 }
 
-/// Returns a message with its lines cut short, since it repeats a line of the text, which may be long.
+/// Shortens the lines of a message that quotes its input.
 pub(super) fn shortened(message: &str) -> String {
     const LONGEST: usize = 160;
     let short = |line: &str| match line.char_indices().nth(LONGEST) {

@@ -33,7 +33,7 @@ pub enum RunError {
     /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
     /// ever more often.
     #[error(
-        "the run stalled at time {}: {events} events took it only {} further; disk {disk}{} is next to collide: \
+        "the run stalled at time {}: it advanced by only {} in {events} events; disk {disk}{} is next to collide: \
          {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
         Rounded(*.time), Rounded(*.elapsed), named(*.partner, .wall.as_deref())
     )]
