@@ -139,6 +139,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         let [one, other] = [first, second].map(|disk| self.disks[disk]);
         let contact = one.radius() + other.radius();
         let closing = (other.velocity() - one.velocity()).dot(normal);
+        // A pair that recedes has a negative rate, and is always refused.
         if uniform(&mut self.generator) * self.largest_rate() >= contact * closing {
             return Ok(());
         }

@@ -74,6 +74,7 @@ impl Arc {
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let (r, v, a) = (path.place - self.center, path.velocity, path.acceleration);
         let (k, s) = (path.widening, path.spread);
+        // The constant terms below are products, so a gap far smaller than the circle keeps its digits.
         let square = [2.0 * r.dot(v), v.length_squared() + r.dot(a), v.dot(a), 0.25 * a.length_squared()];
         match side {
             Side::Right => {

@@ -109,6 +109,8 @@ impl Along {
     /// Describes a path in the frame that moves along, with the acceleration in the middle of its bounds.
     fn look(&self, path: &Path, phase: f64, time: f64) -> Look {
         let (state, bounds) = (self.motion.state(time + phase), self.motion.acceleration(time + phase));
+        // From the middle, the true acceleration differs by half of the range at most, and the disk grows
+        // least.
         let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
         let path = Path {
             place: path.place - self.direction * state.displacement,
