@@ -27,7 +27,7 @@ use crate::{Disk, ParameterError};
 /// The random numbers are those of the seed alone, and the clock and they are part of what serde writes.
 ///
 /// ```
-/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::observable::{EnergyChange, SampleTimes};
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::WhiteNoise;
 ///
