@@ -10,6 +10,7 @@
 //!
 //! ```
 //! use granular_edmd::prelude::*;
+//! use granular_edmd::observable::EnergyChange;
 //!
 //! // A box smaller than the paper's: width 20, height 50,
 //! // over a base of amplitude 0.1 and angular frequency 10.

@@ -7,6 +7,7 @@
 //!
 //! ```
 //! use granular_edmd::prelude::*;
+//! use granular_edmd::observable::on_collision;
 //! use granular_edmd::replay::Replay;
 //!
 //! let container = Container::closed(12.0, 12.0)?;

@@ -22,6 +22,7 @@ use crate::{Disk, Kind, ParameterError};
 ///
 /// ```
 /// use granular_edmd::prelude::*;
+/// use granular_edmd::simulation::Inlet;
 ///
 /// // A shower of four grains for each unit of time, onto a floor that takes them out.
 /// let container = Container::open(10.0)?.with_absorbing(Wall::Floor)?;

@@ -27,7 +27,7 @@ use crate::{Disk, ParameterError};
 /// The random numbers follow from the seed alone; serde writes their state and the clock.
 ///
 /// ```
-/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::observable::{EnergyChange, SampleTimes};
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::WhiteNoise;
 ///

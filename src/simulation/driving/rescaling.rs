@@ -15,7 +15,7 @@ use crate::{Disk, ParameterError};
 /// one that cools, with the same $`T_r/T`$ and cumulants, and never becomes slow.
 ///
 /// ```
-/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::observable::{SampleTimes, Temperatures};
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::Rescaling;
 ///
