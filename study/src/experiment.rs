@@ -173,8 +173,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the driving of a value, which kicks all disks at set times, or `None`.
     ///
-    /// Each value has a driving of its own, with a seed of its own, which begins with the value and is saved
-    /// with it.
+    /// Each value has a separate driving, with its seed, which begins with the value and is saved with it.
     ///
     /// # Errors
     /// If these parameters do not give one.

@@ -23,7 +23,7 @@ use refinement::{Seen, Step};
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
-/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a seed of its own and
+/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a separate seed and
 /// independent of all others. Each step of a ramp is a *value*. Without axes, the grid has one point. Without
 /// a ramp, each point has one value.
 ///

@@ -1,7 +1,7 @@
 //! Layers of cells for disks of several sizes.
 //!
-//! The smallest class has the cells of the engine, and each larger class has a layer of its own above them.
-//! The picture shows a large disk over the homes of a smaller class, one character for each home:
+//! The smallest class has the cells of the engine, and each larger class has a layer above them. The picture
+//! shows a large disk over the homes of a smaller class, one character for each home:
 //!
 //! ```text
 //!     . . . . . . . . . . .     c  the cell of the large disk: its center is somewhere in it
@@ -18,9 +18,9 @@
 //! ```
 //!
 //! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
-//! class, cell and home are the same. A large disk needs both: from anywhere in a home of its own size it
-//! could touch thousands of small disks and would have to predict them all, and cells as small as `c` would
-//! be too many to look into.
+//! class, cell and home are the same. A large disk needs both: from anywhere in a home of its size it could
+//! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
+//! many to look into.
 //!
 //! A pair must find each other from both sides, whichever of the two is searched for. The large disk looks
 //! into the homes of its reach. The small disk cannot look up: the cells above it that reach its home are too
@@ -214,8 +214,8 @@ impl Layers {
                 None => reach.for_each_run(place, act),
             }
         }
-        // Disks of its own class are few and near. To tell which of them are new would cost more than to take
-        // them all.
+        // Disks of the same class are few and near. To tell which of them are new would cost more than to
+        // take them all.
         if let Some(own) = own {
             own.for_each_run(place, |first, homes| {
                 count = layer.contents.gather_run(first, homes, found, count);
@@ -272,6 +272,6 @@ pub(in crate::simulation) struct Layouts {
     pub(in crate::simulation) smallest: Layout,
     /// The layers of the larger classes; none if all disks share the same cells.
     pub(in crate::simulation) larger: Vec<LayerLayout>,
-    /// The classes of disks that have cells of their own.
+    /// The classes of disks that have separate cells.
     pub(in crate::simulation) classes: Vec<SizeClass>,
 }
