@@ -196,7 +196,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///         let start = flight.time();
 ///         let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
 ///         let free = self.radius - flight.radius();
-///         // The square of `free` less that of the distance from the middle, as a polynomial of the time.
+///         // The square of `free` less the squared distance from the middle, as a polynomial of the time.
 ///         let gap = [
 ///             (free - r.length()) * (free + r.length()),
 ///             -2.0 * r.dot(v),

@@ -21,7 +21,7 @@
 //! | [`KnownRule`] | any of the above, as one type that files can hold | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
-//! # A rule of your own
+//! # Custom rules
 //! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
 //! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to the first order, here written as
 //! $`1/(1 + C v^{1/5})`$, which stays positive:

@@ -69,7 +69,7 @@
 //! | `serde` | parameters that serialize through their validating constructors, checkpoints |
 //! | `rayon` | Monte Carlo on all cores, with the same bits as on one |
 //! | `gzip` | trajectories in files that end in `.gz` |
-//! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
+//! | `proptest` | random contacts and disks for property tests of custom rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

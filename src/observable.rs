@@ -47,7 +47,7 @@
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
-//! # An observer of your own
+//! # Custom observers
 //! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`]
 //! is a clock. In a plain test, [`laws::check`]
 //! checks the contract of an observer.

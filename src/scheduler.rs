@@ -6,7 +6,7 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | that of whichever of the next two is faster | default |
+//! | [`BySize`] | as the faster of the next two | default |
 //! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to some ten thousand disks |
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |

@@ -40,7 +40,7 @@
 //!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
 //! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
-//! [`laws`] for a check of your own motion.
+//! [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
 mod delayed;

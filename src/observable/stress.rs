@@ -60,7 +60,7 @@ pub struct StressTensor {
 /// use granular_edmd::observable::{SampleTimes, Stress, Temperatures};
 /// use granular_edmd::{Simulation, initial};
 ///
-/// // A gas of packing fraction 0.1 in a periodic box, whose pressure is 1.236 times that of an ideal gas.
+/// // A gas of packing fraction 0.1 in a periodic box, whose pressure is 1.236 times an ideal gas's.
 /// let container = Container::periodic(40.0, 40.0)?;
 /// let disks = initial::random(&container, 204, 0.5, 40.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;

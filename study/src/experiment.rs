@@ -295,7 +295,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// The study has checked the checksum, the place and the time before. Many records keep no state.
     ///
     /// # Errors
-    /// The reason why they cannot, if there is one.
+    /// If they cannot, with the reason.
     fn check_measured(
         &self,
         samples: &[Self::Sample],

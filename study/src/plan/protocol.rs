@@ -139,12 +139,12 @@ impl Protocol {
         }
     }
 
-    /// Returns the cycles that this many steps take.
+    /// Returns the cycles that `steps` steps take.
     pub(crate) fn cycles_of(&self, steps: u64) -> u64 {
         steps.checked_sub(1).map_or(0, |last| self.end_of(last))
     }
 
-    /// Returns the number of samples in this many steps.
+    /// Returns the number of samples in `steps` steps.
     pub(crate) const fn samples_of(&self, steps: u64) -> u64 {
         steps.saturating_sub(self.settling_steps())
     }
