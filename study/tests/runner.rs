@@ -692,7 +692,7 @@ fn files_of_disks_are_converted() {
 /// A trajectory is of the format that its name says, and starts from any file of disks.
 #[test]
 fn a_trajectory_is_what_its_name_says() {
-    let scratch = Scratch::new("trajectory");
+    let scratch = Scratch::new("trajectory-names");
     scratch.small_plan();
     let of = |arguments: &[&str]| {
         scratch.runs(&[&["trajectory", "plan.toml", "--cycles", "2"], arguments].concat())
