@@ -621,8 +621,8 @@ fn a_signal_ends_replay_and_diff() {
     }
 }
 
-/// Files of others are read by their contents and written by the ending of the new name; notes and refusals are
-/// on standard error.
+/// Files of others are read by their contents and written by the ending of the new name; notes and refusals
+/// are on standard error.
 #[test]
 fn files_of_disks_are_converted() {
     let scratch = Scratch::new("convert");

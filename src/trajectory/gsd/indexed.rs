@@ -10,8 +10,7 @@ use crate::file::{Growing, Locked, Medium as _};
 use crate::observable::Snapshot;
 use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
-use crate::trajectory::media;
-use crate::trajectory::open::is_gzip;
+use crate::trajectory::media::{self, is_gzip};
 use crate::trajectory::store::Store;
 
 /// Bytes of the header, and of an entry of the index.

@@ -117,7 +117,8 @@ fn check_style(name: &str, line: usize) -> Result<(), ReadError> {
     }
 }
 
-/// Returns the cells of an atom: its number, type, diameter, density, position, and periods that it has passed.
+/// Returns the cells of an atom: its number, type, diameter, density, position, and periods that it has
+/// passed.
 fn atom(row: &str, line: usize) -> Result<Vec<&str>, ReadError> {
     let cells = words(row);
     match cells.len() {
