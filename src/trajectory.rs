@@ -7,8 +7,8 @@
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), [`XyzFrames`] to start from |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | GSD, as of HOOMD-blue | one binary file with an index ([`Recorder::create_gsd`]) | OVITO, freud, `gsd` |
-//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` for times ([`Recorder::create_vtk`]) | ParaView, VTK |
+//! | [`Gsd`], as of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
+//! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!
 //! | state in a file | read by | written by |
 //! |---|---|---|
@@ -95,8 +95,8 @@ mod one_file;
 mod open;
 mod overlap;
 mod recorder;
+mod sink;
 mod state;
-mod store;
 mod vtk;
 
 pub use errors::{ReadError, RecordError};
@@ -108,5 +108,7 @@ pub use lammps_dump::LammpsDump;
 pub use open::{open, read};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
+#[doc(alias("OVITO", "freud", "ParaView"))]
+pub use sink::{ByEnding, FileFormat, Gsd, Vtk};
 #[doc(alias("read_data", "initial condition"))]
 pub use state::State;

@@ -96,6 +96,11 @@ impl RecordError {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
     }
+
+    /// Creates the error of a name that a format cannot use.
+    pub(super) fn unusable(path: &Path, reason: &str) -> Self {
+        Self::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason))
+    }
 }
 
 /// An error in reading disks from a file.

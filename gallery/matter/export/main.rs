@@ -24,7 +24,7 @@ use clap::Parser;
 use granular_edmd::Kind;
 use granular_edmd::observable::from_fn;
 use granular_edmd::prelude::*;
-use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, State};
+use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State};
 use serde_json::{Value, json};
 
 use gallery::command_line::{self, Failure, whole};
@@ -114,17 +114,9 @@ fn times(arguments: &Arguments) -> (f64, f64) {
 
 /// Begins a file of each format.
 fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordError> {
-    let mut recorders = vec![
-        Recorder::create(folder.join("run.xyz"), ExtendedXyz, times)?,
-        Recorder::create(folder.join("run.dump"), LammpsDump, times)?,
-        Recorder::create_gsd(folder.join("run.gsd"), times)?,
-        Recorder::create_vtk(folder.join("run.pvd"), times)?,
-    ];
-    if cfg!(feature = "gzip") {
-        recorders.push(Recorder::create(folder.join("run.xyz.gz"), ExtendedXyz, times)?);
-        recorders.push(Recorder::create(folder.join("run.dump.gz"), LammpsDump, times)?);
-    }
-    Ok(recorders)
+    let packed = if cfg!(feature = "gzip") { ["run.xyz.gz", "run.dump.gz"].as_slice() } else { &[] };
+    let names = ["run.xyz", "run.dump", "run.gsd", "run.pvd"].iter().chain(packed);
+    names.map(|name| Recorder::create(folder.join(name), ByEnding, times)).collect()
 }
 
 /// Begins a file that was not there.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use granular_edmd::observable::SampleTimes;
-use granular_edmd::trajectory::{ExtendedXyz, Recorder};
+use granular_edmd::trajectory::{ByEnding, Recorder};
 
 use super::{End, Failure, Plan, PlanError, StudyError, read, refused, say};
 use crate::Experiment;
@@ -25,9 +25,7 @@ pub(super) fn write<E: Experiment>(
     let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
     let times = SampleTimes::every(experiment.cycle())?;
-    let is_gsd = out.extension().is_some_and(|extension| extension == "gsd");
-    let mut recorder =
-        if is_gsd { Recorder::create_gsd(out, times) } else { Recorder::create(out, ExtendedXyz, times) }?;
+    let mut recorder = Recorder::create(out, ByEnding, times)?;
     // Half a cycle more, so that rounding does not cut the last frame off.
     run.run_until(experiment.cycle() * (f64::from(cycles) + 0.5), &mut recorder)?;
     let (frames, disks) = (recorder.times().len(), run.len());
