@@ -104,7 +104,7 @@ pub use errors::{ReadError, RecordError};
 pub use extended_xyz::{ExtendedXyz, XyzFrames};
 pub use format::{Format, Frame};
 #[doc(alias("OVITO", "VMD"))]
-pub use lammps_dump::LammpsDump;
+pub use lammps_dump::{LammpsDump, TimedLammpsDump};
 pub use open::{open, read};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;

@@ -7,7 +7,7 @@ pub(super) use indexed::Indexed;
 use std::io::{self, Write};
 
 use super::Frame;
-use super::extended_xyz::{shown_depth, shown_top};
+use super::extended_xyz::{half_turn, shown_depth, shown_top};
 use crate::Disk;
 use crate::disk::numbered;
 use crate::observable::Snapshot;
@@ -116,7 +116,7 @@ fn write_chunks(frame: &Frame<'_>, out: &mut Vec<u8>) -> io::Result<()> {
     column(&|disk| [2.0 * disk.radius(); 4], 1)?;
     column(&|disk| [0.0, 0.0, moment_of_inertia(disk), 0.0], 3)?;
     column(&|disk| [disk.position().x - center[0], disk.position().y - center[1], 0.0, 0.0], 3)?;
-    column(&half_turn, 4)?;
+    column(&|disk| [half_turn(disk)[0], 0.0, 0.0, half_turn(disk)[1]], 4)?;
     column(&|disk| [disk.velocity().x, disk.velocity().y, 0.0, 0.0], 3)?;
     column(&angular_momentum, 4)?;
     for [right, up] in disks.iter().map(Disk::image) {
@@ -161,16 +161,10 @@ fn moment_of_inertia(disk: &Disk) -> f64 {
     disk.inertia_factor() * disk.mass() * disk.radius() * disk.radius()
 }
 
-/// Returns the orientation as a quaternion, that is by half of the angle.
-fn half_turn(disk: &Disk) -> [f64; 4] {
-    let half = 0.5 * disk.angle();
-    [libm::cos(half), 0.0, 0.0, libm::sin(half)]
-}
-
 /// Returns the angular momentum as HOOMD-blue has it: twice the orientation times the momentum in the frame
 /// of the body, as quaternions.
 fn angular_momentum(disk: &Disk) -> [f64; 4] {
-    let ([real, _, _, up], momentum) = (half_turn(disk), moment_of_inertia(disk) * disk.angular_velocity());
+    let ([real, up], momentum) = (half_turn(disk), moment_of_inertia(disk) * disk.angular_velocity());
     [-2.0 * up * momentum, 0.0, 0.0, 2.0 * real * momentum]
 }
 

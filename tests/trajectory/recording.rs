@@ -385,6 +385,10 @@ fn a_compressed_file_is_one_member_of_the_same_text() {
 #[test]
 fn a_damaged_compressed_file_is_not_gone_on_with() {
     let scratch = Scratch::new("damaged");
+    let text = |packed: &[u8]| {
+        let mut text = Vec::new();
+        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(packed), &mut text).map(|_| text).ok()
+    };
     for name in ["a.xyz.gz", "a.dump.gz"] {
         let path = scratch.path(name);
         let (sound, _) = recorded(&path);
@@ -392,7 +396,8 @@ fn a_damaged_compressed_file_is_not_gone_on_with() {
             let mut bytes = sound.clone();
             bytes[place] ^= 4;
             fs::write(&path, &bytes).unwrap();
-            assert!(append(&path).is_err(), "{name}, byte {place}");
+            // Another way to write the same text is no damage: a repetition may count from elsewhere.
+            assert!(append(&path).is_err() || text(&bytes) == text(&sound), "{name}, byte {place}");
             assert!(fs::read(&path).unwrap() == bytes, "{name}, byte {place}");
         }
         fs::write(&path, sound).unwrap();

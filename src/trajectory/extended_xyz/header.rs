@@ -110,11 +110,12 @@ fn fields(properties: &str, line: usize) -> Result<Vec<Field>, ReadError> {
 fn known(name: &str) -> &'static [Field] {
     match name {
         "id" => &[Field::Id],
-        "species" | "kind" => &[Field::Kind],
+        "kind" => &[Field::Kind],
         "pos" => &[Field::X, Field::Y, Field::Zero],
         "velo" | "velocity" => &[Field::VelocityX, Field::VelocityY, Field::Zero],
         "angle" => &[Field::Angle],
         "angular_velocity" => &[Field::AngularVelocity],
+        "omega" => &[Field::Zero, Field::Zero, Field::AngularVelocity],
         "radius" => &[Field::Radius],
         "mass" => &[Field::Mass],
         "inertia_factor" => &[Field::InertiaFactor],
