@@ -77,11 +77,14 @@
 //! # Ok::<(), io::Error>(())
 //! ```
 
+mod checks;
+mod column;
 mod csv;
-mod entry;
+mod disks;
 mod errors;
 mod extended_xyz;
 mod format;
+mod found;
 mod frames;
 mod gsd;
 #[cfg(feature = "gzip")]
@@ -94,21 +97,25 @@ mod media;
 mod one_file;
 mod open;
 mod overlap;
+mod reader;
 mod recorder;
+mod settings;
 mod sink;
+mod source;
 mod state;
+mod table;
 mod vtk;
 
 pub use errors::{ReadError, RecordError};
 #[doc(alias = "OVITO")]
-pub use extended_xyz::{ExtendedXyz, XyzFrames};
+pub use extended_xyz::ExtendedXyz;
 pub use format::{Format, Frame};
 #[doc(alias("OVITO", "VMD"))]
 pub use lammps_dump::{LammpsDump, TimedLammpsDump};
-pub use open::{open, read};
+#[doc(alias("read_data", "read_dump", "initial condition"))]
+pub use reader::{Reader, States};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
 #[doc(alias("OVITO", "freud", "ParaView"))]
 pub use sink::{ByEnding, FileFormat, Gsd, Vtk};
-#[doc(alias("read_data", "initial condition"))]
 pub use state::State;

@@ -12,7 +12,7 @@ use granular_edmd::boundary::{Container, Part, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::trajectory::{self, ExtendedXyz, Recorder, State};
+use granular_edmd::trajectory::{ExtendedXyz, Reader, Recorder};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
 use report::{messages, report};
 
@@ -53,9 +53,7 @@ fn errors_about_contents_name_the_file() {
     let errors: [Box<dyn Error>; 6] = [
         Box::new(Checkpoint::read(&file).unwrap_err()),
         Box::new(Part::polygon_from_file(&file).unwrap_err()),
-        Box::new(trajectory::read(&file, State::from_xyz).unwrap_err()),
-        Box::new(trajectory::read(&file, State::from_csv).unwrap_err()),
-        Box::new(trajectory::read(&file, State::from_lammps_data).unwrap_err()),
+        Box::new(Reader::new().read(&file).unwrap_err()),
         Box::new(Recorder::append(&file, ExtendedXyz, SampleTimes::every(1.0).unwrap()).unwrap_err()),
     ];
     std::fs::remove_file(&file).unwrap();

@@ -110,8 +110,8 @@ impl RecordError {
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 ///
 /// ```
-/// use granular_edmd::trajectory::State;
-/// let error = State::from_csv("x,y,radius\n1,1,0.5\n1.5,1,half\n".as_bytes()).unwrap_err();
+/// use granular_edmd::trajectory::Reader;
+/// let error = Reader::new().read_from("x,y,radius\n1,1,0.5\n1.5,1,half\n".as_bytes()).unwrap_err();
 /// assert_eq!(error.to_string(), "line 3: radius must be a number, but is \"half\"");
 /// ```
 #[derive(Debug, Error)]
@@ -197,15 +197,29 @@ pub enum ReadError {
         /// Vertical position of the center.
         y: f64,
     },
-    /// Two disks overlap by more than rounding.
-    #[error("line {line}: the disk overlaps that of line {other} by {}", Rounded(*.depth))]
+    /// Disks overlap by more than rounding, or by more than the reader's tolerance.
+    #[error("line {line}: the disk overlaps the disk of line {other} by {}, a share of {} of their distance at \
+        contact; it is the deepest of {count} such overlaps; a tolerance or shrunk radii accept them",
+        Rounded(*.depth), Rounded(*.share))]
     Overlap {
         /// Number of the line.
         line: usize,
         /// Number of the line of the other disk.
         other: usize,
-        /// Depth of the overlap.
+        /// Depth of the overlap, the deepest of all.
         depth: f64,
+        /// Depth of the overlap in units of the sum of the radii.
+        share: f64,
+        /// Number of overlaps, counted up to eight for each disk.
+        count: usize,
+    },
+    /// The file does not have the frame.
+    #[error("there is no frame of {wanted}: the file has {count}")]
+    NoFrame {
+        /// Number or step of the frame.
+        wanted: String,
+        /// Number of frames in the file.
+        count: usize,
     },
 }
 

@@ -1,9 +1,9 @@
 //! The extended XYZ format, which OVITO reads and from which a run can start.
 
-mod header;
+mod keys;
 mod read;
 
-pub use read::XyzFrames;
+pub(super) use read::frames;
 
 use std::io::{self, BufRead, Write};
 
@@ -41,20 +41,20 @@ use crate::{Disk, Gravity};
 ///
 /// [`Snapshot::moving_walls`]: crate::observable::Snapshot::moving_walls
 ///
-/// [`XyzFrames`] reads the disks back to the same bits.
+/// A [`Reader`](super::Reader) reads the disks back to the same bits.
 ///
 /// ```
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::observable::Snapshot;
-/// use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, State};
+/// use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, Reader};
 ///
 /// let disks = [Disk::new(DVec2::new(0.1, 0.7), 0.5)?.with_velocity(DVec2::new(1.0 / 3.0, -2.0))?];
 /// let snapshot = Snapshot::new(12.5, &disks, Domain::new(-1.0, 4.0, 0.0, f64::INFINITY), 1.0);
 /// let mut text = Vec::new();
 /// ExtendedXyz.write_frame(&Frame::new(0, &snapshot), &mut text)?;
-/// let state = State::from_xyz(text.as_slice())?;
+/// let state = Reader::new().read_from(text.as_slice())?;
 /// assert_eq!((state.disks(), state.time()), ([disks[0].with_id(1)?].as_slice(), Some(12.5)));
 /// assert_eq!(state.domain(), Some(snapshot.domain()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -100,7 +100,11 @@ impl Format for ExtendedXyz {
         let Some(count) = whole_line(input)? else { return Ok(None) };
         let count: usize = count.trim().parse().map_err(|_| no_frame("a number of disks", &count))?;
         let Some(keys) = whole_line(input)? else { return Ok(None) };
-        let time = header::time(&keys).ok_or_else(|| no_frame("the key `Time` and a number", &keys))?;
+        let time = keys::Keys::parse(&keys, 0)
+            .and_then(|keys| keys.time())
+            .ok()
+            .flatten()
+            .ok_or_else(|| no_frame("the key `Time` and a number", &keys))?;
         let properties = keys.split_once(" Properties=").map_or("", |(_, after)| after);
         if properties.split(' ').next() != Some(PROPERTIES) {
             return Err(no_frame("the columns of this version", properties));

@@ -1,8 +1,10 @@
 //! GSD, the binary format of HOOMD-blue, for OVITO, freud and the Python package `gsd`.
 
 mod indexed;
+mod read;
 
 pub(super) use indexed::Indexed;
+pub(super) use read::{frames, is_gsd};
 
 use std::io::{self, Write};
 

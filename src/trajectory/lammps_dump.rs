@@ -1,5 +1,9 @@
 //! Dump files in the format of LAMMPS.
 
+mod read;
+
+pub(super) use read::frames;
+
 use std::io::{self, BufRead, Write};
 
 use super::extended_xyz::{shown_depth, shown_top};

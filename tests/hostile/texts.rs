@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::observable::Snapshot;
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, ReadError, State};
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, ReadError, Reader, State};
 use granular_edmd::{Disk, initial};
 use proptest::prelude::*;
 
@@ -33,9 +33,9 @@ fn texts() -> Vec<(&'static str, String, Read)> {
     state.write_lammps_data(&mut lammps).unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     vec![
-        ("extended XYZ", text(xyz), |input| State::from_xyz(input)),
-        ("CSV", text(csv), |input| State::from_csv(input)),
-        ("LAMMPS data", text(lammps), |input| State::from_lammps_data(input)),
+        ("extended XYZ", text(xyz), |input| Reader::new().read_from(input)),
+        ("CSV", text(csv), |input| Reader::new().read_from(input)),
+        ("LAMMPS data", text(lammps), |input| Reader::new().read_from(input)),
     ]
 }
 

@@ -6,7 +6,7 @@ use std::io::Read as _;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Snapshot;
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, State, XyzFrames};
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, Reader, State};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -44,10 +44,10 @@ fn faults_of_tables() {
         ("x,y,radius\n1,2,0.5\n8,2,1\n1.75,2,0.5\n", "line 4: the disk overlaps that of line 2 by 0.25"),
     ];
     for (text, expected) in cases {
-        assert_told(State::from_csv(text.as_bytes()), expected);
+        assert_told(Reader::new().read_from(text.as_bytes()), expected);
     }
     assert_eq!(
-        report(&State::from_csv(&b"x,y,\xff\n"[..]).unwrap_err()),
+        report(&Reader::new().read_from(&b"x,y,\xff\n"[..]).unwrap_err()),
         "cannot read line 1: stream did not contain valid UTF-8"
     );
 }
@@ -55,7 +55,7 @@ fn faults_of_tables() {
 #[test]
 fn faults_of_extended_xyz() {
     let keys = "Lattice=\"10 0 0 0 10 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1";
-    let told = |text: &str, expected: &str| assert_told(State::from_xyz(text.as_bytes()), expected);
+    let told = |text: &str, expected: &str| assert_told(Reader::new().read_from(text.as_bytes()), expected);
     told("", "the file ends after line 0, where a frame should follow");
     told("two\n", "line 1: the first line of a frame must be the number of its disks, but is \"two\"");
     told("1\n", "the file ends after line 1, where the keys of a frame should follow");
@@ -77,7 +77,7 @@ fn faults_of_extended_xyz() {
     );
     // The disks of a periodic box meet across its sides.
     let disks = "2\n{}\n1 0.25 1 0 0.5\n2 9.75 1 0 0.5\n";
-    State::from_xyz(disks.replace("{}", keys).as_bytes()).unwrap();
+    Reader::new().read_from(disks.replace("{}", keys).as_bytes()).unwrap();
     told(
         &disks.replace("{}", &format!("{keys} pbc=\"T F F\"")),
         "line 4: the disk overlaps that of line 3 by 0.5",
@@ -87,7 +87,7 @@ fn faults_of_extended_xyz() {
     let skew = keys.replace("10 0 0 0", "10 1 0 0");
     for domain in ["3 1 0 9", "0 9 nan nan", "0 0 0 9"] {
         let text = format!("0\nDomain=\"{domain}\" Properties=id:I:1:pos:R:3:radius:R:1\n");
-        let error = State::from_xyz(text.as_bytes()).unwrap_err().to_string();
+        let error = Reader::new().read_from(text.as_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("line 2: "), "{error}");
     }
     told(&format!("0\n{skew}\n"), "line 2: Lattice must be a rectangle, but is \"10 1 0 0 10 1 0 0 1\"");
@@ -99,7 +99,7 @@ fn faults_of_extended_xyz() {
     }
     for domain in ["-inf 9 0 9", "0 inf 0 9", "0 9 -inf 9", "-1e308 1e308 0 9"] {
         let text = format!("0\nDomain=\"{domain}\" Properties=pos:R:2:radius:R:1\n");
-        let error = State::from_xyz(text.as_bytes()).unwrap_err().to_string();
+        let error = Reader::new().read_from(text.as_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("line 2: the box must be from smaller to larger numbers"), "{error}");
     }
     let text = "0\nDomain=\"0 9 0 inf\" Properties=pos:R:2:radius:R:1 pbc=\"F T F\"\n";
@@ -129,14 +129,14 @@ fn faults_of_extended_xyz() {
 #[test]
 fn frames_before_a_fault_are_read() {
     let text = "1\nProperties=pos:R:2:radius:R:1\n1 1 0.5\n1\nProperties=pos:R:2:radius:R:1\n1 1\n1\n";
-    let frames: Vec<_> = XyzFrames::new(text.as_bytes()).collect();
+    let frames: Vec<_> = Reader::new().frames(text.as_bytes()).unwrap().collect();
     assert_eq!(frames.len(), 2);
     assert!(frames[0].is_ok() && frames[1].is_err());
 }
 
 #[test]
 fn faults_of_data_of_lammps() {
-    let told = |text: &str, expected: &str| assert_told(State::from_lammps_data(text.as_bytes()), expected);
+    let told = |text: &str, expected: &str| assert_told(Reader::new().read_from(text.as_bytes()), expected);
     let head = "t\n\n2 atoms\n1 atom types\n0 9 xlo xhi\n0 9 ylo yhi\n\n";
     told("t\n\n0 9 xlo xhi\n0 9 ylo yhi\n", "line 4: the number of atoms is missing");
     told("t\n\n1 atoms\n0 9 xlo xhi\n", "line 4: `ylo yhi` is missing");
@@ -167,7 +167,7 @@ fn faults_of_data_of_lammps() {
     told(&ours, "line 1: time must be finite, but is \"nan\"");
     // Words of another program in the title are no time.
     let other = head.replace("t\n\n2 atoms", "runtime = 7\n\n0 atoms");
-    assert_eq!(State::from_lammps_data(other.as_bytes()).unwrap().time(), None);
+    assert_eq!(Reader::new().read_from(other.as_bytes()).unwrap().time(), None);
     let atoms = format!("{head}Atoms\n\n2 1 1 1 2 2 0\n");
     told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 stands in line 10 already");
     told(&format!("{atoms}1 1 1 1 2.5 2 0\n"), "line 11: the disk overlaps that of line 10 by 0.5");
@@ -205,17 +205,17 @@ fn lines_are_bounded() {
         );
     };
     let input = |head: &'static str| std::io::BufReader::new(head.as_bytes().chain(endless()));
-    told(State::from_csv(input("")), "line 1");
-    told(State::from_csv(input("x,y,radius\n")), "line 2");
-    told(State::from_xyz(input("1\n")), "line 2");
-    told(State::from_lammps_data(input("title\n\n")), "line 3");
+    told(Reader::new().read_from(input("")), "line 1");
+    told(Reader::new().read_from(input("x,y,radius\n")), "line 2");
+    told(Reader::new().read_from(input("1\n")), "line 2");
+    told(Reader::new().read_from(input("title\n\n")), "line 3");
     for head in ["", "1\n", "1\nTime=1\n", "ITEM: UNITS\n"] {
         for format in [&ExtendedXyz as &dyn Format, &LammpsDump] {
             assert!(format.skip_frame(&mut input(head)).is_err(), "{head:?}");
         }
     }
     let columns = format!("1\nProperties=pos:R:2:radius:R:1{}\n", ":a:R:1000".repeat(2000));
-    let error = State::from_xyz(columns.as_bytes()).unwrap_err().to_string();
+    let error = Reader::new().read_from(columns.as_bytes()).unwrap_err().to_string();
     assert!(error.starts_with("line 2: `Properties` must be of at most 1000 columns"), "{error}");
 }
 
@@ -228,10 +228,10 @@ fn one_giant_does_not_slow_a_reader() {
         writeln!(text, "0,{row},0.5").unwrap();
     }
     let begun = std::time::Instant::now();
-    assert_eq!(State::from_csv(text.as_bytes()).unwrap().disks().len(), 100_001);
+    assert_eq!(Reader::new().read_from(text.as_bytes()).unwrap().disks().len(), 100_001);
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
     text.push_str("0.25,99999.5,0.1\n");
-    let told = report(&State::from_csv(text.as_bytes()).unwrap_err());
+    let told = report(&Reader::new().read_from(text.as_bytes()).unwrap_err());
     assert!(told.starts_with("line 100003: the disk overlaps that of line 10000"), "{told}");
 }
 
@@ -261,7 +261,7 @@ fn overlaps_are_found() {
         let overlaps = disks.iter().enumerate().any(|(index, a)| {
             disks[..index].iter().any(|b| domain.separation(place(a), place(b)).length() < a.2 + b.2)
         });
-        assert_eq!(State::from_xyz(text.as_bytes()).is_err(), overlaps, "{text}");
+        assert_eq!(Reader::new().read_from(text.as_bytes()).is_err(), overlaps, "{text}");
         found += usize::from(overlaps);
     }
     assert!((50..350).contains(&found), "{found} of 400");
@@ -291,9 +291,9 @@ fn damage_does_no_harm() {
             }
         }
         let read = match case % 3 {
-            0 => State::from_xyz(bytes.as_slice()),
-            1 => State::from_csv(bytes.as_slice()),
-            _ => State::from_lammps_data(bytes.as_slice()),
+            0 => Reader::new().read_from(bytes.as_slice()),
+            1 => Reader::new().read_from(bytes.as_slice()),
+            _ => Reader::new().read_from(bytes.as_slice()),
         };
         refused += usize::from(read.is_err());
     }

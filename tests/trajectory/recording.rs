@@ -9,7 +9,7 @@ use granular_edmd::boundary::Domain;
 use granular_edmd::observable::{OfKind, SampleTimes, Snapshot, laws};
 use granular_edmd::simulation::RunError;
 use granular_edmd::trajectory::{
-    self, ByEnding, ExtendedXyz, Format, Frame, Gsd, LammpsDump, RecordError, Recorder, State, Vtk, open,
+    self, ByEnding, ExtendedXyz, Format, Frame, Gsd, LammpsDump, Reader, RecordError, Recorder, Vtk,
 };
 
 use crate::report::report;
@@ -266,7 +266,7 @@ fn disks_of_one_kind_are_recorded() {
     let mut small = OfKind::new(Kind::new(7), create(&path));
     let mut run = mixture();
     run.run_until(1.0, &mut small).unwrap();
-    let state = State::from_xyz(open(&path).unwrap()).unwrap();
+    let state = Reader::new().read(&path).unwrap();
     assert_eq!(state.disks().len(), 14);
     assert!(state.disks().iter().all(|disk| disk.kind() == Kind::new(7)));
 }
@@ -341,7 +341,7 @@ fn a_full_disk_keeps_the_whole_frames() {
         let mut recorder = append(&path).unwrap();
         assert_eq!(recorder.times().len(), frames);
         if name.contains("xyz") {
-            let state = State::from_xyz(open(&path).unwrap()).unwrap();
+            let state = Reader::new().read(&path).unwrap();
             assert_eq!(state.time(), Some(0.5 * frames as f64));
         }
         // Once there is room, the frame follows.
@@ -361,7 +361,8 @@ fn compression_needs_its_feature() {
     assert!(!path.exists());
     fs::write(&path, "").unwrap();
     assert!(
-        report(&open(&path).err().unwrap()).ends_with("it is compressed, which needs the feature `gzip`")
+        report(&Reader::new().read(&path).unwrap_err())
+            .ends_with("it is compressed, which needs the feature `gzip`")
     );
 }
 
@@ -375,7 +376,7 @@ fn a_compressed_file_is_one_member_of_the_same_text() {
     flate2::read::GzDecoder::new(packed.0.as_slice()).read_to_end(&mut text).unwrap();
     assert!(text == plain.0);
     assert!(2 * packed.0.len() < plain.0.len());
-    let state = State::from_xyz(open(scratch.path("a.xyz.gz")).unwrap()).unwrap();
+    let state = Reader::new().read(scratch.path("a.xyz.gz")).unwrap();
     assert_eq!(state.time(), Some(3.0));
 }
 

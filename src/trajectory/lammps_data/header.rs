@@ -1,7 +1,5 @@
 //! The header of a data file, which is everything before the first section.
 
-use std::io::BufRead;
-
 use crate::boundary::Domain;
 use crate::trajectory::ReadError;
 use crate::trajectory::lines::{Lines, checked_box, finite, whole};
@@ -17,15 +15,15 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads the header, and returns it with the name of the first section, if there is one.
-    pub(super) fn read<R: BufRead>(lines: &mut Lines<R>) -> Result<(Self, Option<String>), ReadError> {
+    pub(super) fn read<'a>(lines: &mut Lines<'a>) -> Result<(Self, Option<&'a str>), ReadError> {
         let (title, line) = lines.need("the title")?;
         let time = title.split_once(", time = ").map(|(_, time)| finite("time", time, line)).transpose();
         // In a title that another program wrote, words may follow instead of a number.
         let time = if title.contains(super::WRITER) { time? } else { time.unwrap_or(None) };
         let mut header = Self { time, ..Self::default() };
-        while let Some((text, line)) = lines.next_filled()? {
+        while let Some((text, line)) = lines.next_filled() {
             if text.starts_with(char::is_alphabetic) {
-                return Ok((header, Some(text.to_owned())));
+                return Ok((header, Some(text)));
             }
             header.take(text.split('#').next().unwrap_or(""), line)?;
         }

@@ -7,8 +7,8 @@ use std::time::Duration;
 use granular_edmd::Simulation;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
-use granular_edmd::simulation::{Checkpoint, Limits, RunEnd, RunError};
-use granular_edmd::trajectory::{self, State};
+use granular_edmd::simulation::{Checkpoint, CheckpointError, Limits, RunEnd, RunError};
+use granular_edmd::trajectory::Reader;
 
 use super::watch::{Watch, is_stopped};
 use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
@@ -99,16 +99,19 @@ impl<E: Experiment> Source<E> {
 /// Starts from a file: a checkpoint, or disks.
 fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>, ExperimentError> {
     let (rule, boundary) = (experiment.rule()?, experiment.boundary()?);
-    let state = match ending(path) {
-        "xyz" => trajectory::read(path, State::from_xyz)?,
-        "csv" => trajectory::read(path, State::from_csv)?,
-        "data" => trajectory::read(path, State::from_lammps_data)?,
-        _ => {
-            let run = Simulation::resume(&Checkpoint::read(path)?, rule, boundary).build()?;
+    let state = match Checkpoint::read(path) {
+        Err(CheckpointError::File { source, .. }) if matches!(*source, CheckpointError::NotACheckpoint) => {
+            Reader::new().read(path)?
+        }
+        checkpoint => {
+            let run = Simulation::resume(&checkpoint?, rule, boundary).build()?;
             let is_same = run.gravity() == experiment.gravity();
             return if is_same { Ok(run) } else { Err("the checkpoint has another gravity".into()) };
         }
     };
+    for note in state.notes() {
+        tell(&note);
+    }
     if state.domain().is_some_and(|domain| domain != boundary.domain()) {
         tell(&format!("{} is of another box", path.display()));
     }
