@@ -37,8 +37,16 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         notes: std::mem::take(&mut table.notes),
         ..State::default()
     };
-    settle(entries, settings, &mut state)?;
+    let settings = with_rounding(settings, table.rounding, &entries);
+    settle(entries, &settings, &mut state)?;
     Ok(state)
+}
+
+/// Returns the settings with a tolerance for positions of few digits, if nothing else is set.
+fn with_rounding(settings: &Settings, rounding: f64, entries: &[Entry]) -> Settings {
+    let smallest = entries.iter().map(|entry| entry.disk.radius()).fold(f64::INFINITY, f64::min);
+    let of_rounding = (rounding > 0.0 && !settings.shrinks).then_some(rounding / smallest);
+    Settings { tolerance: settings.tolerance.or(of_rounding), ..settings.clone() }
 }
 
 /// Returns the disks of a table, in its order.

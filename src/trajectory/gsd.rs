@@ -1,10 +1,11 @@
 //! GSD, the binary format of HOOMD-blue, for OVITO, freud and the Python package `gsd`.
 
+mod archive;
 mod indexed;
 mod read;
 
 pub(super) use indexed::Indexed;
-pub(super) use read::{frames, is_gsd};
+pub(super) use read::{frames, frames_of_file, is_gsd};
 
 use std::io::{self, Write};
 

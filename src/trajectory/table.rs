@@ -30,6 +30,8 @@ pub(super) struct Table {
     pub(super) extent: Option<Domain>,
     pub(super) time: Option<f64>,
     pub(super) gravity: Option<Gravity>,
+    /// Largest error of a position, from the precision of the file.
+    pub(super) rounding: f64,
     /// Sentences about the file that a user should know.
     pub(super) notes: Vec<String>,
 }
@@ -56,6 +58,7 @@ impl Table {
             extent: None,
             time: None,
             gravity: None,
+            rounding: 0.0,
             notes: Vec::new(),
         })
     }
