@@ -20,9 +20,15 @@ impl<'a> Found<'a> {
     ) -> Self {
         let read = move || {
             let mut table = read(&text)?;
-            if text.is_torn() {
-                let note = "the last line has no line break: its last number may be cut";
-                table.notes.push(note.to_owned());
+            match (text.is_torn(), table.is_own, table.lines.last()) {
+                (true, true, Some(&line)) => {
+                    return Err(ReadError::End { line, what: "a line break".to_owned() });
+                }
+                (true, ..) => {
+                    let note = "the last line has no line break: its last number may be cut";
+                    table.notes.push(note.to_owned());
+                }
+                _ => {}
             }
             Ok(table)
         };

@@ -11,7 +11,6 @@ use super::State;
 use super::disks::sphere_mass;
 use super::extended_xyz::{shown_depth, shown_top};
 use crate::Disk;
-use crate::boundary::Domain;
 use crate::disk::numbered;
 
 /// Words in the title that tell the files of this crate from others.
@@ -33,7 +32,7 @@ impl State {
     /// If the writer fails.
     pub fn write_lammps_data(&self, mut out: impl Write) -> io::Result<()> {
         let disks = &self.disks;
-        let domain = self.domain.unwrap_or_else(|| around(disks));
+        let domain = self.snapshot().domain();
         let (top, half) = (shown_top(&domain, disks), 0.5 * shown_depth(disks));
         let types = disks.iter().map(|disk| u32::from(disk.kind().number()) + 1).max().unwrap_or(1);
         write!(out, "LAMMPS data file, atom_style sphere, {WRITER}")?;
@@ -69,18 +68,4 @@ fn density(mass: f64, radius: f64) -> f64 {
     let density = mass / sphere_mass(1.0, radius);
     let near = [density, density.next_up(), density.next_down()];
     near.into_iter().find(|&density| sphere_mass(density, radius) == mass).unwrap_or(density)
-}
-
-/// Returns the rectangle around these disks.
-fn around(disks: &[Disk]) -> Domain {
-    let end = |value: fn(&Disk) -> f64| disks.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
-    if disks.is_empty() {
-        return Domain::new(0.0, 1.0, 0.0, 1.0);
-    }
-    Domain::new(
-        -end(|disk| disk.radius() - disk.position().x),
-        end(|disk| disk.radius() + disk.position().x),
-        -end(|disk| disk.radius() - disk.position().y),
-        end(|disk| disk.radius() + disk.position().y),
-    )
 }

@@ -163,10 +163,12 @@ pub(super) fn number(what: &str, text: &str, line: usize) -> Result<f64, ReadErr
     number.map_err(|_| ReadError::unexpected(line, what, "a number", text))
 }
 
-/// Reads a whole number.
+/// Reads a whole number, which may end in `.0`.
 pub(super) fn whole<T: std::str::FromStr>(what: &str, text: &str, line: usize) -> Result<T, ReadError> {
     let requirement = format!("a whole number that fits into {}", std::any::type_name::<T>());
-    text.trim().parse().map_err(|_| ReadError::unexpected(line, what, requirement, text))
+    let text = text.trim();
+    let digits = text.strip_suffix(".0").unwrap_or(text);
+    digits.parse().map_err(|_| ReadError::unexpected(line, what, requirement, text))
 }
 
 /// Reads a number that must be finite.

@@ -46,6 +46,14 @@ impl State {
         }
     }
 
+    /// Returns a snapshot of the state, for a [`Format`](super::Format).
+    ///
+    /// A file without a box, time or gravity gives the rectangle around the disks, time 0 and no gravity.
+    pub fn snapshot(&self) -> Snapshot<'_> {
+        let domain = self.domain.unwrap_or_else(|| around(&self.disks));
+        Snapshot::new(self.time.unwrap_or_default(), &self.disks, domain, self.gravity.unwrap_or_default())
+    }
+
     /// Returns the disks, in the order of the file.
     pub fn disks(&self) -> &[Disk] {
         &self.disks
@@ -107,4 +115,18 @@ impl State {
         }
         notes
     }
+}
+
+/// Returns the rectangle around these disks.
+fn around(disks: &[Disk]) -> Domain {
+    let end = |value: fn(&Disk) -> f64| disks.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+    if disks.is_empty() {
+        return Domain::new(0.0, 1.0, 0.0, 1.0);
+    }
+    Domain::new(
+        -end(|disk| disk.radius() - disk.position().x),
+        end(|disk| disk.radius() + disk.position().x),
+        -end(|disk| disk.radius() - disk.position().y),
+        end(|disk| disk.radius() + disk.position().y),
+    )
 }

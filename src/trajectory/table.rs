@@ -25,6 +25,8 @@ pub(super) struct Table {
     names: HashMap<String, usize>,
     /// Types count from 1, and a density is that of a sphere.
     pub(super) is_of_lammps: bool,
+    /// This crate wrote the file. It always writes a last line break, so a file without one is torn.
+    pub(super) is_own: bool,
     pub(super) domain: Option<Domain>,
     /// The box of which scaled positions are shares, if it is not the domain.
     pub(super) extent: Option<Domain>,
@@ -54,6 +56,7 @@ impl Table {
             lines: Vec::new(),
             names: HashMap::new(),
             is_of_lammps: false,
+            is_own: false,
             domain: None,
             extent: None,
             time: None,
@@ -166,7 +169,7 @@ fn value(
         return Ok(next as f64);
     }
     if slot == Quantity::Id as usize {
-        let id: u64 = whole(what, cell.trim().trim_end_matches(".0"), line)?;
+        let id: u64 = whole(what, cell, line)?;
         let too_large = || ReadError::unexpected(line, what, "at most 2^53", cell);
         return if id <= LARGEST_ID { Ok(id as f64) } else { Err(too_large()) };
     }

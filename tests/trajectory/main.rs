@@ -4,6 +4,7 @@
 #[path = "../support/report.rs"]
 mod report;
 
+mod corpus;
 mod faults;
 mod gsd;
 mod recording;

@@ -127,7 +127,7 @@ fn files_of_others_are_read() {
                   Atoms # sphere\n\n2 2 1 1.9 9 10 0 0 0 0\n1 1 1 1.9 5 10 0 0 0 0\n\nVelocities\n\n\
                   2 1 -2 0 0 0 0.5\n1 0 0 0 0 0 0\n";
     let state = Reader::new().read_from(lammps.as_bytes()).unwrap();
-    let [first, second] = state.disks() else { panic!("{state:?}") };
+    let [second, first] = state.disks() else { panic!("{state:?}") };
     assert_eq!((first.position().x, second.position().x), (5.0, 9.0));
     assert_eq!((second.velocity(), second.angular_velocity()), (DVec2::new(1.0, -2.0), 0.5));
     assert_eq!((second.kind().number(), state.time()), (1, None));

@@ -68,6 +68,7 @@ impl<'a> Keys<'a> {
         table.time = self.time()?;
         table.gravity = self.value(&["Gravity"])?.map(|value| self.gravity(value)).transpose()?;
         table.domain = self.domain(&mut table.notes)?;
+        table.is_own = self.value(&["Domain"])?.is_some();
         Ok(table)
     }
 

@@ -25,7 +25,7 @@ struct Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    fn add(&mut self, what: &str, row: &'a str, line: usize) -> Result<(), ReadError> {
+    fn add(&mut self, what: &str, row: &'a str, line: usize) -> Result<u64, ReadError> {
         let id = id(row, line)?;
         match self.of_id.insert(id, self.rows.len()) {
             Some(first) => {
@@ -33,7 +33,7 @@ impl<'a> Section<'a> {
             }
             None => {
                 self.rows.push((row, line));
-                Ok(())
+                Ok(id)
             }
         }
     }
@@ -50,11 +50,16 @@ pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
         section = match words(name).first().copied() {
             Some("Atoms") => {
                 check_style(name, lines.line())?;
-                read_section(&mut lines, |row, line| atoms.add("the atom", row, line))?
+                read_section(&mut lines, |row, line| atoms.add("the atom", row, line).map(drop))?
             }
             Some("Velocities") => {
                 let section = velocities.get_or_insert_with(Section::default);
-                read_section(&mut lines, |row, line| section.add("the velocity of atom", row, line))?
+                read_section(&mut lines, |row, line| {
+                    let id = section.add("the velocity of atom", row, line)?;
+                    let missing = || format!("the atom {id}, which has a velocity here,");
+                    let is_there = atoms.of_id.contains_key(&id);
+                    is_there.then_some(()).ok_or_else(|| ReadError::missing(line, missing()))
+                })?
             }
             _ => read_section(&mut lines, |_, _| Ok(()))?,
         };
@@ -62,12 +67,6 @@ pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
     check_number("atom", atoms.rows.len(), count, lines.line())?;
     if let Some(velocities) = &velocities {
         check_number("velocity", velocities.rows.len(), count, lines.line())?;
-        for &(row, line) in &velocities.rows {
-            let id = id(row, line)?;
-            if !atoms.of_id.contains_key(&id) {
-                return Err(ReadError::missing(line, format!("the atom {id}, which has a velocity here,")));
-            }
-        }
     }
     let mut table = Table::of_lammps(COLUMNS.split(' '), lines.line())?;
     for &(row, line) in &atoms.rows {

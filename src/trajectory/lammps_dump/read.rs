@@ -4,6 +4,7 @@ use std::io::BufRead;
 
 use crate::boundary::Domain;
 use crate::trajectory::ReadError;
+use crate::trajectory::column::Quantity;
 use crate::trajectory::found::Found;
 use crate::trajectory::lines::{Input, Text, checked_box, finite, is_upright, whole};
 use crate::trajectory::table::Table;
@@ -68,6 +69,7 @@ impl Head {
     /// Reads the disks.
     fn table(&self, names: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
         let mut table = Table::of_lammps(names.split_whitespace(), line)?;
+        table.is_own = table.has(Quantity::Angle, 0);
         table.time = self.time.as_ref().map(|(time, line)| finite("the time", time, *line)).transpose()?;
         if let Some((words, bounds)) = &self.bounds {
             let [extent, domain] = domains(words, bounds)?;
@@ -116,7 +118,7 @@ fn domains(words: &str, bounds: &[(String, usize); 3]) -> Result<[Domain; 2], Re
     };
     let [left, right, bottom, top] = sides;
     if !is_upright([right - left, top - bottom], tilts) {
-        return Err(ReadError::unexpected(line, "the box", "a rectangle", &bounds[0].0));
+        return Err(ReadError::unexpected(bounds[0].1, "the box", "a rectangle", &bounds[0].0));
     }
     let [sides, ends, _] = flags(words).unwrap_or(["ff"; 3]);
     let extent = Domain::new(left, right, bottom, top);
