@@ -1,95 +1,68 @@
 //! Checks of the disks of a file among each other and against their box.
 
-use std::collections::HashMap;
-
 use super::overlap::{self, Overlap};
 use super::settings::Settings;
 use super::{ReadError, State};
+use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::TOUCHING;
-use crate::{Disk, ParameterError};
 
-/// A disk of a file.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
-    pub(super) line: usize,
-    pub(super) id: Option<u64>,
-    pub(super) disk: Disk,
-}
-
-/// Puts the disks into a state, with their ids, if no id appears twice, none is outside the box, and none
-/// overlaps another by more than the settings accept.
-pub(super) fn settle(
-    mut entries: Vec<Entry>,
-    settings: &Settings,
-    state: &mut State,
-) -> Result<(), ReadError> {
-    number(&mut entries, state)?;
-    if let Some(domain) = state.domain {
-        for entry in &mut entries {
-            state.wrapped += usize::from(enter(entry, &domain, settings)?);
-        }
-    }
-    let disks: Vec<Disk> = entries.iter().map(|entry| entry.disk).collect();
+/// Checks the disks of a state, whose lines these are.
+///
+/// Disks outside of periodic sides are moved into the box. If the settings say so, radii shrink until no disks
+/// overlap; otherwise none may overlap by more than the tolerance.
+pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) -> Result<(), ReadError> {
     let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
-    let found =
-        overlap::deepest(&disks, state.domain.as_ref(), if settings.shrinks { TOUCHING } else { accepted });
-    let limit = match settings.tolerance {
-        None if settings.shrinks => 1.0,
-        _ => accepted,
-    };
-    state.disks = match found {
-        None => disks,
-        Some(Overlap { share, is_counted: true, .. }) if settings.shrinks && share < limit.min(1.0) => {
-            state.shrunk = share;
-            let shrunk = entries.iter().map(|entry| shrunk(&entry.disk, share).map_err(entry.refused()));
-            shrunk.collect::<Result<_, _>>()?
+    if let Some(domain) = state.domain {
+        for (disk, &line) in state.disks.iter_mut().zip(lines) {
+            state.wrapped += usize::from(enter(disk, &domain, accepted, line)?);
         }
-        Some(Overlap { pair: [a, b], depth, share, count, .. }) => {
-            let lines = [entries[a].line, entries[b].line];
-            let [line, other] = [lines[0].max(lines[1]), lines[0].min(lines[1])];
-            return Err(ReadError::Overlap { line, other, depth, share, count });
-        }
-    };
+    }
+    let least = if settings.shrinks { TOUCHING } else { accepted };
+    let Some(found) = overlap::deepest(&state.disks, state.domain.as_ref(), least) else { return Ok(()) };
+    let Overlap { pair: [a, b], depth, share, count, is_counted } = found;
+    let is_small = share < 1.0 && settings.tolerance.is_none_or(|tolerance| share <= tolerance);
+    if !(settings.shrinks && is_small && is_counted) {
+        let [line, other] = [lines[a].max(lines[b]), lines[a].min(lines[b])];
+        return Err(ReadError::Overlap { line, other, depth, share, count });
+    }
+    for (disk, &line) in state.disks.iter_mut().zip(lines) {
+        *disk = disk
+            .with_radius(disk.radius() * (1.0 - share))
+            .map_err(|source| ReadError::Disk { line, source })?;
+    }
+    state.shrunk = share;
     Ok(())
 }
 
-impl Entry {
-    /// Returns a function that adds the line to an error.
-    fn refused(&self) -> impl FnOnce(ParameterError) -> ReadError + use<> {
-        let line = self.line;
-        move |source| ReadError::Disk { line, source }
+/// Checks that no id appears twice. Ids from 0 on become ids from 1 on, for the id 0 stands for none.
+pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadError> {
+    let mut order: Vec<usize> = (0..disks.len()).collect();
+    order.sort_by_key(|&index| disks[index].id());
+    if let Some(pair) = order.windows(2).find(|pair| disks[pair[0]].id() == disks[pair[1]].id()) {
+        let (first, line, id) = (lines[pair[0]], lines[pair[1]], disks[pair[0]].id());
+        return Err(ReadError::Doubled { line, first, what: format!("the disk {id}") });
     }
+    let has_zero = order.first().is_some_and(|&index| disks[index].id() == 0);
+    if has_zero {
+        for (disk, &line) in disks.iter_mut().zip(lines) {
+            *disk = disk.with_id(disk.id() + 1).map_err(|source| ReadError::Disk { line, source })?;
+        }
+    }
+    Ok(has_zero)
 }
 
-/// Gives the disks the ids of the file, which must differ. Ids from 0 on become ids from 1 on, for a disk
-/// without an id has the id 0.
-fn number(entries: &mut [Entry], state: &mut State) -> Result<(), ReadError> {
-    let mut lines = HashMap::new();
-    let first = u64::from(entries.iter().any(|entry| entry.id == Some(0)));
-    for entry in entries {
-        let Some(id) = entry.id else { continue };
-        if let Some(first) = lines.insert(id, entry.line) {
-            return Err(ReadError::Doubled { line: entry.line, first, what: format!("the disk {id}") });
-        }
-        entry.disk = entry.disk.with_id(id + first).map_err(entry.refused())?;
-    }
-    if first > 0 {
-        state.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
-    }
-    Ok(())
-}
+/// Numbers of periods that a disk can have passed.
+pub(super) const IMAGES: std::ops::RangeInclusive<f64> = i32::MIN as f64..=i32::MAX as f64;
 
 /// Moves a disk into its box by whole periods, and returns whether it was outside.
-fn enter(entry: &mut Entry, domain: &Domain, settings: &Settings) -> Result<bool, ReadError> {
-    let disk = entry.disk;
-    let slack = disk.radius() * settings.tolerance.unwrap_or_default().max(TOUCHING);
-    if domain.contains(disk.position(), slack) {
+fn enter(disk: &mut Disk, domain: &Domain, accepted: f64, line: usize) -> Result<bool, ReadError> {
+    if domain.contains(disk.position(), TOUCHING * disk.radius()) {
         return Ok(false);
     }
     let place = domain.wrapped(disk.position());
-    let outside = ReadError::Outside { line: entry.line, x: disk.position().x, y: disk.position().y };
-    if !domain.contains(place, slack) {
+    let outside = ReadError::Outside { line, x: disk.position().x, y: disk.position().y };
+    if !domain.contains(place, accepted * disk.radius()) {
         return Err(outside);
     }
     let periods = domain.periods();
@@ -97,22 +70,11 @@ fn enter(entry: &mut Entry, domain: &Domain, settings: &Settings) -> Result<bool
         let moved = disk.position()[axis] - place[axis];
         let passed = if periods[axis] > 0.0 { (moved / periods[axis]).round() } else { 0.0 };
         let image = f64::from(disk.image()[axis]) + passed;
-        (image.abs() < f64::from(i32::MAX)).then_some(image as i32)
+        IMAGES.contains(&image).then_some(image as i32)
     };
     let (Some(right), Some(up)) = (passed(0), passed(1)) else { return Err(outside) };
-    let moved = disk.with_position(place).map_err(entry.refused())?;
-    entry.disk = moved.with_image([right, up]);
-    Ok(true)
-}
-
-/// Returns a disk whose radius is smaller by this share.
-fn shrunk(disk: &Disk, share: f64) -> Result<Disk, ParameterError> {
-    Disk::new(disk.position(), disk.radius() * (1.0 - share))?
-        .with_velocity(disk.velocity())?
-        .with_angle(disk.angle())?
-        .with_angular_velocity(disk.angular_velocity())?
-        .with_mass(disk.mass())?
-        .with_inertia_factor(disk.inertia_factor())?
-        .with_id(disk.id())
-        .map(|small| small.with_kind(disk.kind()).with_image(disk.image()))
+    let moved = disk.with_position(place).map_err(|source| ReadError::Disk { line, source })?;
+    let was_outside = [right, up] != disk.image();
+    *disk = moved.with_image([right, up]);
+    Ok(was_outside)
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::checks::{Entry, settle};
+use super::checks::{IMAGES, number, settle};
 use super::column::Quantity::{self, *};
 use super::column::SLOTS;
 use super::settings::Settings;
@@ -21,14 +21,15 @@ const FLAT: f64 = 1e-9;
 
 /// Returns the state that a table holds.
 pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, ReadError> {
-    let entries = entries(&table, settings)?;
-    let is_named = table.names().iter().any(|name| name.parse::<u16>().is_err());
-    let names = if is_named && !(table.has(Quantity::Kind, 0) || table.has(Type, 0)) {
-        table.names()
-    } else {
-        Vec::new()
-    };
+    let mut disks = disks(&table, settings)?;
+    if table.has(Id, 0) && number(&mut disks, &table.lines)? {
+        table.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
+    }
+    let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
+    let is_named = !is_numbered && table.names().iter().any(|name| name.parse::<u16>().is_err());
+    let names = if is_named { table.names() } else { Vec::new() };
     let mut state = State {
+        disks,
         domain: table.domain,
         time: table.time,
         gravity: table.gravity,
@@ -37,20 +38,20 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         notes: std::mem::take(&mut table.notes),
         ..State::default()
     };
-    let settings = with_rounding(settings, table.rounding, &entries);
-    settle(entries, &settings, &mut state)?;
+    let settings = with_rounding(settings, table.rounding, &state.disks);
+    settle(&mut state, &table.into_lines(), &settings)?;
     Ok(state)
 }
 
 /// Returns the settings with a tolerance for positions of few digits, if nothing else is set.
-fn with_rounding(settings: &Settings, rounding: f64, entries: &[Entry]) -> Settings {
-    let smallest = entries.iter().map(|entry| entry.disk.radius()).fold(f64::INFINITY, f64::min);
+fn with_rounding(settings: &Settings, rounding: f64, disks: &[Disk]) -> Settings {
+    let smallest = disks.iter().map(Disk::radius).fold(f64::INFINITY, f64::min);
     let of_rounding = (rounding > 0.0 && !settings.shrinks).then_some(rounding / smallest);
     Settings { tolerance: settings.tolerance.or(of_rounding), ..settings.clone() }
 }
 
 /// Returns the disks of a table, in its order.
-fn entries(table: &Table, settings: &Settings) -> Result<Vec<Entry>, ReadError> {
+fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     let either = |quantities: &[Quantity], axis| quantities.iter().any(|&quantity| table.has(quantity, axis));
     let missing = |name: &str| Err(ReadError::missing(table.line, format!("the column `{name}`")));
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
@@ -63,12 +64,12 @@ fn entries(table: &Table, settings: &Settings) -> Result<Vec<Entry>, ReadError> 
     }
     check_plane(table)?;
     let kinds = kinds_of_names(table)?;
-    let rows = table.rows().map(|(values, line)| {
+    let mut disks = Vec::with_capacity(table.lines.len());
+    for (values, line) in table.rows() {
         let row = Row { slots: slots(table, values, line)?, table, settings, line };
-        let disk = row.disk(row.kind(&kinds)?)?;
-        Ok(Entry { line, id: row.get(Id, 0).map(|id| id as u64), disk })
-    });
-    rows.collect()
+        disks.push(row.disk(row.kind(&kinds)?)?);
+    }
+    Ok(disks)
 }
 
 /// Returns the numbers of the kinds that names stand for: the names themselves, or else their order.
@@ -174,7 +175,8 @@ impl Row<'_> {
                 .with_angle(angle)?
                 .with_angular_velocity(turning)?
                 .with_mass(mass)?
-                .with_inertia_factor(inertia)
+                .with_inertia_factor(inertia)?
+                .with_id(self.get(Id, 0).map_or(0, |id| id as u64))
         };
         let disk = disk().map_err(|source| ReadError::Disk { line: self.line, source })?;
         Ok(disk.with_kind(kind).with_image([right, up]))
@@ -229,7 +231,7 @@ impl Row<'_> {
             }
             _ => (here.or(far).unwrap_or_default(), image.unwrap_or_default()),
         };
-        if image.abs() >= f64::from(i32::MAX) {
+        if !IMAGES.contains(&image) {
             return Err(ReadError::unexpected(self.line, "image", "below 2^31", image.to_string()));
         }
         Ok((place, image as i32))

@@ -119,7 +119,9 @@ impl Table {
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |column: &Column| {
             let is_name = column.slot == Some(Quantity::Name as usize);
-            column.slot.is_none() || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
+            let is_time = self.is_of_lammps && column.name == "v_time";
+            column.slot.is_none() && !is_time
+                || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };
         let mut names: Vec<String> = self
             .columns
@@ -139,6 +141,11 @@ impl Table {
     pub(super) fn rows(&self) -> impl Iterator<Item = (&[f64], usize)> {
         let stride = self.known().count().max(1);
         self.values.chunks(stride).zip(self.lines.iter().copied())
+    }
+
+    /// Returns the lines of the rows alone, to free the rest.
+    pub(super) fn into_lines(self) -> Vec<usize> {
+        self.lines
     }
 
     /// Returns the names of kinds by their numbers.

@@ -244,8 +244,7 @@ fn data_of_lammps_by_sections_and_styles() {
         (with("1e-13 0 -1e-15 xy xz yz"), two.clone()),
         (
             with("0.5 0 0 xy xz yz"),
-            "refused: line 5: the tilts of the box must be 0, for it is a rectangle, but is \"0.5 0 0\""
-                .into(),
+            "refused: line 7: the box must be a rectangle, but is \"0.5 0 0 xy xz yz\"".into(),
         ),
         (
             data(
@@ -257,8 +256,7 @@ fn data_of_lammps_by_sections_and_styles() {
         (data("2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")), two.clone()),
         (
             data("2 atoms\n8 1 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")),
-            "refused: line 6: the tilts of the box must be 0, for it is a rectangle, but is \"1 0 0 0 0 0\""
-                .into(),
+            "refused: line 6: the box must be a rectangle, but is \"1 0 0 0 0 0 off the diagonal\"".into(),
         ),
         // Labels, comments, line breaks.
         (

@@ -140,7 +140,7 @@ impl Chunk {
             5 => f64::from(first(1) as i8),
             6 => f64::from(first(2) as i16),
             7 => f64::from(first(4) as i32),
-            8 => first(8) as i64 as f64,
+            8 => first(8).cast_signed() as f64,
             F32 => f64::from(f32::from_bits(first(4) as u32)),
             F64 => f64::from_bits(first(8)),
             _ => f64::NAN,

@@ -106,58 +106,38 @@ impl<R: Read + Seek> View<'_, R> {
 
     fn table(mut self) -> Result<Table, ReadError> {
         let [count] = self.numbers("particles/N")?.unwrap_or_default();
-        let count = count as usize;
+        let disks = self.disks(count as usize)?;
+        let columns = COLUMNS.iter().zip(disks.present()).filter(|(_, is_there)| *is_there);
+        let mut table = Table::new(columns.flat_map(|((name, size), _)| Column::of(name, *size)), 1)?;
+        let center = self.space(&mut table)?;
+        for row in 0..count as usize {
+            table.push_numbers(&disks.row(row, center), row + 1);
+        }
+        table.rounding = rounding(&disks.position, center);
+        table.notes = self.notes;
+        Ok(table)
+    }
+
+    fn disks(&mut self, count: usize) -> Result<Disks, ReadError> {
         let position = self.rows("particles/position", count, 3)?;
         let Some(position) = position.or_else(|| (count == 0).then(Chunk::default)) else {
             return Err(self.wrong("the chunk `particles/position` is missing"));
         };
         let kind = self.rows("particles/typeid", count, 1)?;
         let diameters = self.diameters(count, kind.as_ref())?;
-        let mut optional = |name, columns| self.rows(name, count, columns);
-        let (mass, velocity) = (optional("particles/mass", 1)?, optional("particles/velocity", 3)?);
-        let (turned, momentum) = (optional("particles/orientation", 4)?, optional("particles/angmom", 4)?);
-        let inertia = optional("particles/moment_inertia", 3)?;
-        let (image, id) = (optional("particles/image", 3)?, optional("log/particles/id", 1)?);
-        let present = [true, kind.is_some(), true, mass.is_some(), velocity.is_some(), turned.is_some()];
-        let turns = momentum.is_some() && inertia.is_some();
-        let present = present.into_iter().chain([turns, inertia.is_some(), image.is_some(), id.is_some()]);
-        let names = COLUMNS.iter().zip(present).filter(|(_, is_there)| *is_there);
-        let mut table = Table::new(names.flat_map(|((name, size), _)| Column::of(name, *size)), 1)?;
-        let center = self.space(&mut table)?;
-        let mut numbers = Vec::new();
-        for row in 0..count {
-            let of = |chunk: &Option<Chunk>, column| chunk.as_ref().map(|chunk| chunk.number(row, column));
-            let all = |chunk: &Option<Chunk>, columns: &[usize]| -> Vec<f64> {
-                columns.iter().filter_map(|&column| of(chunk, column)).collect()
-            };
-            numbers.clear();
-            numbers.extend([position.number(row, 0) + center.x, position.number(row, 1) + center.y]);
-            numbers.push(position.number(row, 2));
-            numbers.extend(of(&kind, 0));
-            numbers.push(diameters[row]);
-            let own_mass = mass.as_ref().map(|mass| mass.decimal(row));
-            numbers.extend(own_mass);
-            numbers.extend(all(&velocity, &[0, 1, 2]));
-            numbers.extend(all(&turned, &[1, 2, 3, 0]));
-            let moment = of(&inertia, 2).filter(|&moment| moment > 0.0);
-            if turns {
-                // A quaternion of angular momentum is twice the orientation times the momentum of the body.
-                let [w, z] = [0, 3].map(|part| of(&turned, part).unwrap_or(f64::from(u8::from(part == 0))));
-                let [p, x, y, q] = [0, 1, 2, 3].map(|part| of(&momentum, part).unwrap_or_default());
-                let turning = moment.map_or(0.0, |moment| 0.5 * (w * q - z * p) / moment);
-                numbers.extend([x, y, turning]);
-            }
-            if inertia.is_some() {
-                let unit = 0.25 * own_mass.unwrap_or(1.0) * diameters[row] * diameters[row];
-                numbers.push(moment.map_or(Disk::HOMOGENEOUS_INERTIA_FACTOR, |moment| moment / unit));
-            }
-            numbers.extend(all(&image, &[0, 1, 2]));
-            numbers.extend(of(&id, 0));
-            table.push_numbers(&numbers, row + 1);
-        }
-        table.rounding = rounding(&position, center);
-        table.notes = self.notes;
-        Ok(table)
+        let mut rows = |name, columns| self.rows(name, count, columns);
+        Ok(Disks {
+            position,
+            kind,
+            diameters,
+            mass: rows("particles/mass", 1)?,
+            velocity: rows("particles/velocity", 3)?,
+            orientation: rows("particles/orientation", 4)?,
+            momentum: rows("particles/angmom", 4)?,
+            inertia: rows("particles/moment_inertia", 3)?,
+            image: rows("particles/image", 3)?,
+            id: rows("log/particles/id", 1)?,
+        })
     }
 
     /// Sets the box, the time and gravity, and returns the point from which positions count.
@@ -229,6 +209,59 @@ impl<R: Read + Seek> View<'_, R> {
             }
         }
         Ok(diameters)
+    }
+}
+
+/// The chunks with a row for each disk, as far as they are there.
+struct Disks {
+    position: Chunk,
+    kind: Option<Chunk>,
+    diameters: Vec<f64>,
+    mass: Option<Chunk>,
+    velocity: Option<Chunk>,
+    orientation: Option<Chunk>,
+    momentum: Option<Chunk>,
+    inertia: Option<Chunk>,
+    image: Option<Chunk>,
+    id: Option<Chunk>,
+}
+
+impl Disks {
+    /// Returns which of the columns are there.
+    fn present(&self) -> [bool; COLUMNS.len()] {
+        let Self { kind, mass, velocity, orientation, momentum, inertia, image, id, .. } = self;
+        let [kind, mass, velocity, orientation] = [kind, mass, velocity, orientation].map(Option::is_some);
+        let [momentum, inertia, image, id] = [momentum, inertia, image, id].map(Option::is_some);
+        [true, kind, true, mass, velocity, orientation, momentum && inertia, inertia, image, id]
+    }
+
+    /// Returns the numbers of a disk in the columns that are there.
+    fn row(&self, row: usize, center: DVec2) -> Vec<f64> {
+        let of = |chunk: &Option<Chunk>, column| chunk.as_ref().map(|chunk| chunk.number(row, column));
+        let mut numbers =
+            vec![self.position.number(row, 0) + center.x, self.position.number(row, 1) + center.y];
+        let (mass, diameter) = (self.mass.as_ref().map(|mass| mass.decimal(row)), self.diameters[row]);
+        numbers.push(self.position.number(row, 2));
+        numbers.extend(of(&self.kind, 0));
+        numbers.push(diameter);
+        numbers.extend(mass);
+        numbers.extend([0, 1, 2].iter().filter_map(|&axis| of(&self.velocity, axis)));
+        numbers.extend([1, 2, 3, 0].iter().filter_map(|&part| of(&self.orientation, part)));
+        let moment = of(&self.inertia, 2).filter(|&moment| moment > 0.0);
+        if self.momentum.is_some() && self.inertia.is_some() {
+            // A quaternion of angular momentum is twice the orientation times the momentum of the body.
+            let [w, z] =
+                [(0, 1.0), (3, 0.0)].map(|(part, unturned)| of(&self.orientation, part).unwrap_or(unturned));
+            let [p, x, y, q] = [0, 1, 2, 3].map(|part| of(&self.momentum, part).unwrap_or_default());
+            numbers.extend([x, y, moment.map_or(0.0, |moment| 0.5 * (w * q - z * p) / moment)]);
+        }
+        if self.inertia.is_some() {
+            let unit = 0.25 * mass.unwrap_or(1.0) * diameter * diameter;
+            numbers.push(moment.map_or(Disk::HOMOGENEOUS_INERTIA_FACTOR, |moment| moment / unit));
+        }
+        numbers.extend([0, 1, 2].iter().filter_map(|&axis| of(&self.image, axis)));
+        numbers.extend(of(&self.id, 0));
+        numbers
     }
 }
 

@@ -11,7 +11,7 @@ pub(super) struct Header<'a> {
     atoms: Found<usize>,
     sides: Found<[f64; 2]>,
     ends: Found<[f64; 2]>,
-    tilts: Vec<f64>,
+    tilts: Found<[f64; 3]>,
     /// The vectors of a general box and its origin.
     vectors: [Found<[f64; 3]>; 4],
     /// Things that disks do not have, such as bonds.
@@ -56,8 +56,8 @@ impl<'a> Header<'a> {
             [low, high, "xlo", "xhi"] => once(&mut self.sides, ends(low, high)?, "`xlo xhi`", line)?,
             [low, high, "ylo", "yhi"] => once(&mut self.ends, ends(low, high)?, "`ylo yhi`", line)?,
             [xy, xz, yz, "xy", "xz", "yz"] => {
-                let tilts = [xy, xz, yz].into_iter().map(|tilt| finite("a tilt of the box", tilt, line));
-                self.tilts = tilts.collect::<Result<_, _>>()?;
+                let tilt = |tilt| finite("a tilt of the box", tilt, line);
+                once(&mut self.tilts, [tilt(xy)?, tilt(xz)?, tilt(yz)?], "`xy xz yz`", line)?;
             }
             [x, y, z, name @ ("avec" | "bvec" | "cvec")] | [x, y, z, "abc", name @ "origin"] => {
                 let what = "a vector of the box";
@@ -80,25 +80,22 @@ impl<'a> Header<'a> {
 
     /// Returns the box.
     pub(super) fn domain(&self, line: usize) -> Result<Domain, ReadError> {
-        let ([left, right], [bottom, top], tilts, line) = match self.vectors {
-            [Some(([width, a, b], _)), Some(([c, height, d], _)), Some(([e, f, _], line)), origin] => {
-                let [left, bottom, _] = origin.map_or([0.0; 3], |(origin, _)| origin);
-                ([left, left + width], [bottom, bottom + height], vec![a, b, c, d, e, f], line)
-            }
-            _ => {
-                let sides = found(self.sides, "`xlo xhi`", line)?;
-                let ends = found(self.ends, "`ylo yhi`", line)?;
-                (sides, ends, self.tilts.clone(), self.ends.map_or(line, |(_, line)| line))
-            }
+        let vectors = self.vectors;
+        let is_general = vectors[..3].iter().all(Option::is_some);
+        let [width, height, depth, origin] = vectors.map(|found| found.unwrap_or(([0.0; 3], line)));
+        let ([left, right], [bottom, top], tilts, line, name) = if is_general {
+            let ([width, a, b], [c, height, d], [e, f, _]) = (width.0, height.0, depth.0);
+            let [left, bottom, _] = origin.0;
+            let (sides, ends) = ([left, left + width], [bottom, bottom + height]);
+            (sides, ends, vec![a, b, c, d, e, f], depth.1, "off the diagonal")
+        } else {
+            let (tilts, line) = self.tilts.unwrap_or(([0.0; 3], self.ends.map_or(line, |(_, line)| line)));
+            let (sides, ends) = (found(self.sides, "`xlo xhi`", line), found(self.ends, "`ylo yhi`", line));
+            (sides?, ends?, tilts.to_vec(), line, "xy xz yz")
         };
         if !is_upright([right - left, top - bottom], tilts.iter().copied()) {
             let found = tilts.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
-            return Err(ReadError::unexpected(
-                line,
-                "the tilts of the box",
-                "0, for it is a rectangle",
-                found,
-            ));
+            return Err(ReadError::unexpected(line, "the box", "a rectangle", format!("{found} {name}")));
         }
         checked_box(Domain::new(left, right, bottom, top), line)
     }

@@ -32,15 +32,12 @@ struct Section<'a> {
 impl<'a> Section<'a> {
     fn add(&mut self, what: &str, row: &'a str, line: usize) -> Result<u64, ReadError> {
         let id = id(row, line)?;
-        match self.of_id.insert(id, self.rows.len()) {
-            Some(first) => {
-                Err(ReadError::Doubled { line, first: self.rows[first].1, what: format!("{what} {id}") })
-            }
-            None => {
-                self.rows.push((row, line));
-                Ok(id)
-            }
+        if let Some(first) = self.of_id.insert(id, self.rows.len()) {
+            let what = format!("{what} {id}");
+            return Err(ReadError::Doubled { line, first: self.rows[first].1, what });
         }
+        self.rows.push((row, line));
+        Ok(id)
     }
 }
 
