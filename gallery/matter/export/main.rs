@@ -35,7 +35,7 @@ use gallery::progress::Progress;
 /// A run in files that other programs open.
 #[derive(Parser)]
 struct Arguments {
-    /// Number of frames, one for each oscillation.
+    /// Number of frames, one every 1.1 oscillations.
     #[arg(long, default_value_t = 20, value_parser = whole::<100_000>)]
     frames: u64,
     /// Number of disks.
@@ -108,8 +108,8 @@ fn start(arguments: &Arguments) -> Result<Run, Box<dyn Error>> {
 /// Returns the time between two frames, and the time of the last one.
 fn times(arguments: &Arguments) -> (f64, f64) {
     let frames = if arguments.quick { arguments.frames.min(4) } else { arguments.frames };
-    let oscillation = TAU / 10.0;
-    (oscillation, frames as f64 * oscillation)
+    let interval = 1.1 * TAU / 10.0;
+    (interval, frames as f64 * interval)
 }
 
 /// Begins a file of each format.
@@ -176,7 +176,11 @@ fn all_of(snapshot: &Snapshot<'_>) -> Value {
         "left": domain.left,
         "right": domain.right,
         "bottom": domain.bottom,
+        // Of an open box, it is null.
+        "top": domain.top,
         "periodic": [domain.periodic_sides, domain.periodic_ends],
+        "floor": snapshot.edges().bottom,
+        "walls": snapshot.moving_walls().iter().map(|(wall, by, phase)| [*wall as f64, by.x, by.y, *phase]).collect::<Vec<_>>(),
         "disks": snapshot.disks().iter().enumerate().map(disk).collect::<Vec<_>>(),
     })
 }
