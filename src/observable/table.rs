@@ -20,7 +20,7 @@ pub(super) const ENERGY: &str = "energy";
 /// number. A `Sampled` measure is written like the measure within.
 ///
 /// # Contract
-/// Each row has as many numbers as there are headings, in their order.
+/// Each row has one number for each heading, in their order.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -142,7 +142,7 @@ impl Table for Histogram {
     }
 }
 
-/// Returns the headings of numbers without errors, and after them those of numbers with errors.
+/// Returns the headings of numbers without errors, and after them the headings of numbers with errors.
 pub(super) fn headings(exact: &[(&str, &str)], estimated: &[(&str, &str)]) -> Vec<Heading> {
     let exact = exact.iter().map(|&heading| heading.into());
     let estimated = estimated.iter().flat_map(|&(name, unit)| {
@@ -170,7 +170,7 @@ pub(super) fn histogram_headings<const COUNT: usize>(names: [(&str, &str); COUNT
     names.into_iter().flat_map(columns).collect()
 }
 
-/// Returns the rows of histograms side by side, with as many bins each.
+/// Returns the rows of histograms side by side, all with the same number of bins.
 pub(super) fn histogram_rows<const COUNT: usize>(
     histograms: [&Histogram; COUNT],
 ) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {

@@ -53,7 +53,7 @@ pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadEr
 }
 
 /// Numbers of periods that a disk can have passed.
-pub(super) const IMAGES: std::ops::RangeInclusive<f64> = i32::MIN as f64..=i32::MAX as f64;
+pub(super) const IMAGES: std::ops::RangeInclusive<f64> = -2_147_483_648.0..=2_147_483_647.0;
 
 /// Moves a disk into its box by whole periods, and returns whether it was outside.
 fn enter(disk: &mut Disk, domain: &Domain, accepted: f64, line: usize) -> Result<bool, ReadError> {

@@ -22,7 +22,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::Kind;
-use granular_edmd::observable::from_fn;
+use granular_edmd::observable::{OfKind, Temperatures, from_fn};
 use granular_edmd::prelude::*;
 use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State};
 use serde_json::{Value, json};
