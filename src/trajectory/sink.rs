@@ -49,7 +49,7 @@ enum Form {
 /// | `log/walls/index`, `x`, `y`, `phase` | [moving walls](Snapshot::moving_walls) |
 ///
 /// The format knows only boxes that are periodic in both directions, and so do its readers. Take walls into
-/// account by `log/periodic`: freud, for example, needs `box.periodic = [*frame.log["periodic"], False]`.
+/// account by `log/periodic`; [`recipes`](crate::guide::recipes) has the lines for freud.
 ///
 /// `gsd.hoomd.read_log` reads all of `log` if the number of disks is constant, and with `scalar_only=True`
 /// in any case.

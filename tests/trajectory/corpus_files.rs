@@ -320,3 +320,51 @@ fn cut_data_is_read_or_refused() {
         }
     }
 }
+
+/// The recipes of the guide: each file has the disks of the last frame, as far as its program keeps them.
+#[test]
+#[ignore = "needs the files of other programs, which `.ci/readers` has them write"]
+fn recipes_are_read_back() {
+    let Ok(folder) = std::env::var("RECIPES") else {
+        return eprintln!("SKIPPED: RECIPES does not name the folder of the recipes");
+    };
+    let folder = PathBuf::from(folder);
+    let end = Reader::new().read(folder.join("end.csv")).unwrap();
+    let (mut read, mut missing) = (0, Vec::new());
+    // The largest error of a number, and whether angles and inertia factors are kept.
+    for (name, error, is_whole) in [
+        ("from_ovito.xyz", 4e-15, true),
+        ("from_ase.xyz", 1e-8, true),
+        ("from_pandas.csv", 0.0, true),
+        ("from_polars.csv", 0.0, true),
+        ("from_lammps.data", 1e-14, false),
+        ("from_lammps.dump", 1e-15, false),
+        ("from_gsd.gsd", 4e-6, true),
+    ] {
+        let Ok(state) = Reader::new().with_shrunk_radii().read(folder.join(name)) else {
+            missing.push(name);
+            continue;
+        };
+        assert!(state.shrunk() < 1e-6, "{name} {}", state.shrunk());
+        assert_eq!(state.disks().len(), end.disks().len(), "{name}");
+        for disk in end.disks() {
+            let back = state.disks().iter().find(|back| back.id() == disk.id()).unwrap();
+            let near = |one: f64, other: f64| assert!((one - other).abs() <= error, "{name}: {one} {other}");
+            near(back.position().x, disk.position().x);
+            near(back.position().y, disk.position().y);
+            near(back.velocity().x, disk.velocity().x);
+            near(back.velocity().y, disk.velocity().y);
+            near(back.angular_velocity(), disk.angular_velocity());
+            near(back.mass(), disk.mass());
+            assert!((back.radius() - disk.radius()).abs() < 1e-7, "OVITO keeps radii in single precision");
+            assert_eq!(back.kind(), disk.kind(), "{name}");
+            if is_whole {
+                assert!((0.5 * (back.angle() - disk.angle())).sin().abs() <= error.max(1e-15), "{name}");
+                near(back.inertia_factor(), disk.inertia_factor());
+            }
+        }
+        read += 1;
+    }
+    assert!(read > 0, "{missing:?} cannot be read");
+    println!("{read} files are read back; not there: {missing:?}");
+}
