@@ -7,8 +7,8 @@
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE) |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | GSD, as of HOOMD-blue | one binary file with an index ([`Recorder::create_gsd`]) | OVITO, freud, `gsd` |
-//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` for times ([`Recorder::create_vtk`]) | ParaView, VTK |
+//! | [`Gsd`], as of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
+//! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!
 //! A [`Reader`] reads all of these but VTK, and files of other programs: it recognizes the format by the
 //! contents, and columns by their names. A [`State`] has the disks, and is also written as a table
@@ -98,9 +98,9 @@ mod overlap;
 mod reader;
 mod recorder;
 mod settings;
+mod sink;
 mod source;
 mod state;
-mod store;
 mod table;
 mod vtk;
 
@@ -109,9 +109,11 @@ pub use errors::{ReadError, RecordError};
 pub use extended_xyz::ExtendedXyz;
 pub use format::{Format, Frame};
 #[doc(alias("OVITO", "VMD"))]
-pub use lammps_dump::LammpsDump;
+pub use lammps_dump::{LammpsDump, TimedLammpsDump};
 #[doc(alias("read_data", "read_dump", "initial condition"))]
 pub use reader::{Reader, States};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
+#[doc(alias("OVITO", "freud", "ParaView"))]
+pub use sink::{ByEnding, FileFormat, Gsd, Vtk};
 pub use state::State;

@@ -41,9 +41,16 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         notes: std::mem::take(&mut table.notes),
         ..State::default()
     };
-    let lines = table.into_lines();
-    settle(&mut state, &lines, settings)?;
+    let settings = with_rounding(settings, table.rounding, &state.disks);
+    settle(&mut state, &table.into_lines(), &settings)?;
     Ok(state)
+}
+
+/// Returns the settings with a tolerance for positions of few digits, if nothing else is set.
+fn with_rounding(settings: &Settings, rounding: f64, disks: &[Disk]) -> Settings {
+    let smallest = disks.iter().map(Disk::radius).fold(f64::INFINITY, f64::min);
+    let of_rounding = (rounding > 0.0 && !settings.shrinks).then_some(rounding / smallest);
+    Settings { tolerance: settings.tolerance.or(of_rounding), ..settings.clone() }
 }
 
 /// Returns the disks of a table, in its order.
@@ -246,7 +253,9 @@ impl Row<'_> {
             _ => None,
         };
         let Some(angle) = self.get(Angle, 0) else { return Ok(half.map_or(0.0, |half| 2.0 * half)) };
-        if half.is_none_or(|half| libm::sin(half - 0.5 * angle).abs() < ALIKE) {
+        // An angle of many turns has few digits within a turn, but its sine and cosine are those of the writer.
+        let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
+        if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);
         }
         let found = format!("{angle} and that of the orientation");

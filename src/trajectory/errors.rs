@@ -96,11 +96,16 @@ impl RecordError {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
     }
+
+    /// Creates the error of a name that a format cannot use.
+    pub(super) fn unusable(path: &Path, reason: &str) -> Self {
+        Self::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason))
+    }
 }
 
 /// An error in reading disks from a file.
 ///
-/// Lines are counted from 1.
+/// Lines are counted from 1. In a file of GSD, which has no lines, they are the disks.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 ///
@@ -192,6 +197,12 @@ pub enum ReadError {
         /// Vertical position of the center.
         y: f64,
     },
+    /// A file of GSD is damaged, or a frame of it is not one of disks.
+    #[error("{reason}")]
+    Gsd {
+        /// The frame and the chunk, and the condition that it should have met.
+        reason: String,
+    },
     /// Disks overlap by more than rounding, or by more than the reader's tolerance.
     #[error("line {line}: the disk overlaps the disk of line {other} by {}, a share of {} of their distance at \
         contact; it is the deepest of {count} such overlaps; a tolerance or shrunk radii accept them",
@@ -228,6 +239,11 @@ impl ReadError {
     ) -> Self {
         let found: String = found.into().chars().take(60).collect();
         Self::Unexpected { line, what: what.into(), requirement: requirement.into(), found }
+    }
+
+    /// Creates the error of a file of GSD.
+    pub(super) fn gsd(reason: impl Into<String>) -> Self {
+        Self::Gsd { reason: reason.into() }
     }
 
     /// Creates the error for a missing field.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
 use super::found::{Found, Frames};
@@ -161,7 +161,7 @@ impl Reader {
         let path = path.as_ref();
         let file = File::open(path).map_err(|source| ReadError::Open { path: path.to_owned(), source })?;
         let failed = |source| ReadError::File { path: path.to_owned(), source: Box::new(source) };
-        self.read_from(BufReader::new(file)).map_err(failed)
+        source::frames_of_file(file).and_then(|frames| self.state(frames)).map_err(failed)
     }
 
     /// Reads a frame of an input.
@@ -172,8 +172,11 @@ impl Reader {
     /// contradict each other, or an id appears twice. If disks overlap, are outside the box, or do not lie
     /// in a plane. The error names the line.
     pub fn read_from(&self, input: impl BufRead) -> Result<State, ReadError> {
-        let found = self.frame.find(source::frames(input)?)?;
-        disks::state((found.read)()?, &self.settings)
+        self.state(source::frames(input)?)
+    }
+
+    fn state(&self, frames: Frames<'_>) -> Result<State, ReadError> {
+        disks::state((self.frame.find(frames)?.read)()?, &self.settings)
     }
 
     /// Returns the states of all frames of an input, one after another. The iterator ends after an error.

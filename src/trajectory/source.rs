@@ -1,6 +1,7 @@
 //! The frames of a file, whose format shows in its contents.
 
-use std::io::{BufRead, Cursor, Read};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 
 use super::ReadError;
 use super::found::{Found, Frames};
@@ -9,6 +10,15 @@ use super::{csv, extended_xyz, gsd, lammps_data, lammps_dump};
 
 /// Bytes by which the format is recognized.
 const HEAD: u64 = 1 << 14;
+
+/// Returns the frames of a file. One of GSD is not read whole.
+pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
+    let failed = |source| ReadError::Io { line: 1, source };
+    let mut head = Vec::new();
+    file.by_ref().take(8).read_to_end(&mut head).map_err(failed)?;
+    file.rewind().map_err(failed)?;
+    if gsd::is_gsd(&head) { Ok(gsd::frames_of_file(file)) } else { frames(BufReader::new(file)) }
+}
 
 /// Returns the frames of an input, which may be compressed.
 pub(super) fn frames<'a>(input: impl BufRead + 'a) -> Result<Frames<'a>, ReadError> {
@@ -33,7 +43,7 @@ fn with_head(mut input: Boxed<'_>) -> Result<(Vec<u8>, Boxed<'_>), ReadError> {
 #[cfg(feature = "gzip")]
 #[expect(clippy::unnecessary_wraps, reason = "without the feature, it is an error")]
 fn inflated(input: Boxed<'_>) -> Result<Boxed<'_>, ReadError> {
-    Ok(Box::new(std::io::BufReader::new(flate2::bufread::MultiGzDecoder::new(input))))
+    Ok(Box::new(BufReader::new(flate2::bufread::MultiGzDecoder::new(input))))
 }
 
 #[cfg(not(feature = "gzip"))]

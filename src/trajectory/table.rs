@@ -32,6 +32,8 @@ pub(super) struct Table {
     pub(super) extent: Option<Domain>,
     pub(super) time: Option<f64>,
     pub(super) gravity: Option<Gravity>,
+    /// Largest error of a position, from the precision of the file.
+    pub(super) rounding: f64,
     /// Sentences about the file that a user should know.
     pub(super) notes: Vec<String>,
 }
@@ -59,6 +61,7 @@ impl Table {
             extent: None,
             time: None,
             gravity: None,
+            rounding: 0.0,
             notes: Vec::new(),
         })
     }
@@ -116,7 +119,9 @@ impl Table {
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |column: &Column| {
             let is_name = column.slot == Some(Quantity::Name as usize);
-            column.slot.is_none() || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
+            let is_time = self.is_of_lammps && column.name == "v_time";
+            column.slot.is_none() && !is_time
+                || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };
         let mut names: Vec<String> = self
             .columns

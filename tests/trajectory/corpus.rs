@@ -9,7 +9,7 @@ use crate::report::report;
 
 /// Writes what a file says: box, time and gravity if it has them; then each disk, without what is as in
 /// [`Disk::new`]; then the notes.
-fn shown(read: Result<State, ReadError>) -> String {
+pub(crate) fn shown(read: Result<State, ReadError>) -> String {
     let state = match read {
         Ok(state) => state,
         Err(error) => return format!("refused: {}", report(&error)),
@@ -54,7 +54,7 @@ fn shown_disk(disk: &Disk) -> String {
 
 /// Checks what files say.
 #[track_caller]
-fn check(reader: &Reader, cases: &[(&str, &str)]) {
+pub(crate) fn check(reader: &Reader, cases: &[(&str, &str)]) {
     let wrong: Vec<String> = cases
         .iter()
         .filter_map(|(text, expected)| {

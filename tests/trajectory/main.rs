@@ -5,6 +5,7 @@
 mod report;
 
 mod corpus;
+mod corpus_files;
 mod faults;
 mod gsd;
 mod recording;

@@ -7,7 +7,9 @@ use granular_edmd::boundary::{Container, Domain, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, Snapshot};
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, Reader, Recorder, State};
+use granular_edmd::trajectory::{
+    ExtendedXyz, Format, Frame, Gsd, LammpsDump, Reader, Recorder, State, TimedLammpsDump,
+};
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation};
 
@@ -131,6 +133,53 @@ fn files_of_others_are_read() {
     assert_eq!((first.position().x, second.position().x), (5.0, 9.0));
     assert_eq!((second.velocity(), second.angular_velocity()), (DVec2::new(1.0, -2.0), 0.5));
     assert_eq!((second.kind().number(), state.time()), (1, None));
+}
+
+/// A dump has no place for inertia factors, gravity and an open top, but for all else.
+#[test]
+fn dumps_are_read_back_to_the_same_bits() {
+    for_each_snapshot(|snapshot| {
+        for format in [&LammpsDump as &dyn Format, &TimedLammpsDump] {
+            let state = Reader::new().read_from(text(format, snapshot).as_slice()).unwrap();
+            let disks = snapshot.disks().iter().zip(state.disks());
+            let disks: Vec<Disk> =
+                disks.map(|(disk, read)| disk.with_inertia_factor(read.inertia_factor()).unwrap()).collect();
+            assert_same_bits(state.disks(), &disks);
+            assert_eq!((state.time(), state.domain()), (Some(snapshot.time()), Some(snapshot.domain())));
+            assert!(state.notes().is_empty(), "{:?}", state.notes());
+        }
+    });
+}
+
+/// Single precision for the disks, double precision for time, gravity and the box.
+#[test]
+fn gsd_is_read_back_to_single_precision() {
+    let scratch = Scratch::new("gsd-back");
+    let (gsd, xyz) = (scratch.path("run.gsd"), scratch.path("run.xyz"));
+    let times = SampleTimes::every(0.5).unwrap();
+    let mut both =
+        [Recorder::create(&gsd, Gsd, times).unwrap(), Recorder::create(&xyz, ExtendedXyz, times).unwrap()];
+    let [one, other] = &mut both;
+    mixture().run_until(6.0, &mut (one, other)).unwrap();
+    for frame in 0..12 {
+        let reader = Reader::new().with_frame(frame);
+        let (read, exact) = (reader.read(&gsd).unwrap(), reader.read(&xyz).unwrap());
+        assert_eq!(reader.read_from(std::fs::read(&gsd).unwrap().as_slice()).unwrap(), read);
+        assert_eq!((read.time(), read.domain()), (exact.time(), exact.domain()));
+        assert_eq!((read.gravity(), read.disks().len()), (exact.gravity(), 40));
+        for (read, exact) in read.disks().iter().zip(exact.disks()) {
+            let near = |read: f64, exact: f64, size: f64| {
+                assert!((read - exact).abs() <= 2e-7 * size, "{read} {exact}")
+            };
+            near(read.position().distance(exact.position()), 0.0, 40.0);
+            near(read.velocity().distance(exact.velocity()), 0.0, exact.velocity().length());
+            near((0.5 * (read.angle() - exact.angle())).sin(), 0.0, 1.0);
+            near(read.angular_velocity(), exact.angular_velocity(), 2.0 * exact.angular_velocity().abs());
+            near(read.inertia_factor(), exact.inertia_factor(), 1.0);
+            assert_eq!([read.radius(), read.mass()], [exact.radius(), exact.mass()]);
+            assert_eq!((read.kind(), read.image(), read.id()), (exact.kind(), exact.image(), exact.id()));
+        }
+    }
 }
 
 #[test]

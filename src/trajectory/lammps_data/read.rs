@@ -5,12 +5,17 @@ use std::collections::HashMap;
 use std::iter;
 
 use super::header::Header;
+use crate::boundary::Domain;
 use crate::trajectory::ReadError;
 use crate::trajectory::lines::{Lines, Text, whole};
 use crate::trajectory::table::Table;
 
-/// Columns of an atom and its velocity.
-const COLUMNS: &str = "id type diameter density x y z ix iy iz vx vy vz wx wy wz";
+/// Columns of an atom of the style `sphere`, and of `hybrid sphere`.
+const SPHERE: &str = "id type diameter density x y z";
+const HYBRID: &str = "id type x y z diameter density";
+
+/// Columns of the periods that an atom has passed, and of its velocity, which follow.
+const OTHERS: &str = "ix iy iz vx vy vz wx wy wz";
 
 /// Returns whether a text has lines of the header of a data file.
 pub(in crate::trajectory) fn is_data(text: &str) -> bool {
@@ -28,12 +33,26 @@ impl<'a> Section<'a> {
     fn add(&mut self, what: &str, row: &'a str, line: usize) -> Result<u64, ReadError> {
         let id = id(row, line)?;
         if let Some(first) = self.of_id.insert(id, self.rows.len()) {
-            let first = self.rows[first].1;
-            return Err(ReadError::Doubled { line, first, what: format!("{what} {id}") });
+            let what = format!("{what} {id}");
+            return Err(ReadError::Doubled { line, first: self.rows[first].1, what });
         }
         self.rows.push((row, line));
         Ok(id)
     }
+}
+
+/// The sections of a file.
+#[derive(Default)]
+struct Sections<'a> {
+    /// Columns of the atoms, whether the file names their style, and the line that may do so.
+    columns: (&'a str, bool),
+    line: usize,
+    atoms: Section<'a>,
+    velocities: Option<Section<'a>>,
+    /// Numbers of types by their labels.
+    labels: HashMap<&'a str, &'a str>,
+    /// Something that only other styles have, with its line.
+    other: Option<(&'a str, usize)>,
 }
 
 /// Reads a data file.
@@ -42,36 +61,77 @@ pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
     let (header, mut section) = Header::read(&mut lines)?;
     let count = header.atoms(lines.line())?;
     let domain = header.domain(lines.line())?;
-    let (mut atoms, mut velocities) = (Section::default(), None);
+    let mut sections = Sections { other: header.other, columns: (SPHERE, false), ..Sections::default() };
     while let Some(name) = section {
-        section = match words(name).first().copied() {
-            Some("Atoms") => {
-                check_style(name, lines.line())?;
-                read_section(&mut lines, |row, line| atoms.add("the atom", row, line).map(drop))?
+        section = sections.read(&mut lines, name)?;
+    }
+    sections.check(count, lines.line())?;
+    let mut table = sections.table(domain)?;
+    table.time = header.time;
+    Ok(table)
+}
+
+impl<'a> Sections<'a> {
+    /// Reads a section, and returns the name of the next one, if there is one.
+    fn read(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<Option<&'a str>, ReadError> {
+        let Self { atoms, labels, .. } = self;
+        match words(name)[..] {
+            ["Atoms"] => {
+                (self.columns, self.line) = (columns(name, lines.line())?, lines.line());
+                read_section(lines, |row, line| atoms.add("the atom", row, line).map(drop))
             }
-            Some("Velocities") => {
-                let section = velocities.get_or_insert_with(Section::default);
-                read_section(&mut lines, |row, line| {
+            ["Velocities"] => {
+                let section = self.velocities.get_or_insert_default();
+                read_section(lines, |row, line| {
                     let id = section.add("the velocity of atom", row, line)?;
                     let missing = || format!("the atom {id}, which has a velocity here,");
                     let is_there = atoms.of_id.contains_key(&id);
                     is_there.then_some(()).ok_or_else(|| ReadError::missing(line, missing()))
-                })?
+                })
             }
-            _ => read_section(&mut lines, |_, _| Ok(()))?,
-        };
+            ["Atom", "Type", "Labels"] => read_section(lines, |row, _| {
+                if let [number, label] = words(row)[..] {
+                    labels.insert(label, number);
+                }
+                Ok(())
+            }),
+            ["Masses" | "Bodies" | "Ellipsoids" | "Lines" | "Triangles" | "Bonds"] => {
+                self.other = self.other.or(Some((name, lines.line())));
+                read_section(lines, |_, _| Ok(()))
+            }
+            _ => read_section(lines, |_, _| Ok(())),
+        }
     }
-    check_number("atom", atoms.rows.len(), count, lines.line())?;
-    if let Some(velocities) = &velocities {
-        check_number("velocity", velocities.rows.len(), count, lines.line())?;
+
+    /// Checks that the atoms are of the style `sphere`, and that none is missing.
+    fn check(&self, count: usize, line: usize) -> Result<(), ReadError> {
+        if let (false, Some((other, line))) = (self.columns.1, self.other) {
+            let found = format!("one with `{other}`");
+            return Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", found));
+        }
+        check_number("atom", self.atoms.rows.len(), count, line)?;
+        let velocities = self.velocities.as_ref();
+        velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
     }
-    let mut table = Table::of_lammps(COLUMNS.split(' '), lines.line())?;
-    for &(row, line) in &atoms.rows {
-        let (atom, velocity) = (atom(row, line)?, velocity(velocities.as_ref(), id(row, line)?)?);
-        table.push(atom.into_iter().chain(velocity), line)?;
+
+    /// Returns the disks. Only those of a periodic box pass its sides.
+    fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
+        let names: Vec<&str> = self.columns.0.split_whitespace().collect();
+        let mut table = Table::of_lammps(names.iter().copied().chain(OTHERS.split(' ')), self.line)?;
+        let kind = names.iter().position(|&name| name == "type");
+        for &(row, line) in &self.atoms.rows {
+            let mut atom = atom(row, names.len(), line)?;
+            if let Some(kind) = kind.and_then(|kind| atom.get_mut(kind)) {
+                *kind = self.labels.get(kind).copied().unwrap_or(kind);
+            }
+            domain.periodic_sides |= atom[names.len()] != "0";
+            domain.periodic_ends |= atom[names.len() + 1] != "0";
+            let velocity = velocity(self.velocities.as_ref(), id(row, line)?)?;
+            table.push(atom.into_iter().chain(velocity), line)?;
+        }
+        table.domain = Some(domain);
+        Ok(table)
     }
-    (table.domain, table.time) = (Some(domain), header.time);
-    Ok(table)
 }
 
 /// Reads the rows of a section, and returns the name of the next one, if there is one.
@@ -83,7 +143,9 @@ fn read_section<'a>(
         if text.starts_with(char::is_alphabetic) {
             return Ok(Some(text));
         }
-        take(text, line)?;
+        if !text.starts_with('#') {
+            take(text, line)?;
+        }
     }
     Ok(None)
 }
@@ -109,23 +171,29 @@ fn id(row: &str, line: usize) -> Result<u64, ReadError> {
     whole("id", row.split_whitespace().next().unwrap_or_default(), line)
 }
 
-/// Checks the style of atoms, if the file names it.
-fn check_style(name: &str, line: usize) -> Result<(), ReadError> {
-    match name.split_once('#').map(|(_, style)| style.trim()) {
-        None | Some("sphere") => Ok(()),
-        Some(style) => Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", style)),
+/// Returns the columns of the style that the comment behind `Atoms` names, and whether it names the style
+/// `sphere`. The names of the columns may follow the style. LAMMPS writes `hybrid` alone.
+fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {
+    let style = name.split_once('#').map_or("", |(_, style)| style.trim());
+    let words: Vec<&str> = style.split_whitespace().collect();
+    match words[..] {
+        [] => Ok((SPHERE, false)),
+        ["sphere"] => Ok((SPHERE, true)),
+        ["hybrid"] => Ok((HYBRID, false)),
+        ["hybrid", "sphere"] => Ok((HYBRID, true)),
+        ["sphere", ..] if words.contains(&"diameter") => Ok((style.trim_start_matches("sphere"), true)),
+        _ => Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", style)),
     }
 }
 
-/// Returns the cells of an atom: its number, type, diameter, density, position, and periods that it has
-/// passed.
-fn atom(row: &str, line: usize) -> Result<Vec<&str>, ReadError> {
+/// Returns the cells of an atom: its columns, and the periods that it has passed.
+fn atom(row: &str, columns: usize, line: usize) -> Result<Vec<&str>, ReadError> {
     let cells = words(row);
-    match cells.len() {
-        7 => Ok(cells.into_iter().chain(iter::repeat_n("0", 3)).collect()),
-        10 => Ok(cells),
+    match cells.len().checked_sub(columns) {
+        Some(0) => Ok(cells.into_iter().chain(iter::repeat_n("0", 3)).collect()),
+        Some(3) => Ok(cells),
         _ => {
-            let columns = "of 7 or 10 columns, as `sphere` has them";
+            let columns = format!("of {columns} or {} columns, as `sphere` has them", columns + 3);
             Err(ReadError::unexpected(line, "an atom", columns, cells.join(" ")))
         }
     }

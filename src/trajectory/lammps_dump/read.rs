@@ -9,6 +9,9 @@ use crate::trajectory::found::Found;
 use crate::trajectory::lines::{Input, Text, checked_box, finite, is_upright, whole};
 use crate::trajectory::table::Table;
 
+/// The column of the time, which is the same for all disks.
+const TIME: &str = "v_time";
+
 /// Returns the frames of a file.
 pub(in crate::trajectory) fn frames<'a>(
     mut input: Input<impl BufRead + 'a>,
@@ -78,7 +81,12 @@ impl Head {
                 table.notes.push("no side is periodic, for the dump does not say which are".to_owned());
             }
         }
+        let at = names.split_whitespace().position(|name| name == TIME);
         for (row, line) in rows.lines()? {
+            if let (None, Some(at)) = (table.time, at) {
+                let cell = row.split_whitespace().nth(at).unwrap_or_default();
+                table.time = Some(finite("the time", cell, line)?);
+            }
             table.push(row.split_whitespace(), line)?;
         }
         Ok(table)

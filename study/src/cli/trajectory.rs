@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use granular_edmd::observable::SampleTimes;
+use granular_edmd::trajectory::{ByEnding, Recorder};
 
 use super::files::Ending;
 use super::source::begun;
@@ -31,7 +32,7 @@ pub(super) struct Wishes {
 /// Runs the first value of a ramp again, and writes a frame after each cycle.
 pub(super) fn write<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
     let Wishes { plan: path, out, ramp, cycles, start } = wishes;
-    let ending = Ending::need(out, Ending::is_trajectory)?;
+    Ending::need(out, Ending::is_trajectory)?;
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
     if *ramp >= plan.ramp_count() {
         let message = format!("there is no ramp {ramp}: the plan has {}, from 0 on", plan.ramp_count());
@@ -43,7 +44,7 @@ pub(super) fn write<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
         None => experiment.build(seed),
     };
     let mut run = run.map_err(|source| StudyError::Build { ramp: *ramp, value: 0, source })?;
-    let mut recorder = ending.recorder(out, SampleTimes::every(experiment.cycle())?)?;
+    let mut recorder = Recorder::create(out, ByEnding, SampleTimes::every(experiment.cycle())?)?;
     // Half a cycle more, so that rounding does not cut the last frame off.
     run.run_until(run.time() + experiment.cycle() * (f64::from(*cycles) + 0.5), &mut recorder)?;
     let (frames, disks) = (recorder.times().len(), run.len());
