@@ -118,7 +118,7 @@ fn frames_of_gsd_by_number_and_step() {
         check_files(&reader, &[("hoomd_plain.gsd", expected)]);
     }
     let wrapped = "-4..4p -3..3; (1 1) r0.5; (3 0) r0.5 k1; (-3.5 -1) r0.5 i(1 0) | all diameters are 1, for the file \
-                   has none | 1 disks were outside of periodic sides and are wrapped";
+                   has none | disks outside of periodic sides, wrapped: 1";
     check_files(&Reader::new().with_frame(0), &[("outside.gsd", wrapped)]);
     // All frames one after another, from a stream.
     let bytes = fs::read(path("hoomd_plain.gsd")).unwrap();
