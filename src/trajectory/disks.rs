@@ -5,7 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::checks::{IMAGES, number, settle};
-use super::column::Quantity::{self, *};
+use super::column::Quantity::{
+    self, Angle, AngularVelocity, Density, Diameter, Id, Image, InertiaFactor, Mass, Momentum, Name,
+    Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
+};
 use super::column::SLOTS;
 use super::settings::Settings;
 use super::table::Table;

@@ -108,7 +108,7 @@ impl State {
             notes.push(format!("ignored columns: {}", self.ignored.join(", ")));
         }
         if self.wrapped > 0 {
-            notes.push(format!("{} disks were outside of periodic sides and are wrapped", self.wrapped));
+            notes.push(format!("disks outside of periodic sides, wrapped: {}", self.wrapped));
         }
         if self.shrunk > 0.0 {
             notes.push(format!("all radii are shrunk by a share of {} of them", Rounded(self.shrunk)));

@@ -1,5 +1,5 @@
-//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `replay`, `diff`,
-//! `accept` and `bench`, for any experiment.
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `convert`, `replay`,
+//! `diff`, `accept` and `bench`, for any experiment.
 //!
 //! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
 //! paper's box.
@@ -38,7 +38,9 @@
 mod arguments;
 mod bench;
 mod collision_rows;
+mod convert;
 mod diff;
+mod files;
 mod replay;
 mod source;
 mod template;
@@ -97,7 +99,8 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
-        Command::Trajectory { plan, out, ramp, cycles } => trajectory::write::<E>(&plan, ramp, cycles, &out),
+        Command::Trajectory(wishes) => trajectory::write::<E>(&wishes),
+        Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
         Command::Accept { folder } => accept::<E>(&folder),

@@ -396,7 +396,7 @@ fn dumps_of_lammps_and_liggghts() {
         (
             "id x y radius",
             "1 11 2 0.5 / 2 -7 2 0.5",
-            "(1 2) r0.5 i(1 0) #1; (3 2) r0.5 i(-1 0) #2 | 2 disks were outside of periodic sides and are wrapped",
+            "(1 2) r0.5 i(1 0) #1; (3 2) r0.5 i(-1 0) #2 | disks outside of periodic sides, wrapped: 2",
         ),
         ("id x y radius", "1 1 6 0.5", "refused: line 10: the disk at (1, 6) is outside the box"),
         ("id type x y radius", "1 0 1 2 0.5", "refused: line 10: type must be from 1 to 65536, but is \"0\""),

@@ -63,8 +63,8 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
 
 /// Divides an item into its name and the words behind it.
 fn name_and_rest(item: &str) -> [&str; 2] {
-    let with_words = ["BOX BOUNDS", "ATOMS"].into_iter();
-    let found = with_words.filter_map(|name| Some([name, item.strip_prefix(name)?.trim()])).next();
+    let mut with_words = ["BOX BOUNDS", "ATOMS"].into_iter();
+    let found = with_words.find_map(|name| Some([name, item.strip_prefix(name)?.trim()]));
     found.unwrap_or([item, ""])
 }
 
