@@ -82,6 +82,7 @@ mod csv;
 mod disks;
 mod errors;
 mod extended_xyz;
+mod file_format;
 mod format;
 mod found;
 mod frames;
@@ -107,6 +108,8 @@ mod vtk;
 pub use errors::{ReadError, RecordError};
 #[doc(alias = "OVITO")]
 pub use extended_xyz::ExtendedXyz;
+#[doc(alias("OVITO", "freud", "ParaView"))]
+pub use file_format::{ByEnding, FileFormat, Gsd, Vtk};
 pub use format::{Format, Frame};
 #[doc(alias("OVITO", "VMD"))]
 pub use lammps_dump::{LammpsDump, TimedLammpsDump};
@@ -114,6 +117,4 @@ pub use lammps_dump::{LammpsDump, TimedLammpsDump};
 pub use reader::{Reader, States};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
-#[doc(alias("OVITO", "freud", "ParaView"))]
-pub use sink::{ByEnding, FileFormat, Gsd, Vtk};
 pub use state::State;

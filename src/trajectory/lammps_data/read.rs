@@ -33,8 +33,8 @@ impl<'a> Section<'a> {
     fn add(&mut self, what: &str, row: &'a str, line: usize) -> Result<u64, ReadError> {
         let id = id(row, line)?;
         if let Some(first) = self.of_id.insert(id, self.rows.len()) {
-            let what = format!("{what} {id}");
-            return Err(ReadError::Doubled { line, first: self.rows[first].1, what });
+            let first = self.rows[first].1;
+            return Err(ReadError::Doubled { line, first, what: format!("{what} {id}") });
         }
         self.rows.push((row, line));
         Ok(id)
