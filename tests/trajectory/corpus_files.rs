@@ -292,8 +292,8 @@ fn data_of_lammps_by_sections_and_styles() {
         (
             plain("").replace("2 3 0\n", "2 3 0 -1 0 0\n").replace("5 3 0\n", "13.5 3 0 2 0 0\n"),
             format!(
-                "0..8p 0..6; (2 3) r0.5 {mass} i(-1 0) #1; (5.5 3) r0.25 {small} k1 i(3 0) #2 | 1 disks were outside \
-                 of periodic sides and are wrapped"
+                "0..8p 0..6; (2 3) r0.5 {mass} i(-1 0) #1; (5.5 3) r0.25 {small} k1 i(3 0) #2 | disks outside of \
+                 periodic sides, wrapped: 1"
             ),
         ),
         (
