@@ -89,10 +89,14 @@ fn kinds_by_names() {
           fits into u16, but is \"steel\"",
         ],
         [
-            "Properties=type:I:1:pos:R:3:radius:R:1",
-            "70000 1 1 0 0.5",
-            "refused: line 3: type must be from 0 to 65535, \
-          but is \"70000\"",
+            "Properties=type:S:1:pos:R:3:radius:R:1",
+            "A 1 1 0 0.5 / B 3 1 0 0.5",
+            "kinds 0 A, 1 B; (1 1) r0.5; (3 1) r0.5 k1",
+        ],
+        [
+            "Properties=species:S:1:type:I:1:pos:R:3:radius:R:1",
+            "A 70000 1 1 0 0.5",
+            "refused: line 3: type must be from 0 to 65535, but is \"70000\"",
         ],
     ]);
 }
