@@ -157,6 +157,8 @@ fn keys_of_extended_xyz() {
         ("Time=3 t=4", "refused: line 2: the key `t` stands in line 2 already"),
         ("Gravity=\"0.5 -1\"", "g [0.5, -1]; (1 2) r0.5"),
         ("gravity=2", "g [0, -2]; (1 2) r0.5"),
+        ("Title=", "(1 2) r0.5"),
+        ("T = 300 K", "(1 2) r0.5"),
         ("energy=-3 energy=4 note=\"a \\\"word\\\" Time=9\" flag", "(1 2) r0.5"),
     ];
     let texts: Vec<String> = cases.iter().map(|(keys, _)| one(keys)).collect();
