@@ -36,8 +36,8 @@ impl<'a> Keys<'a> {
         Ok(Self { pairs, line })
     }
 
-    /// Returns the value of a key that may have several names, in any case. A single letter has its case, since
-    /// a `T` is a temperature.
+    /// Returns the value of a key that may have several names, in any case. A single letter has its case,
+    /// since a `T` is a temperature.
     fn value(&self, names: &[&str]) -> Result<Option<&'a str>, ReadError> {
         let is =
             |known: &str, name: &str| known == name || known.len() > 1 && known.eq_ignore_ascii_case(name);
