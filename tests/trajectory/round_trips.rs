@@ -169,7 +169,7 @@ fn gsd_is_read_back_to_single_precision() {
         assert_eq!((read.gravity(), read.disks().len()), (exact.gravity(), 40));
         for (read, exact) in read.disks().iter().zip(exact.disks()) {
             let near = |read: f64, exact: f64, size: f64| {
-                assert!((read - exact).abs() <= 2e-7 * size, "{read} {exact}")
+                assert!((read - exact).abs() <= 2e-7 * size, "{read} {exact}");
             };
             near(read.position().distance(exact.position()), 0.0, 40.0);
             near(read.velocity().distance(exact.velocity()), 0.0, exact.velocity().length());

@@ -203,7 +203,7 @@ fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
         return Ok(());
     }
     let is_ours = head[48..].starts_with(b"granular-edmd");
-    let found = if is_ours { "one of another version, with other chunks" } else { "another" };
+    let found = if is_ours { "one of another version" } else { "another" };
     Err(no_frame("a file of GSD by this version of granular-edmd", found))
 }
 

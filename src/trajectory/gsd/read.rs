@@ -257,7 +257,10 @@ impl Disks {
         }
         if self.inertia.is_some() {
             let unit = 0.25 * mass.unwrap_or(1.0) * diameter * diameter;
-            numbers.push(moment.map_or(Disk::HOMOGENEOUS_INERTIA_FACTOR, |moment| moment / unit));
+            // Rounding does not make a homogeneous disk another one.
+            let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
+            let other = moment.filter(|&moment| moment as f32 != (homogeneous * unit) as f32);
+            numbers.push(other.map_or(homogeneous, |moment| moment / unit));
         }
         numbers.extend([0, 1, 2].iter().filter_map(|&axis| of(&self.image, axis)));
         numbers.extend(of(&self.id, 0));
