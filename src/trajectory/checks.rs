@@ -9,8 +9,8 @@ use crate::disk::TOUCHING;
 
 /// Checks the disks of a state, whose lines these are.
 ///
-/// Disks outside of periodic sides are moved into the box. If the settings say so, radii shrink until no disks
-/// overlap; otherwise none may overlap by more than the tolerance.
+/// Disks outside of periodic sides are moved into the box. If the settings say so, radii shrink until no
+/// disks overlap; otherwise none may overlap by more than the tolerance.
 pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) -> Result<(), ReadError> {
     let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
     if let Some(domain) = state.domain {

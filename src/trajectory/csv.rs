@@ -10,8 +10,8 @@ use crate::disk::numbered;
 
 /// Reads a table whose first line names the columns.
 ///
-/// Commas, semicolons, tabs or spaces divide the cells, whichever of them the first line has. A line that begins
-/// with `#` is a comment, except before the names.
+/// Commas, semicolons, tabs or spaces divide the cells, whichever of them the first line has. A line that
+/// begins with `#` is a comment, except before the names.
 pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut lines = text.lines()?;
     let Some((names, line)) = lines.next_filled() else {

@@ -22,6 +22,11 @@ pub(super) fn create(path: &Path, may_exist: bool) -> Result<Growing<Locked>, Re
     Ok(Growing::new(path, file, 0, Vec::new()))
 }
 
+/// Returns whether a recorder compresses a file, by its name.
+pub(super) fn is_gzip(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "gz")
+}
+
 /// Waits until the system has stored everything.
 pub(super) fn sync(file: &Growing<Locked>) -> Result<(), RecordError> {
     file.medium.file().sync_all().map_err(RecordError::io("write to", &file.path))

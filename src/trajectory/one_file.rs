@@ -6,8 +6,7 @@ use std::path::Path;
 use super::frames::{Frames, digest};
 #[cfg(feature = "gzip")]
 use super::gzip::{self, Member};
-use super::media;
-use super::open::is_gzip;
+use super::media::{self, is_gzip};
 use super::sink::{Layout, Sink};
 use super::{Format, Frame, RecordError};
 use crate::file::{Growing, Locked};

@@ -13,7 +13,66 @@ use crate::ParameterError;
 use crate::disk::scale;
 use crate::quantity::non_negative;
 
-/// Reads disks from files: extended XYZ, dumps and data files of LAMMPS, GSD, and tables.
+/// Reads disks from files of this crate and of other programs.
+///
+/// The contents tell the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD, or a
+/// table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the feature
+/// `gzip`, the file may be compressed.
+///
+/// Columns count by their names, in any order and case. A position and a radius are needed; without the
+/// others, a disk is as from [`Disk::new`](crate::Disk::new).
+///
+/// | property | names |
+/// |---|---|
+/// | position | `pos`, `position`; `x y`; `xs ys` as shares of the box; `unwrapped`, `xu yu` |
+/// | radius | `radius`, `radii`, `r`; `diameter`, `d` |
+/// | velocity | `velo`, `vel`, `velocity`, `v`, `vx vy`; `momenta`, divided by the mass |
+/// | mass | `mass`, `masses`, `m`; `density`, as mass per area, or of a sphere in files of LAMMPS |
+/// | angle | `angle`; `orientation`, as an angle or a quaternion x, y, z, w |
+/// | angular velocity | `angular_velocity`, `omega`, `omegaz`, `wz`; of three components the third |
+/// | id | `id`, `identifier` |
+/// | kind | `kind`; `type`, in LAMMPS from 1 on; `species`, `element`, `name`: a number, or by first appearance |
+/// | periods passed | `image`, `ix iy` |
+/// | factor of the moment of inertia | `inertia_factor` |
+///
+/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns that tell the
+/// same must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored. What
+/// the reader ignores or changes, [`State::notes`] tells.
+///
+/// # Examples
+/// A state of soft disks, whose contacts overlap, made a start of hard ones:
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::trajectory::Reader;
+///
+/// let dump = "ITEM: TIMESTEP\n5000\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff pp\n0 9\n0 9\n-1 1\n\
+///             ITEM: ATOMS id type x y vx vy diameter fx\n1 1 1 2 3 0 1 7\n2 1 1.9375 2 0 0 1 -7\n";
+/// let error = Reader::new().read_from(dump.as_bytes()).unwrap_err();
+/// assert!(error.to_string().starts_with("line 11: the disk overlaps the disk of line 10 by 0.0625"));
+///
+/// let state = Reader::new().with_shrunk_radii().read_from(dump.as_bytes())?;
+/// assert_eq!(state.notes(), ["ignored columns: fx", "all radii are shrunk by a share of 0.0625 of them"]);
+/// let run = Simulation::builder(Elastic, Container::closed(9.0, 9.0)?).disks(state.into_disks()).build()?;
+/// assert_eq!((run.disks()[0].velocity().x, run.disks()[0].radius()), (3.0, 0.46875));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+/// A table of positions alone, such as from a picture:
+/// ```
+/// # use granular_edmd::trajectory::Reader;
+/// let state = Reader::new().with_radius(0.5)?.with_density(2.0)?.read_from("x;y\n1;2\n3;4\n".as_bytes())?;
+/// assert_eq!(state.disks()[1].mass(), std::f64::consts::FRAC_PI_2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+/// The first frame of a trajectory, and all of them:
+/// ```
+/// # use granular_edmd::trajectory::Reader;
+/// let frame = "1\nProperties=pos:R:2:radius:R:1 Time=0\n1 2 0.5\n";
+/// let frames = frame.to_owned() + &frame.replace("Time=0", "t=1").replace("2 0.5", "3 0.5");
+/// assert_eq!(Reader::new().with_frame(0).read_from(frames.as_bytes())?.time(), Some(0.0));
+/// let states: Vec<_> = Reader::new().frames(frames.as_bytes())?.collect::<Result<_, _>>()?;
+/// assert_eq!((states.len(), states[1].disks()[0].position().y), (2, 3.0));
+/// # Ok::<(), granular_edmd::trajectory::ReadError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reader {
     frame: Choice,
@@ -41,8 +100,8 @@ impl Reader {
         Self { frame: Choice::Number(-1), settings }
     }
 
-    /// Returns the same reader for the frame of this number, counted from 0, or from the end if negative: −1 is
-    /// the last frame.
+    /// Returns the same reader for the frame of this number, counted from 0, or from the end if it is
+    /// negative: −1 is the last frame. Other frames are not checked.
     #[must_use]
     pub const fn with_frame(self, number: isize) -> Self {
         Self { frame: Choice::Number(number), ..self }
@@ -54,7 +113,10 @@ impl Reader {
         Self { frame: Choice::Step(step), ..self }
     }
 
-    /// Returns the same reader, which accepts overlaps up to this depth, relative to the sum of the radii.
+    /// Returns the same reader, which accepts overlaps up to this depth, relative to the sum of the radii,
+    /// and disks as far outside the box, relative to the radius.
+    ///
+    /// A simulation needs disks that do not overlap: see [`with_shrunk_radii`](Self::with_shrunk_radii).
     ///
     /// # Errors
     /// If it is negative, infinite or NaN.
@@ -64,6 +126,9 @@ impl Reader {
     }
 
     /// Returns the same reader, which shrinks all radii in proportion until no disks overlap.
+    ///
+    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
+    /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -102,7 +167,10 @@ impl Reader {
     /// Reads a frame of an input.
     ///
     /// # Errors
-    /// If the input fails, is of no known format or has no such frame, or if the frame is no valid state.
+    /// If the input fails, is compressed and the feature is missing, is of no known format, or does not
+    /// have the frame. If a needed part is missing, a number cannot be read or is out of range, columns
+    /// contradict each other, or an id appears twice. If disks overlap, are outside the box, or do not lie
+    /// in a plane. The error names the line.
     pub fn read_from(&self, input: impl BufRead) -> Result<State, ReadError> {
         self.state(source::frames(input)?)
     }
@@ -112,6 +180,8 @@ impl Reader {
     }
 
     /// Returns the states of all frames of an input, one after another. The iterator ends after an error.
+    ///
+    /// A file is an input as `BufReader::new(File::open(path)?)`.
     ///
     /// # Errors
     /// If the input fails at its start, or is of no known format.

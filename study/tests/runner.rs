@@ -621,8 +621,8 @@ fn a_signal_ends_replay_and_diff() {
     }
 }
 
-/// Files of others are read by their contents and written by the ending of the new name; notes and refusals are
-/// on standard error.
+/// Files of others are read by their contents and written by the ending of the new name; notes and refusals
+/// are on standard error.
 #[test]
 fn files_of_disks_are_converted() {
     let scratch = Scratch::new("convert");
@@ -673,7 +673,7 @@ fn files_of_disks_are_converted() {
     }
     assert_eq!(code(&scratch.runs(&["convert", "a.xyz.gz", "again.csv"])), Some(0));
     for (arguments, status, reason) in [
-        (["a.png"].as_slice(), 2, "a.png must end in one of .xyz, .extxyz, .xyz.gz, .lammpstrj"),
+        (["a.png"].as_slice(), 2, "a.png must end in one of .xyz, .extxyz, .lammpstrj, .dump"),
         (&["xyz"], 2, "xyz must end in one of"),
         (&["b.csv", "--frame", "2"], 1, "there is no frame of number 2: the file has 2"),
         (&["b.csv", "--step", "6"], 1, "there is no frame of step 6: the file has 2"),

@@ -1,5 +1,5 @@
-//! Files of disks with random changes, cut anywhere, or of random bytes: the reader gives an error that names a
-//! line, or disks that survive their file.
+//! Files of disks with random changes, cut anywhere, or of random bytes: the reader gives an error that
+//! names a line, or disks that survive their file.
 
 use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::observable::Snapshot;

@@ -5,7 +5,9 @@
 mod report;
 
 mod corpus;
+mod corpus_dumps;
 mod corpus_files;
+mod corpus_xyz;
 mod faults;
 mod gsd;
 mod recording;

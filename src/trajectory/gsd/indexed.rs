@@ -8,8 +8,7 @@ use std::path::Path;
 use super::{CHUNKS, F64, I8, Shape, U8, U64, write_chunks};
 use crate::file::{Growing, Locked, Medium as _};
 use crate::trajectory::format::no_frame;
-use crate::trajectory::media;
-use crate::trajectory::open::is_gzip;
+use crate::trajectory::media::{self, is_gzip};
 use crate::trajectory::sink::{Layout, Sink};
 use crate::trajectory::{Frame, RecordError};
 

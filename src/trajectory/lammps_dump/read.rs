@@ -93,8 +93,8 @@ impl Head {
     }
 }
 
-/// Returns the letters of the three directions: `p` for periodic, `f` for a wall, `s` and `m` for sides around the
-/// disks.
+/// Returns the letters of the three directions: `p` for periodic, `f` for a wall, `s` and `m` for sides
+/// around the disks.
 fn flags(words: &str) -> Option<[&str; 3]> {
     let words: Vec<&str> = words.split_whitespace().collect();
     let flags = *words.last_chunk()?;

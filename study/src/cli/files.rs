@@ -21,14 +21,12 @@ pub(super) enum Ending {
     Xyz,
 }
 
-/// Endings of names. A trajectory as text may be compressed.
-const ENDINGS: [(&str, Ending); 12] = [
+/// Endings of names.
+const ENDINGS: [(&str, Ending); 10] = [
     ("xyz", Ending::Xyz),
     ("extxyz", Ending::Xyz),
-    ("xyz.gz", Ending::Xyz),
     ("lammpstrj", Ending::Dump),
     ("dump", Ending::Dump),
-    ("lammpstrj.gz", Ending::Dump),
     ("gsd", Ending::Gsd),
     ("pvd", Ending::Pvd),
     ("csv", Ending::Csv),
@@ -38,14 +36,17 @@ const ENDINGS: [(&str, Ending); 12] = [
 ];
 
 impl Ending {
-    /// Returns the format of a file, by the ending of its name, among these.
+    /// Returns the format of a file, by the ending of its name. A trajectory as text may be compressed.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?.to_ascii_lowercase();
-        let ends = |ending: &str| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.'));
-        ENDINGS.iter().find(|(ending, _)| ends(ending)).map(|(_, found)| *found)
+        let (name, is_packed) = name.strip_suffix(".gz").map_or((name.as_str(), false), |name| (name, true));
+        let (_, found) = ENDINGS
+            .into_iter()
+            .find(|(ending, _)| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.')))?;
+        (!is_packed || matches!(found, Self::Xyz | Self::Dump)).then_some(found)
     }
 
-    /// Returns the format of a file, or the error of an ending that is not among those which are accepted.
+    /// Returns the format of a file, or the error of an ending that is not accepted.
     pub(super) fn need(path: &Path, accepts: impl Fn(Self) -> bool) -> Result<Self, PlanError> {
         Self::of(path).filter(|&ending| accepts(ending)).ok_or_else(|| {
             let accepted = ENDINGS.iter().filter(|(_, ending)| accepts(*ending));
