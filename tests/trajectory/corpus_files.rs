@@ -36,8 +36,14 @@ fn files_of_gsd() {
         &[
             ("hoomd_plain.gsd", "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5"),
             ("hoomd_shapes.gsd", "-4..4p -3..3p; (-2 1) r0.45; (0 0) r0.25 k1; (1.5 -1) r0.45"),
-            ("hoomd_spheres.gsd", "-4..4p -3..3p; (-2 1) r0.4; (0 0) r0.3 k1; (1.5 -1) r0.4"),
-            ("hoomd_ellipsoids.gsd", "refused: frame 0: the shapes must be disks, but are `ellipsoid`"),
+            (
+                "hoomd_spheres.gsd",
+                "refused: frame 0: the shapes must be in `particles/type_shapes`, not in `state/hpmc/sphere/radius`",
+            ),
+            (
+                "hoomd_ellipsoids.gsd",
+                "refused: frame 0: the shapes must be in `particles/type_shapes`, not in `state/hpmc/ellipsoid/a`",
+            ),
             ("hoomd_polygons.gsd", "refused: frame 0: the shapes must be disks, but one is \"Polygon\""),
             (
                 "hoomd_tilted.gsd",
