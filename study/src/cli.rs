@@ -1,5 +1,5 @@
-//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `convert`, `replay`,
-//! `diff`, `accept` and `bench`, for any experiment.
+//! The command line of a study, for any experiment: `new`, `explain`, `check`, `run`, `status`, `tables`,
+//! `trajectory`, `convert`, `replay`, `diff`, `accept`, `bench` and `completions`.
 //!
 //! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
 //! paper's box.
@@ -41,6 +41,7 @@ mod collision_rows;
 mod convert;
 mod diff;
 mod files;
+mod keys;
 mod replay;
 mod source;
 mod template;
@@ -53,7 +54,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser, ValueEnum};
 
 use super::errors::{PlanError, StudyError, chain};
 use super::json::Object;
@@ -95,6 +96,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
 ) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
+        Command::Explain { key } => explain::<E>(key.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
@@ -103,6 +105,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
+        Command::Completions { shell } => completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
         Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
@@ -169,6 +172,25 @@ fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure>
         StudyError::Plan(source) => refused(path)(source),
         error => error,
     })?)
+}
+
+fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
+    say(&keys::explained::<E>(key)?)?;
+    Ok(End::Done)
+}
+
+fn completions(shell: &str) -> Result<End, Failure> {
+    let (mut command, mut text) = (Arguments::command(), Vec::new());
+    if shell == "man" {
+        clap_mangen::Man::new(command).render(&mut text)?;
+    } else {
+        let shell = clap_complete::Shell::from_str(shell, true).map_err(|_| {
+            format!("completions are for bash, elvish, fish, powershell, zsh and man, not {shell}")
+        })?;
+        clap_complete::generate(shell, &mut command, "granular-edmd", &mut text);
+    }
+    say(String::from_utf8(text)?.trim_end())?;
+    Ok(End::Done)
 }
 
 fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {

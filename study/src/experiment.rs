@@ -116,6 +116,13 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Type of the data that a sample keeps: numbers, lists, anything that can be serialized.
     type Sample: Serialize + DeserializeOwned;
 
+    /// Returns the meanings of parameters and columns by name, with units, ranges and defaults.
+    ///
+    /// The command `explain` prints them, and a new plan has them as comments. None if not implemented.
+    fn meanings() -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+
     /// Returns the revision of the code of this type, which a study keeps and compares.
     ///
     /// Values of different code must not be mixed, so a study with another revision is refused.

@@ -5,6 +5,7 @@
 
 mod base;
 mod convection;
+mod meanings;
 mod rule;
 mod sample;
 
@@ -250,6 +251,10 @@ impl Experiment for VibratedBox {
 
     fn sample(&self, snapshot: &Snapshot<'_>, measurement: &mut Measurement) -> Sample {
         measurement.sample(snapshot)
+    }
+
+    fn meanings() -> &'static [(&'static str, &'static str)] {
+        &meanings::MEANINGS
     }
 
     fn columns() -> Vec<Column<Self>> {

@@ -85,6 +85,36 @@ fn a_new_plan_is_a_plan_and_overwrites_nothing() {
     assert_eq!(fs::read_to_string(scratch.0.join("mine.toml")).unwrap(), text);
 }
 
+/// Each key of a new plan stands below its meaning, and `explain` tells the same; it names the nearest key.
+#[test]
+fn keys_and_columns_are_explained() {
+    let scratch = Scratch::new("explained");
+    let text = said(&scratch.runs(&["new"]));
+    let lines: Vec<&str> = text.lines().collect();
+    let keys = lines.windows(2).filter(|pair| pair[1].contains(" = ") && !pair[1].starts_with('#'));
+    assert!(keys.clone().count() > 15);
+    keys.for_each(|pair| assert!(pair[0].starts_with("# "), "{pair:?}"));
+    let all = said(&scratch.runs(&["explain"]));
+    let measured = text.lines().find_map(|line| line.strip_prefix("# Measured: ")).unwrap();
+    for name in measured.trim_end_matches('.').split(", ") {
+        assert!(all.lines().any(|line| line.split([':', ' ']).next() == Some(name)), "{name}");
+    }
+    let friction = "friction: Coulomb's coefficient, at least 0: static, and dynamic unless that is given. 0 if not given.\n";
+    assert_eq!(said(&scratch.runs(&["explain", "experiment.friction"])), friction);
+    let unknown = scratch.runs(&["explain", "frction"]);
+    assert_eq!(code(&unknown), Some(1));
+    assert!(said(&unknown).contains("there is no key `frction`; the nearest is `friction`"));
+}
+
+#[test]
+fn completions_and_a_page_of_the_manual_are_printed() {
+    let scratch = Scratch::new("completions");
+    for (shell, word) in [("bash", "complete -F"), ("fish", "complete -c"), ("man", ".TH granular-edmd")] {
+        assert!(said(&scratch.runs(&["completions", shell])).contains(word), "{shell}");
+    }
+    assert_eq!(code(&scratch.runs(&["completions", "tcsh"])), Some(1));
+}
+
 #[test]
 fn a_plan_that_cannot_be_is_refused_with_code_2() {
     let scratch = Scratch::new("refused");

@@ -3,10 +3,12 @@
 use std::fs;
 use std::path::PathBuf;
 
-use granular_edmd::trajectory::{Reader, State};
+use granular_edmd::observable::SampleTimes;
+use granular_edmd::trajectory::{ByEnding, Reader, Recorder, State, TimedLammpsDump};
 
 use crate::corpus::{check, shown};
 use crate::report::report;
+use crate::scratch::Scratch;
 
 fn path(name: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "tests/trajectory/files", name].iter().collect()
@@ -34,8 +36,14 @@ fn files_of_gsd() {
         &[
             ("hoomd_plain.gsd", "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5"),
             ("hoomd_shapes.gsd", "-4..4p -3..3p; (-2 1) r0.45; (0 0) r0.25 k1; (1.5 -1) r0.45"),
-            ("hoomd_spheres.gsd", "-4..4p -3..3p; (-2 1) r0.4; (0 0) r0.3 k1; (1.5 -1) r0.4"),
-            ("hoomd_ellipsoids.gsd", "refused: frame 0: the shapes must be disks, but are `ellipsoid`"),
+            (
+                "hoomd_spheres.gsd",
+                "refused: frame 0: the shapes must be in `particles/type_shapes`, not in `state/hpmc/sphere/radius`",
+            ),
+            (
+                "hoomd_ellipsoids.gsd",
+                "refused: frame 0: the shapes must be in `particles/type_shapes`, not in `state/hpmc/ellipsoid/a`",
+            ),
             ("hoomd_polygons.gsd", "refused: frame 0: the shapes must be disks, but one is \"Polygon\""),
             (
                 "hoomd_tilted.gsd",
@@ -124,6 +132,52 @@ fn frames_of_gsd_by_number_and_step() {
     let bytes = fs::read(path("hoomd_plain.gsd")).unwrap();
     let frames: Result<Vec<State>, _> = Reader::new().frames(bytes.as_slice()).unwrap().collect();
     assert_eq!(frames.unwrap().iter().map(|state| state.disks().len()).collect::<Vec<_>>(), [3, 3, 2]);
+}
+
+/// Version 0.3 has made these. They are read; a recorder goes on in a dump with units, and refuses the others.
+#[test]
+fn files_of_version_0_3() {
+    let disks = "(2 1.875) r0.5 v(1 -0.25) a0.5 w0.5 #1; (3 2.375) r0.35 m0.49 v(0 -0.25) k3 #2";
+    check_files(
+        &Reader::new(),
+        &[
+            ("run_0_3.xyz", &format!("0..6p -0.1..inf; t 1; g [0, -0.25]; {disks}")),
+            ("run_0_3.dump", &format!("0..6p -0.1..inf; t 1; {disks}")),
+            (
+                "run_0_3.gsd",
+                "t 1; g [0, -0.25]; (2 1.8750000238418578) r0.5 v(1 -0.25) a0.5000000095033276 w0.5000000021900314 #1; \
+                 (3 2.3749999046325683) r0.35 m0.49 v(0 -0.25) k3 #2 | the box is left out, for the file does not tell \
+                 where it is periodic",
+            ),
+        ],
+    );
+    let scratch = Scratch::new("old");
+    let times = SampleTimes::every(0.5).unwrap();
+    let copy = |name: &str| {
+        fs::copy(path(name), scratch.path(name)).unwrap();
+        scratch.path(name)
+    };
+    let dump = copy("run_0_3.dump");
+    assert_eq!(Recorder::append(&dump, TimedLammpsDump, times).unwrap().times(), [0.5, 1.0]);
+    for (name, expected) in [
+        (
+            "run_0_3.xyz",
+            "expected the columns of this version, but found \"id:I:1:species:S:1:pos:R:3:velo:R:3:angl\"",
+        ),
+        (
+            "run_0_3.dump",
+            "expected a dump without units, as `LammpsDump` writes it, but found \"one of `TimedLammpsDump`\"",
+        ),
+        (
+            "run_0_3.gsd",
+            "expected a file of GSD by this version of granular-edmd, but found \"one of another version\"",
+        ),
+    ] {
+        let path = copy(name);
+        let error = report(&Recorder::append(&path, ByEnding, times).unwrap_err());
+        assert!(error.ends_with(expected), "{error}");
+        assert!(fs::read(&path).unwrap() == fs::read(self::path(name)).unwrap(), "{name} is left as it is");
+    }
 }
 
 /// Cut at any byte, or with any byte changed, a file is read or refused: no panic, and no endless search.
@@ -292,8 +346,8 @@ fn data_of_lammps_by_sections_and_styles() {
         (
             plain("").replace("2 3 0\n", "2 3 0 -1 0 0\n").replace("5 3 0\n", "13.5 3 0 2 0 0\n"),
             format!(
-                "0..8p 0..6; (2 3) r0.5 {mass} i(-1 0) #1; (5.5 3) r0.25 {small} k1 i(3 0) #2 | disks outside of \
-                 periodic sides, wrapped: 1"
+                "0..8p 0..6; (2 3) r0.5 {mass} i(-1 0) #1; (5.5 3) r0.25 {small} k1 i(3 0) #2 | disks outside of periodic \
+                 sides, wrapped: 1"
             ),
         ),
         (

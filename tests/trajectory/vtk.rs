@@ -2,11 +2,12 @@
 
 use std::fs;
 
-use granular_edmd::boundary::{Container, Part, Vessel};
+use granular_edmd::boundary::{Container, Part, Vessel, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::SampleTimes;
-use granular_edmd::trajectory::{RecordError, Recorder, Vtk};
+use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, Vtk};
+use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion as _};
 use granular_edmd::{Disk, Simulation};
 
 use crate::report::report;
@@ -117,4 +118,47 @@ fn the_walls_are_those_of_the_run() {
         assert!(edges(number).contains(&head), "{}", edges(number));
     }
     assert!(edges(0) != edges(1), "the paddle turns");
+}
+
+/// Displacement and phase of each wall that moves are in the frames, and the box of a picture moves along.
+#[test]
+fn frames_tell_where_the_walls_are() {
+    let scratch = Scratch::new("moving-walls");
+    let place = |x, y| DVec2::new(x, y);
+    let base = BiParabolic::new(0.1, 10.0).unwrap();
+    let container = Container::closed(10.0, 20.0).unwrap().with_motion(Wall::Floor, base).unwrap();
+    let paddle = Part::polyline([place(2.0, 5.0), place(5.0, 6.0), place(8.0, 5.0)]).unwrap();
+    let paddle = paddle.with_rotation(place(5.0, 5.0), 3.0).unwrap();
+    let plate = Part::polyline([place(1.0, 12.0), place(9.0, 12.0)]).unwrap();
+    let plate = plate.with_motion(place(0.0, 1.0), Sinusoidal::new(0.2, 4.0).unwrap()).unwrap();
+    let vessel = Vessel::new(container);
+    let vessel = vessel.with("paddle", paddle).unwrap().with("plate", plate).unwrap();
+    let disk = Disk::new(place(5.0, 15.0), 0.5).unwrap();
+    let mut run = Simulation::builder(Elastic, vessel).disks([disk]).build().unwrap();
+    let names = ["run.xyz", "run.gsd", "run.pvd"].map(|name| scratch.path(name));
+    let mut all: Vec<Recorder> =
+        names.iter().map(|path| Recorder::create(path, ByEnding, times()).unwrap()).collect();
+    run.run_until(2.5, &mut all).unwrap();
+    let walls = run.snapshot().moving_walls();
+    assert_eq!(walls.iter().map(|wall| wall.0).collect::<Vec<_>>(), [0, 4, 9], "each part once");
+    assert_eq!(walls[0].1, place(0.0, base.state(walls[0].2).displacement));
+    assert!((walls[0].2 - 2.5 % base.period().unwrap()).abs() < 1e-12);
+    assert_eq!(walls[1].1, DVec2::ZERO, "it only turns");
+    assert!((walls[1].2 - 2.5 % (std::f64::consts::TAU / 3.0)).abs() < 1e-12);
+    assert!((walls[2].1 - place(0.0, 0.2 * 10.0_f64.sin())).length() < 1e-12);
+    assert_eq!(run.snapshot().edges().bottom, walls[0].1.y);
+    assert!(run.snapshot().domain().bottom < -0.099);
+
+    let text = fs::read_to_string(&names[0]).unwrap();
+    let key = text.rsplit_once("Walls=\"").unwrap().1.split_once('"').unwrap().0;
+    let numbers: Vec<f64> = key.split(' ').map(|number| number.parse().unwrap()).collect();
+    let expected: Vec<f64> =
+        walls.iter().flat_map(|&(wall, by, phase)| [wall as f64, by.x, by.y, phase]).collect();
+    assert_eq!(numbers, expected);
+    // The chunks of the walls are the last ones of a file of GSD.
+    let bytes = fs::read(&names[1]).unwrap();
+    let last: Vec<u8> = walls.iter().flat_map(|wall| wall.2.to_le_bytes()).collect();
+    assert!(bytes.ends_with(&last));
+    let edges = |number: u32| fs::read_to_string(scratch.path(&format!("run/box_{number:06}.vtp"))).unwrap();
+    assert!(edges(3) != edges(4));
 }

@@ -82,7 +82,7 @@ impl Boundary for Vessel {
             return self.container.wall_motion(wall, time);
         };
         let placed = &self.parts[self.walls.get(brick)?.part];
-        if placed.first == brick { placed.part.travel().moved(placed.phase.after(time)) } else { None }
+        if placed.first == wall { placed.part.travel().moved(placed.phase.after(time)) } else { None }
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {

@@ -1,20 +1,17 @@
 //! A file of GSD: a header, an index of chunks, their names, and the chunks.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use super::{CHUNKS, F64, I8, Shape, U8, U64, write_chunks};
+use super::archive::{ENTRY, HEADER, id, number, read_at, width};
+use super::{CHUNKS, Shape, write_chunks};
 use crate::file::{Growing, Locked, Medium as _};
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, is_gzip};
 use crate::trajectory::sink::{Layout, Sink};
 use crate::trajectory::{Frame, RecordError};
-
-/// Bytes of the header, and of an entry of the index.
-const HEADER: usize = 256;
-const ENTRY: usize = 32;
 
 /// Entries for which the first index has room. An index that is full is followed by one of twice its size.
 const ROOM: usize = 1024;
@@ -202,7 +199,7 @@ fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
         return Ok(());
     }
     let is_ours = head[48..].starts_with(b"granular-edmd");
-    let found = if is_ours { "one of another version, with other chunks" } else { "another" };
+    let found = if is_ours { "one of another version" } else { "another" };
     Err(no_frame("a file of GSD by this version of granular-edmd", found))
 }
 
@@ -226,19 +223,14 @@ fn header(location: u64, room: u64) -> Vec<u8> {
 }
 
 /// Returns the shape of the frame whose entries come next.
-fn shape_at(entries: &[u8], number: usize) -> Shape {
-    let is_of_frame = |entry: &&[u8]| self::number(entry, 0) == number as u64;
+fn shape_at(entries: &[u8], frame: usize) -> Shape {
+    let is_of_frame = |entry: &&[u8]| number(entry, 0) == frame as u64;
     let own = || entries.chunks_exact(ENTRY).take(CHUNKS.len()).take_while(is_of_frame);
     let rows = |chunk| {
-        let rows = own().find(|entry| id(entry) == chunk).map(|entry| self::number(entry, 8));
+        let rows = own().find(|entry| id(entry) == chunk).map(|entry| number(entry, 8));
         rows.and_then(|rows| u32::try_from(rows).ok()).map_or(0, |rows| rows as usize)
     };
-    Shape { number, disks: rows(5), kinds: rows(4), walls: rows(20) }
-}
-
-/// Returns the number of the chunk that an entry lists.
-fn id(entry: &[u8]) -> usize {
-    usize::from(u16::from_le_bytes([entry[28], entry[29]]))
+    Shape { number: frame, disks: rows(5), kinds: rows(4), walls: rows(20) }
 }
 
 /// Returns the entries of a frame whose chunks begin at this place, and the place after the chunks. Chunks
@@ -259,29 +251,9 @@ fn entries(shape: Shape, start: u64) -> (Vec<u8>, u64) {
     (entries, location)
 }
 
-/// Returns the bytes of a number of this type.
-const fn width(kind: u8) -> u64 {
-    match kind {
-        U8 | I8 => 1,
-        U64 | F64 => 8,
-        _ => 4,
-    }
-}
-
 /// Returns the list of names, each followed by a zero, in whole pieces of 64 bytes.
 fn names() -> Vec<u8> {
     let mut names: Vec<u8> = CHUNKS.iter().flat_map(|chunk| chunk.0.bytes().chain([0])).collect();
     names.resize((names.len() + 1).next_multiple_of(64), 0);
     names
-}
-
-fn number(bytes: &[u8], at: usize) -> u64 {
-    u64::from_le_bytes(bytes[at..].as_chunks().0[0])
-}
-
-fn read_at(mut file: &File, start: u64, length: u64) -> io::Result<Vec<u8>> {
-    file.seek(SeekFrom::Start(start))?;
-    let mut bytes = Vec::new();
-    file.take(length).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 == length { Ok(bytes) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
 }

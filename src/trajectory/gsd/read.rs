@@ -56,20 +56,6 @@ struct View<'a, R> {
     notes: Vec<String>,
 }
 
-/// Columns of a disk.
-const COLUMNS: [(&str, usize); 10] = [
-    ("pos", 3),
-    ("kind", 1),
-    ("diameter", 1),
-    ("mass", 1),
-    ("velo", 3),
-    ("orientation", 4),
-    ("omega", 3),
-    ("inertia_factor", 1),
-    ("image", 3),
-    ("id", 1),
-];
-
 impl<R: Read + Seek> View<'_, R> {
     fn wrong(&self, what: &str) -> ReadError {
         ReadError::gsd(format!("frame {}: {what}", self.frame))
@@ -106,42 +92,79 @@ impl<R: Read + Seek> View<'_, R> {
 
     fn table(mut self) -> Result<Table, ReadError> {
         let [count] = self.numbers("particles/N")?.unwrap_or_default();
-        let disks = self.disks(count as usize)?;
-        let columns = COLUMNS.iter().zip(disks.present()).filter(|(_, is_there)| *is_there);
-        let mut table = Table::new(columns.flat_map(|((name, size), _)| Column::of(name, *size)), 1)?;
-        let center = self.space(&mut table)?;
-        for row in 0..count as usize {
-            table.push_numbers(&disks.row(row, center), row + 1);
-        }
-        table.rounding = rounding(&disks.position, center);
-        table.notes = self.notes;
-        Ok(table)
-    }
-
-    fn disks(&mut self, count: usize) -> Result<Disks, ReadError> {
+        let count = count as usize;
         let position = self.rows("particles/position", count, 3)?;
         let Some(position) = position.or_else(|| (count == 0).then(Chunk::default)) else {
             return Err(self.wrong("the chunk `particles/position` is missing"));
         };
-        let kind = self.rows("particles/typeid", count, 1)?;
-        let diameters = self.diameters(count, kind.as_ref())?;
-        let mut rows = |name, columns| self.rows(name, count, columns);
-        Ok(Disks {
-            position,
-            kind,
-            diameters,
-            mass: rows("particles/mass", 1)?,
-            velocity: rows("particles/velocity", 3)?,
-            orientation: rows("particles/orientation", 4)?,
-            momentum: rows("particles/angmom", 4)?,
-            inertia: rows("particles/moment_inertia", 3)?,
-            image: rows("particles/image", 3)?,
-            id: rows("log/particles/id", 1)?,
-        })
+        let (center, columns) = (self.center()?, self.columns(count)?);
+        let names = columns.iter().map(|column| (column.name, column.size)).chain([("pos", 3)]);
+        let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1)?;
+        self.space(center, &mut table)?;
+        for row in 0..count {
+            let values =
+                columns.iter().flat_map(|column| (0..column.size).map(|part| (column.value)(row, part)));
+            let place = (0..3).map(|axis| position.number(row, axis) + [center.x, center.y, 0.0][axis]);
+            table.push_numbers(&values.chain(place).collect::<Vec<_>>(), row + 1);
+        }
+        table.rounding = rounding(&position, center);
+        table.notes = self.notes;
+        Ok(table)
     }
 
-    /// Sets the box, the time and gravity, and returns the point from which positions count.
-    fn space(&mut self, table: &mut Table) -> Result<DVec2, ReadError> {
+    /// Returns the columns that the frame has beside the positions.
+    fn columns(&mut self, count: usize) -> Result<Vec<Values>, ReadError> {
+        let mut columns = Vec::new();
+        for (chunk, name, order) in [
+            ("particles/typeid", "kind", [0].as_slice()),
+            ("particles/mass", "mass", &[0]),
+            ("particles/velocity", "velo", &[0, 1, 2]),
+            ("particles/orientation", "orientation", &[1, 2, 3, 0]),
+            ("particles/image", "image", &[0, 1, 2]),
+            ("log/particles/id", "id", &[0]),
+        ] {
+            if let Some(chunk) = self.rows(chunk, count, order.len())? {
+                columns.push(Values::new(name, order.len(), move |row, part| chunk.number(row, order[part])));
+            }
+        }
+        let diameters = self.diameters(count)?;
+        if let Some(inertia) = self.rows("particles/moment_inertia", count, 3)? {
+            let (sizes, mass) = (diameters.clone(), self.rows("particles/mass", count, 1)?);
+            let factor = move |row: usize, moment: f64| {
+                let mass = mass.as_ref().map_or(1.0, |mass| mass.number(row, 0));
+                let unit = 0.25 * mass * sizes[row] * sizes[row];
+                // Rounding does not make a homogeneous disk another one.
+                let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
+                let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
+                if is_other { moment / unit } else { homogeneous }
+            };
+            let moments: Vec<f64> = (0..count).map(|row| inertia.number(row, 2)).collect();
+            let turned = self.rows("particles/orientation", count, 4)?;
+            if let Some(momentum) = self.rows("particles/angmom", count, 4)? {
+                let moments = moments.clone();
+                columns.push(Values::new("omega", 3, move |row, axis| {
+                    // A quaternion of angular momentum is twice the orientation times the momentum of the body.
+                    let half = turned
+                        .as_ref()
+                        .map_or([1.0, 0.0], |turned| [0, 3].map(|part| turned.number(row, part)));
+                    let about = half[0] * momentum.number(row, 3) - half[1] * momentum.number(row, 0);
+                    let turning = if moments[row] > 0.0 { 0.5 * about / moments[row] } else { 0.0 };
+                    if axis == 2 { turning } else { momentum.number(row, axis + 1) }
+                }));
+            }
+            columns.push(Values::new("inertia_factor", 1, move |row, _| factor(row, moments[row])));
+        }
+        columns.push(Values::new("diameter", 1, move |row, _| diameters[row]));
+        Ok(columns)
+    }
+
+    /// Returns the point from which positions count.
+    fn center(&mut self) -> Result<DVec2, ReadError> {
+        Ok(self.numbers("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
+    }
+
+    /// Sets the box, the time and gravity.
+    fn space(&mut self, center: DVec2, table: &mut Table) -> Result<(), ReadError> {
         let [width, height, _, xy, xz, yz] =
             self.numbers("configuration/box")?.unwrap_or([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
         if !is_upright([width, height], [xy * height, xz, yz]) {
@@ -149,7 +172,6 @@ impl<R: Read + Seek> View<'_, R> {
                 self.wrong(&format!("the box must be a rectangle, but has the tilts {xy}, {xz} and {yz}"))
             );
         }
-        let center = self.numbers("log/center")?.map_or(DVec2::ZERO, DVec2::from_array);
         let (corner, periodic) = (center - 0.5 * DVec2::new(width, height), self.numbers("log/periodic")?);
         let seen = Domain::new(corner.x, corner.x + width, corner.y, corner.y + height);
         let own = self
@@ -166,29 +188,31 @@ impl<R: Read + Seek> View<'_, R> {
         }
         table.time = self.numbers("log/time")?.map(|[time]| time);
         table.gravity = self.numbers("log/gravity")?.map(|gravity| DVec2::from_array(gravity).into());
-        Ok(center)
+        Ok(())
     }
 
     /// Returns the diameters: those of the shapes if the file has shapes, or else its diameters, which are 1
     /// where it has none.
-    fn diameters(&mut self, count: usize, kind: Option<&Chunk>) -> Result<Vec<f64>, ReadError> {
-        if let Some(name) = self.archive.names().find_map(other_shape) {
-            return Err(self.wrong(&format!("the shapes must be disks, but are `{name}`")));
+    fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
+        let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
+        if let Some(state) = state.cloned() {
+            return Err(
+                self.wrong(&format!("the shapes must be in `particles/type_shapes`, not in `{state}`"))
+            );
         }
         let shapes = match self.find("particles/type_shapes")? {
             Some(shapes) => self.shapes(&shapes)?,
             None => Vec::new(),
         };
-        let of_state = self.find("state/hpmc/sphere/radius")?;
-        let given = self.rows("particles/diameter", count, 1)?;
-        if shapes.is_empty() && of_state.is_none() && given.is_none() {
+        let (kinds, given) =
+            (self.rows("particles/typeid", count, 1)?, self.rows("particles/diameter", count, 1)?);
+        if shapes.is_empty() && given.is_none() {
             self.notes.push("all diameters are 1, for the file has none".to_owned());
         }
         let of_disk = |row| {
-            let kind = kind.map_or(0, |kind| kind.number(row, 0) as usize);
-            let of_state = of_state.as_ref().filter(|state| kind < state.rows);
-            let of_shape = shapes.get(kind).copied().or(of_state.map(|state| 2.0 * state.decimal(kind)));
-            of_shape.unwrap_or_else(|| given.as_ref().map_or(1.0, |given| given.decimal(row)))
+            let kind = kinds.as_ref().map_or(0, |kinds| kinds.number(row, 0) as usize);
+            let shape = shapes.get(kind).copied();
+            shape.unwrap_or_else(|| given.as_ref().map_or(1.0, |given| given.number(row, 0)))
         };
         Ok((0..count).map(of_disk).collect())
     }
@@ -212,63 +236,17 @@ impl<R: Read + Seek> View<'_, R> {
     }
 }
 
-/// The chunks with a row for each disk, as far as they are there.
-struct Disks {
-    position: Chunk,
-    kind: Option<Chunk>,
-    diameters: Vec<f64>,
-    mass: Option<Chunk>,
-    velocity: Option<Chunk>,
-    orientation: Option<Chunk>,
-    momentum: Option<Chunk>,
-    inertia: Option<Chunk>,
-    image: Option<Chunk>,
-    id: Option<Chunk>,
+/// The values of a property of each disk, by row and part.
+struct Values {
+    name: &'static str,
+    size: usize,
+    value: Box<dyn Fn(usize, usize) -> f64>,
 }
 
-impl Disks {
-    /// Returns which of the columns are there.
-    fn present(&self) -> [bool; COLUMNS.len()] {
-        let Self { kind, mass, velocity, orientation, momentum, inertia, image, id, .. } = self;
-        let [kind, mass, velocity, orientation] = [kind, mass, velocity, orientation].map(Option::is_some);
-        let [momentum, inertia, image, id] = [momentum, inertia, image, id].map(Option::is_some);
-        [true, kind, true, mass, velocity, orientation, momentum && inertia, inertia, image, id]
+impl Values {
+    fn new(name: &'static str, size: usize, value: impl Fn(usize, usize) -> f64 + 'static) -> Self {
+        Self { name, size, value: Box::new(value) }
     }
-
-    /// Returns the numbers of a disk in the columns that are there.
-    fn row(&self, row: usize, center: DVec2) -> Vec<f64> {
-        let of = |chunk: &Option<Chunk>, column| chunk.as_ref().map(|chunk| chunk.number(row, column));
-        let mut numbers =
-            vec![self.position.number(row, 0) + center.x, self.position.number(row, 1) + center.y];
-        let (mass, diameter) = (self.mass.as_ref().map(|mass| mass.decimal(row)), self.diameters[row]);
-        numbers.push(self.position.number(row, 2));
-        numbers.extend(of(&self.kind, 0));
-        numbers.push(diameter);
-        numbers.extend(mass);
-        numbers.extend([0, 1, 2].iter().filter_map(|&axis| of(&self.velocity, axis)));
-        numbers.extend([1, 2, 3, 0].iter().filter_map(|&part| of(&self.orientation, part)));
-        let moment = of(&self.inertia, 2).filter(|&moment| moment > 0.0);
-        if self.momentum.is_some() && self.inertia.is_some() {
-            // A quaternion of angular momentum is twice the orientation times the momentum of the body.
-            let [w, z] =
-                [(0, 1.0), (3, 0.0)].map(|(part, unturned)| of(&self.orientation, part).unwrap_or(unturned));
-            let [p, x, y, q] = [0, 1, 2, 3].map(|part| of(&self.momentum, part).unwrap_or_default());
-            numbers.extend([x, y, moment.map_or(0.0, |moment| 0.5 * (w * q - z * p) / moment)]);
-        }
-        if self.inertia.is_some() {
-            let unit = 0.25 * mass.unwrap_or(1.0) * diameter * diameter;
-            numbers.push(moment.map_or(Disk::HOMOGENEOUS_INERTIA_FACTOR, |moment| moment / unit));
-        }
-        numbers.extend([0, 1, 2].iter().filter_map(|&axis| of(&self.image, axis)));
-        numbers.extend(of(&self.id, 0));
-        numbers
-    }
-}
-
-/// Returns the shape of which a chunk keeps the state, if it is not a disk.
-fn other_shape(name: &str) -> Option<String> {
-    let shape = name.strip_prefix("state/hpmc/")?.split('/').next()?;
-    (!["sphere", "integrate"].contains(&shape)).then(|| shape.to_owned())
 }
 
 /// Returns the largest rounding of positions in single precision.

@@ -30,6 +30,11 @@ pub(super) enum Command {
         /// File to write; standard output if not given. An existing file is not overwritten.
         file: Option<PathBuf>,
     },
+    /// Explains a key of a plan or a column of the tables, or all of them: meaning, unit, range and default.
+    Explain {
+        /// Name of the key, for example `friction` or `protocol.settle`.
+        key: Option<String>,
+    },
     /// Checks a plan, and prints how many ramps and values it has.
     Check {
         /// The plan, in TOML; `-` for standard input.
@@ -83,6 +88,11 @@ pub(super) enum Command {
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
     /// from its place in the other run than a tolerance.
     Diff(super::diff::Wishes),
+    /// Prints completions for a shell, or with `man` a page of the manual.
+    Completions {
+        /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
+        shell: String,
+    },
     /// Allows this program to continue a study that other code began. Records keep the mark of the code that
     /// made them.
     Accept {

@@ -2,23 +2,16 @@
 
 use std::collections::HashSet;
 
+use super::keys;
 use crate::parameters;
 use crate::{Column, Experiment, Plan, PlanError};
 
-/// Explanations of lines of a plan, by the beginning of the line.
-const NOTES: [(&str, &str); 6] = [
-    ("seed", "Seed of all random numbers: the same plan gives the same bytes."),
-    ("repeats", "Times that each point is done, with different seeds."),
+/// Explanations of the sections of a plan.
+const NOTES: [(&str, &str); 4] = [
     ("[experiment]", "The system: each of its parameters can be ramped or swept."),
-    (
-        "[protocol]",
-        "In cycles (periods of the base): wait `settle`, then take `samples` samples, `every` cycles apart.",
-    ),
-    (
-        "[ramp]",
-        "A parameter that changes step by step, each value from the last state of the one before.\n# course: up, down or up_and_down.",
-    ),
-    ("[[sweep]]", "A parameter that differs between ramps, which are independent of each other."),
+    ("[protocol]", "What is measured at each value, and when."),
+    ("[ramp]", "A hysteresis experiment: one run, whose parameter changes step by step."),
+    ("[[sweep]]", "Independent runs."),
 ];
 
 /// Examples of sections that a plan may have, for a plan that lacks them.
@@ -32,9 +25,16 @@ const EXAMPLES: [(&str, &str); 3] = [
 pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanError> {
     let bare = plan.to_toml()?;
     let mut lines = vec!["# A plan of a study.".to_owned(), String::new()];
+    let mut section = "";
     for line in bare.lines() {
-        let note = NOTES.iter().find(|(start, _)| begins(line, start));
-        lines.extend(note.map(|(_, note)| format!("# {note}")));
+        if let Some(header) = line.strip_prefix('[') {
+            section = header.trim_matches(['[', ']']);
+        }
+        if section == "experiment" && line.is_empty() {
+            lines.extend(without_values::<E>(&bare));
+        }
+        let note = NOTES.iter().find(|(start, _)| line == *start).map(|(_, note)| *note);
+        lines.extend(note.or_else(|| meaning::<E>(section, line)).map(|note| format!("# {note}")));
         lines.push(line.to_owned());
     }
     let absent = EXAMPLES.iter().filter(|(start, _)| !bare.lines().any(|line| begins(line, start)));
@@ -45,9 +45,25 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     let mut known = HashSet::new();
     let columns: Vec<_> = columns.iter().map(Column::name).filter(|name| known.insert(*name)).collect();
     lines.push(format!("\n# Parameters: {names}."));
-    lines.push("# Parameters that have no value in this plan are not listed.".to_owned());
     lines.push(format!("# Measured: {}.\n", columns.join(", ")));
     Ok(lines.join("\n"))
+}
+
+/// Returns the meaning of the key of a line.
+fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
+    let key = line.split_once(" = ")?.0;
+    match section.strip_prefix("experiment") {
+        Some(group) => keys::meaning::<E>(format!("{group}.{key}").trim_start_matches('.')),
+        None if section.is_empty() => keys::meaning::<E>(key),
+        None => keys::meaning::<E>(&format!("{section}.{key}")),
+    }
+}
+
+/// Returns the parameters that have no value in the plan, as comments.
+fn without_values<E: Experiment>(bare: &str) -> impl Iterator<Item = String> {
+    let is_given = |name: &str| bare.lines().any(|line| line.split(' ').next() == Some(name));
+    let absent = keys::parameters::<E>().filter(move |(name, _)| !name.contains('.') && !is_given(name));
+    absent.map(|(name, meaning)| format!("# {meaning}\n# {name} ="))
 }
 
 fn begins(line: &str, start: &str) -> bool {
