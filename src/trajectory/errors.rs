@@ -237,8 +237,9 @@ impl ReadError {
         requirement: impl Into<String>,
         found: impl Into<String>,
     ) -> Self {
-        let found: String = found.into().chars().take(60).collect();
-        Self::Unexpected { line, what: what.into(), requirement: requirement.into(), found }
+        let short = |text: String| text.chars().take(60).collect();
+        let (what, found) = (short(what.into()), short(found.into()));
+        Self::Unexpected { line, what, requirement: requirement.into(), found }
     }
 
     /// Creates the error of a file of GSD.

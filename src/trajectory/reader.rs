@@ -51,7 +51,7 @@ use crate::quantity::non_negative;
 /// assert!(error.to_string().starts_with("line 11: the disk overlaps the disk of line 10 by 0.0625"));
 ///
 /// let state = Reader::new().with_shrunk_radii().read_from(dump.as_bytes())?;
-/// assert_eq!(state.notes(), ["ignored columns: fx", "all radii are shrunk by a share of 0.0625 of them"]);
+/// assert_eq!(state.notes(), ["ignored columns: fx", "all radii are shrunk by the deepest overlap, a share of 0.0625"]);
 /// let run = Simulation::builder(Elastic, Container::closed(9.0, 9.0)?).disks(state.into_disks()).build()?;
 /// assert_eq!((run.disks()[0].velocity().x, run.disks()[0].radius()), (3.0, 0.46875));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

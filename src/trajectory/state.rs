@@ -111,7 +111,10 @@ impl State {
             notes.push(format!("disks outside of periodic sides, wrapped: {}", self.wrapped));
         }
         if self.shrunk > 0.0 {
-            notes.push(format!("all radii are shrunk by a share of {} of them", Rounded(self.shrunk)));
+            notes.push(format!(
+                "all radii are shrunk by the deepest overlap, a share of {}",
+                Rounded(self.shrunk)
+            ));
         }
         notes
     }

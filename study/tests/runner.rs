@@ -685,7 +685,10 @@ fn files_of_disks_are_converted() {
     );
     assert_eq!(code(&of(&["last.csv", "--frame", "last", "--tolerance", "0.02"])), Some(0));
     let output = of(&["shrunk.xyz", "--shrink"]);
-    assert!(code(&output) == Some(0) && said(&output).contains("all radii are shrunk by a share of 0.01"));
+    assert!(
+        code(&output) == Some(0)
+            && said(&output).contains("all radii are shrunk by the deepest overlap, a share of 0.01")
+    );
     for (name, start) in [
         ("a.extxyz", b"2\nLattice=".as_slice()),
         ("a.xyz.gz", &[0x1f, 0x8b]),

@@ -90,6 +90,9 @@ fn huge_numbers_are_only_numbers() {
         "1\n".to_owned() + &"[".repeat(100_000),
         "x,y,radius\n".to_owned() + &",".repeat(100_000),
         "\"".repeat(100_000) + "\n",
+        "x,y,radius,".to_owned() + &"a".repeat(100_000) + "\n1,2\n",
+        "ITEM: BOX BOUNDS ".to_owned() + &"p".repeat(100_000) + "\n",
+        "1\n".to_owned() + &"a".repeat(100_000) + "=\"\n",
     ] {
         assert!(read(text.as_bytes()).is_err_and(|error| error.to_string().len() < 2000), "{text:.80}");
     }

@@ -181,7 +181,7 @@ fn soft_disks() {
     let some = Reader::new().with_tolerance(1e-3).unwrap();
     assert!(of(some.clone()).starts_with(&format!("{told} 1 such")));
     assert_eq!(of(Reader::new().with_tolerance(0.011).unwrap()), radii("0.5"));
-    let note = " | all radii are shrunk by a share of 0.01 of them";
+    let note = " | all radii are shrunk by the deepest overlap, a share of 0.01";
     assert_eq!(of(Reader::new().with_shrunk_radii()), radii("0.495") + note);
     assert_eq!(of(Reader::new().with_shrunk_radii().with_tolerance(0.011).unwrap()), radii("0.495") + note);
     assert!(of(some.with_shrunk_radii()).starts_with(told));

@@ -31,8 +31,9 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
     let (mut head, mut step, mut count) = (Head::default(), None, None);
     let Some((mut item, mut line)) = input.next_filled()? else { return Ok(None) };
     loop {
-        let value = format!("the value of `{item}`");
-        match item.strip_prefix("ITEM:").map_or(["", ""], |item| name_and_rest(item.trim())) {
+        let [name, rest] = item.strip_prefix("ITEM:").map_or([""; 2], |item| name_and_rest(item.trim()));
+        let value = format!("the value of `{name}`");
+        match [name, rest] {
             ["TIMESTEP", _] => {
                 let (text, line) = input.need(&value)?;
                 step = Some(whole("the time step", &text, line)?);
