@@ -56,12 +56,16 @@ use clap::{CommandFactory, Parser, ValueEnum};
 
 use super::errors::{PlanError, StudyError, chain};
 use super::json::Object;
-use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
+use super::{Control, Experiment, Plan, Progress, Ramp, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
 
-/// Largest number of failed values that `status` prints; its JSON has all.
+/// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status` has
+/// all.
 const LISTED: usize = 8;
+
+/// Largest number of values of a ramp that `check` prints in full.
+const MOST_VALUES: usize = 60;
 
 /// The way in which a command ended, with its exit code.
 #[derive(Clone, Copy)]
@@ -197,8 +201,35 @@ fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
         1 => String::new(),
         repeats => format!(", {repeats} repeats among them"),
     };
-    say(&format!("{ramps} ramps of {values} values of {cycles} cycles{repeats}"))?;
+    let (ramp, value) = (counted(ramps, "ramp"), counted(values, "value"));
+    say(&format!("{ramp} of {value} of {cycles} cycles{repeats}"))?;
+    if plan.varied().next().is_none() {
+        return Ok(End::Done);
+    }
+    (0..ramps.min(LISTED)).try_for_each(|ramp| say(&values_of(&plan, ramp)))?;
+    if ramps > LISTED {
+        say(&format!("and {} more", ramps - LISTED))?;
+    }
     Ok(End::Done)
+}
+
+fn counted(count: usize, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Returns a line with the values of all parameters that differ in or among the ramps.
+fn values_of<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
+    let changing = plan.ramp().map(Ramp::parameter);
+    let fixed = plan.parameters(ramp, 0).into_iter().filter(|(name, _)| Some(*name) != changing);
+    let mut parts: Vec<String> = fixed.map(|(name, value)| format!("{name} = {value}")).collect();
+    if let Some(ramp) = plan.ramp() {
+        let mut values: Vec<String> = ramp.path().map(|(_, value)| value.to_string()).collect();
+        if values.len() > MOST_VALUES {
+            values.splice(LISTED..values.len() - 1, ["…".to_owned()]);
+        }
+        parts.push(format!("{} = {}", ramp.parameter(), values.join(", ")));
+    }
+    format!("  {ramp}: {}", parts.join("; "))
 }
 
 fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {
