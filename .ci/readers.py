@@ -20,6 +20,10 @@ def column(frame, name):
     return np.array([disk[name] for disk in frame["disks"]])
 
 
+# The symbols of the elements whose numbers are the kinds of the run.
+SYMBOLS = {0: "X", 7: "N"}
+
+
 def in_space(vectors):
     return np.column_stack([vectors, np.zeros(len(vectors))])
 
@@ -63,14 +67,25 @@ def of_ovito(place, data, particles, frame, is_xyz):
         same(f"{place}: {name}", read, expected, roundings=1)
 
     check("Particle Identifier", column(frame, "id"))
-    check("Particle Type", column(frame, "kind") + (0 if is_xyz else 1))
+    turning = np.zeros((len(frame["disks"]), 3))
+    turning[:, 2] = column(frame, "angular_velocity")
+    check("Angular Velocity", turning)
     check("Position", in_space(column(frame, "position")))
     check("Velocity", in_space(column(frame, "velocity")))
     check("angle", column(frame, "angle"))
     check("Radius", column(frame, "radius"))
     check("Mass", column(frame, "mass"))
     if is_xyz:
-        check("angular_velocity", column(frame, "angular_velocity"))
+        # Types have the symbols of elements, whose numbers are the kinds.
+        names = {kind.id: kind.name for kind in particles.particle_types.types}
+        symbols = [names[number] for number in particles["Particle Type"][...]]
+        same(f"{place}: symbols", symbols == [SYMBOLS[kind] for kind in column(frame, "kind")], True)
+        check("kind", column(frame, "kind"))
+        half = 0.5 * column(frame, "angle")
+        turned = np.column_stack([0 * half, 0 * half, np.sin(half), np.cos(half)])
+        same(f"{place}: turned", np.allclose(particles["Orientation"][...], turned, rtol=0, atol=1e-6), True)
+        same(f"{place}: walls", np.array(data.attributes["Walls"]), np.ravel(frame["walls"]), roundings=1)
+        same(f"{place}: time", data.attributes["Time"], frame["time"], roundings=1)
         check("inertia_factor", column(frame, "inertia_factor"))
         check("image", column(frame, "image"))
         check("unwrapped", column(frame, "unwrapped"))
@@ -78,10 +93,8 @@ def of_ovito(place, data, particles, frame, is_xyz):
     else:
         # OVITO takes `x y z` as position, and so leaves out `xu yu`, of which it makes the same.
         check("Periodic Image", np.column_stack([column(frame, "image"), 0 * column(frame, "id")]))
-        turning = np.zeros((len(frame["disks"]), 3))
-        turning[:, 2] = column(frame, "angular_velocity")
-        check("Angular Velocity", turning)
-    same(f"{place}: time", data.attributes["Time"], frame["time"], roundings=1)
+        check("Particle Type", column(frame, "kind") + 1)
+        check("v_time", np.full(len(frame["disks"]), frame["time"]))
     cell = data.cell[...]
     same(f"{place}: corner of the box", cell[:2, 3], np.array([frame["left"], frame["bottom"]]), roundings=1)
     same(f"{place}: width of the box", cell[0, 0], frame["right"] - frame["left"])
@@ -118,8 +131,14 @@ def read_by_gsd():
             same(f"{place}: dimensions", read.configuration.dimensions, 2)
             same(f"{place}: width", read.configuration.box[0], in_single(frame["right"] - frame["left"]))
             same(f"{place}: time", read.log["time"], np.array([frame["time"]]))
-            same(f"{place}: gravity", read.log["gravity"], np.array([[0.0, -frame["gravity"]]]))
-            same(f"{place}: center", read.log["center"], center.reshape(1, 2))
+            same(f"{place}: gravity", read.log["gravity"], np.array([0.0, -frame["gravity"]]))
+            same(f"{place}: center", read.log["center"], center)
+            same(f"{place}: periodic", read.log["periodic"], np.array(frame["periodic"], dtype=np.uint8))
+            top = np.inf if frame["top"] is None else frame["top"]
+            edges = np.array([frame["left"], frame["right"], frame["bottom"], top])
+            same(f"{place}: domain", read.log["domain"], edges)
+            walls = np.array([read.log[f"walls/{name}"][0] for name in ["index", "x", "y", "phase"]])
+            same(f"{place}: walls", walls, np.ravel(frame["walls"]))
             same(f"{place}: ids", read.log["particles/id"], column(frame, "id"))
             same(f"{place}: kinds", particles.typeid, column(frame, "kind"))
             same(f"{place}: names", [int(name) for name in particles.types], list(range(len(particles.types))))
@@ -134,6 +153,12 @@ def read_by_gsd():
             momentum = 2 * turned * np.column_stack([column(frame, "angular_velocity") * inertia[:, 2]] * 4)
             momentum = np.column_stack([-momentum[:, 3], momentum[:, 1:3], momentum[:, 0]])
             same(f"{place}: turned", close and np.allclose(particles.angmom, momentum, rtol=0, atol=1e-6), True)
+
+
+    log = gsd.hoomd.read_log(str(folder / "run.gsd"))
+    same("times by read_log", log["log/time"], np.array([frame["time"] for frame in frames]))
+    scalars = gsd.hoomd.read_log(str(folder / "run.gsd"), scalar_only=True)
+    same("phases by read_log", scalars["log/walls/phase"], np.array([frame["walls"][0][3] for frame in frames]))
 
 
 def gsd_by_ovito():
@@ -191,7 +216,7 @@ def read_by_vtk():
         reader.SetFileName(str(folder / box.get("file")))
         reader.Update()
         bounds = reader.GetOutput().GetBounds()
-        same("box", bounds[:3], np.array([frame["left"], frame["right"], frame["bottom"]]))
+        same("box", bounds[:3], np.array([frame["left"], frame["right"], frame["floor"]]))
         same("periodic edges", vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("periodic")), [1, 0, 1])
     render_by_vtk(data, reader.GetOutput())
 
@@ -288,7 +313,12 @@ def read_by_python():
             sys.exit(f"error: the center of mass is at {mean}, not at {height}")
 
 
-read_by_python()
-for reader in sys.argv[2:]:
-    {"ovito": read_by_ovito, "vtk": read_by_vtk, "lammps": read_by_lammps, "gsd": read_by_gsd}[reader]()
-    print(f"{reader}: as the run had it, {checked} numbers so far")
+if __name__ == "__main__":
+    import readers_others
+
+    by_name = {"ovito": read_by_ovito, "vtk": read_by_vtk, "lammps": read_by_lammps, "gsd": read_by_gsd}
+    by_name |= readers_others.by_name(sys.modules["__main__"])
+    read_by_python()
+    for reader in sys.argv[2:]:
+        by_name[reader]()
+        print(f"{reader}: as the run had it, {checked} numbers so far")

@@ -96,7 +96,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///                               at walls, and first_touch again         otherwise now
 /// the epoch moves               set_time_origin                         late times that keep their digits
 /// a checkpoint, a resumption    fingerprint, state; set_state           the same walls, where they were
-/// a sample, a picture           wall_point, area, wall_lines            observables and files
+/// a sample, a picture           wall_point, wall_motion, area,          observables and files
+///                               wall_lines, edges
 /// an initial state              interior, overlap                       places for disks
 /// ```
 ///
@@ -251,6 +252,25 @@ pub trait Boundary {
     /// If other walls are set between two runs, the engine tells from this point whether a wall of the same
     /// name has jumped. It is `None` unless implemented.
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
+        let _ = (wall, time);
+        None
+    }
+
+    /// Returns the rectangle of the domain with its edges where the walls are at `time`, for pictures.
+    ///
+    /// The edges of the domain leave room for walls that move; it is the domain unless implemented.
+    fn edges(&self, time: f64) -> Domain {
+        let _ = time;
+        self.domain()
+    }
+
+    /// Returns the displacement of a wall from its place at rest at `time`, and the phase of its motion: the
+    /// time since the motion began, less whole periods.
+    ///
+    /// `None` for a wall that does not move, and for a wall that moves with one of a smaller index, as the
+    /// bricks of a part do. It is `None` unless implemented. The phase of a [`Piston`](crate::wall::Piston)
+    /// is 0.
+    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
         let _ = (wall, time);
         None
     }

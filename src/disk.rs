@@ -244,6 +244,11 @@ impl Disk {
         Self { position, velocity, angle, angular_velocity, radius, mass, inertia_factor, kind, image, id }
     }
 
+    /// Returns the same disk with this radius.
+    pub(crate) fn with_radius(self, radius: f64) -> Result<Self, ParameterError> {
+        Ok(Self { radius: scale("radius", radius)?, ..self })
+    }
+
     /// Returns the disk with the id that the engine gave it.
     pub(crate) const fn identified(self, id: u64) -> Self {
         Self { id, ..self }

@@ -37,6 +37,10 @@ pub mod draw_it {}
 #[doc = include_str!("../docs/guide/write_files.md")]
 pub mod write_files {}
 
+#[doc(alias("convert", "ASE", "pandas", "polars", "MDAnalysis", "freud", "HOOMD", "import", "export"))]
+#[doc = include_str!("../docs/guide/recipes.md")]
+pub mod recipes {}
+
 #[doc(alias("extension", "plugin", "custom"))]
 #[doc = include_str!("../docs/guide/bring_your_own.md")]
 pub mod bring_your_own {}

@@ -5,24 +5,23 @@
 //!
 //! | format | file | opened by |
 //! |---|---|---|
-//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), [`XyzFrames`] to start from |
+//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE) |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | GSD, as of HOOMD-blue | one binary file with an index ([`Recorder::create_gsd`]) | OVITO, freud, `gsd` |
-//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` for times ([`Recorder::create_vtk`]) | ParaView, VTK |
+//! | [`Gsd`], as of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
+//! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!
-//! | state in a file | read by | written by |
-//! |---|---|---|
-//! | extended XYZ | [`State::from_xyz`], [`XyzFrames`] | [`ExtendedXyz`] |
-//! | table of comma-separated values | [`State::from_csv`] | [`State::write_csv`] |
-//! | data file of LAMMPS, `atom_style sphere` | [`State::from_lammps_data`] | [`State::write_lammps_data`] |
-//! | VTK's `PolyData` | | [`State::write_vtk`] |
+//! A [`Reader`] reads all of these but VTK, and files of other programs: it recognizes the format by the
+//! contents, and columns by their names. A [`State`] has the disks, and is also written as a table
+//! ([`State::write_csv`]), a data file of LAMMPS ([`State::write_lammps_data`]) or a file of VTK
+//! ([`State::write_vtk`]).
 //!
-//! With the feature `gzip`, a trajectory is compressed if the name of its file ends in `.gz`.
+//! With the feature `gzip`, a trajectory is compressed if the name of its file ends in `.gz`, and compressed
+//! files of any name are read.
 //!
 //! # Record a run
 //! ```
 //! use granular_edmd::prelude::*;
-//! use granular_edmd::trajectory::{ExtendedXyz, Recorder, State, read};
+//! use granular_edmd::trajectory::{ExtendedXyz, Reader, Recorder};
 //!
 //! # let folder = std::env::temp_dir().join(format!("granular-edmd-trajectory-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder)?;
@@ -38,7 +37,7 @@
 //! assert_eq!(recorder.times(), [0.5, 1.0, 1.5, 2.0]);
 //!
 //! // The last frame is the state of the disks, to the bit.
-//! let state = read(&path, State::from_xyz)?;
+//! let state = Reader::new().read(&path)?;
 //! assert_eq!(state.disks(), run.disks());
 //! let again = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, container)
 //!     .start_time(state.time().unwrap_or(0.0))
@@ -77,11 +76,15 @@
 //! # Ok::<(), io::Error>(())
 //! ```
 
+mod checks;
+mod column;
 mod csv;
-mod entry;
+mod disks;
 mod errors;
 mod extended_xyz;
+mod file_format;
 mod format;
+mod found;
 mod frames;
 mod gsd;
 #[cfg(feature = "gzip")]
@@ -92,21 +95,26 @@ pub mod laws;
 mod lines;
 mod media;
 mod one_file;
-mod open;
 mod overlap;
+mod reader;
 mod recorder;
+mod settings;
+mod sink;
+mod source;
 mod state;
-mod store;
+mod table;
 mod vtk;
 
 pub use errors::{ReadError, RecordError};
 #[doc(alias = "OVITO")]
-pub use extended_xyz::{ExtendedXyz, XyzFrames};
+pub use extended_xyz::ExtendedXyz;
+#[doc(alias("OVITO", "freud", "ParaView"))]
+pub use file_format::{ByEnding, FileFormat, Gsd, Vtk};
 pub use format::{Format, Frame};
 #[doc(alias("OVITO", "VMD"))]
-pub use lammps_dump::LammpsDump;
-pub use open::{open, read};
+pub use lammps_dump::{LammpsDump, TimedLammpsDump};
+#[doc(alias("read_data", "read_dump", "initial condition"))]
+pub use reader::{Reader, States};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
-#[doc(alias("read_data", "initial condition"))]
 pub use state::State;

@@ -1,4 +1,5 @@
-//! A test that the event loop allocates nothing, with an allocator that counts.
+//! Tests that the event loop allocates nothing, and that readers need no more memory than a few times their
+//! file, with an allocator that counts.
 //!
 //! Only a change of the size of the cells allocates, when the state has become denser or more dilute. Dense
 //! and dilute runs that have settled have no such change.
@@ -7,28 +8,46 @@
 #![allow(unsafe_code)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::fmt::Write as _;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
+use granular_edmd::trajectory::Reader;
 
 struct Counting;
 
 static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
 
+/// Bytes that are allocated now, and the most of them since the start of a measurement.
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+/// All tests share the counters, so one waits for the other.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn grow(size: usize) {
+    ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+    PEAK.fetch_max(LIVE.fetch_add(size, Ordering::Relaxed) + size, Ordering::Relaxed);
+}
+
 // SAFETY: every call goes to the system's allocator with the arguments that came.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        grow(layout.size());
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // The old bytes may be there until the new ones are filled.
+        grow(size);
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
         unsafe { System.realloc(pointer, layout, size) }
     }
 }
@@ -36,9 +55,9 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A single test covers both runs, since all tests share the counter.
 #[test]
 fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
+    let _turn = TURN.lock()?;
     for (inelasticity, friction) in [(0.05, 0.1), (0.0, 0.01)] {
         let container =
             Container::closed(30.0, 60.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
@@ -54,6 +73,39 @@ fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
         simulation.run_until(500.0, &mut energy)?;
         assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "friction {friction}");
         assert!(simulation.counters().disk_collisions > collisions + 1000, "there was something to do");
+    }
+    Ok(())
+}
+
+/// No number in a file makes the reader take memory, only its bytes do.
+#[test]
+fn a_reader_takes_ten_times_its_file_at_most() -> Result<(), Box<dyn std::error::Error>> {
+    let _turn = TURN.lock()?;
+    let count = 20_000;
+    let rows = |start: &str, row: fn(usize) -> String| {
+        let mut text = start.to_owned();
+        (0..count).for_each(|number| writeln!(text, "{}", row(number)).unwrap());
+        text
+    };
+    let dump = format!(
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp pp\n0 200\n0 200\n0 1\n\
+         ITEM: ATOMS id type x y vx vy radius\n"
+    );
+    for text in [
+        rows("id,x,y,vx,vy,radius\n", |n| format!("{n},{}.125,{}.375,0.25,-1.5,0.5", n % 200, n / 200)),
+        rows(&dump, |n| format!("{n} 1 {}.125 {}.375 0.25 -1.5 0.5", n % 200, n / 200)),
+        rows(&format!("{count}\nProperties=species:S:1:pos:R:3:radius:R:1\n"), |n| {
+            format!("name{n} {}.125 {}.375 0.0 0.5", n % 200, n / 200)
+        }),
+        // On one heap.
+        rows("id,x,y,vx,vy,radius\n", |n| format!("{n},1.125,2.375,0.25,-1.5,0.5")),
+        "18446744073709551615\nProperties=pos:R:2:radius:R:1\n1 1 0.5\n".repeat(1000),
+    ] {
+        let before = LIVE.load(Ordering::Relaxed);
+        PEAK.store(before, Ordering::Relaxed);
+        let disks = Reader::new().read_from(text.as_bytes()).map(|state| state.disks().len());
+        let (taken, most) = (PEAK.load(Ordering::Relaxed) - before, 10 * text.len() + 100_000);
+        assert!(taken < most, "{taken} bytes for {}: {disks:?}, {text:.60}", text.len());
     }
     Ok(())
 }

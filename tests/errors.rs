@@ -12,7 +12,7 @@ use granular_edmd::boundary::{Container, Part, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::trajectory::{self, ExtendedXyz, Recorder, State};
+use granular_edmd::trajectory::{ExtendedXyz, Reader, Recorder};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
 use report::{messages, report};
 
@@ -50,12 +50,10 @@ fn errors_that_happen_tell_each_thing_once() {
 fn errors_about_contents_name_the_file() {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("contents-{}", std::process::id()));
     std::fs::write(&file, "0 0\n4 4\n4 0\n0 3\n").unwrap();
-    let errors: [Box<dyn Error>; 6] = [
+    let errors: [Box<dyn Error>; 4] = [
         Box::new(Checkpoint::read(&file).unwrap_err()),
         Box::new(Part::polygon_from_file(&file).unwrap_err()),
-        Box::new(trajectory::read(&file, State::from_xyz).unwrap_err()),
-        Box::new(trajectory::read(&file, State::from_csv).unwrap_err()),
-        Box::new(trajectory::read(&file, State::from_lammps_data).unwrap_err()),
+        Box::new(Reader::new().read(&file).unwrap_err()),
         Box::new(Recorder::append(&file, ExtendedXyz, SampleTimes::every(1.0).unwrap()).unwrap_err()),
     ];
     std::fs::remove_file(&file).unwrap();

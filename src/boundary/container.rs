@@ -349,6 +349,15 @@ impl Boundary for Container {
         self.planes.get(wall).map(|plane| plane.place(time))
     }
 
+    fn edges(&self, time: f64) -> Domain {
+        let Region { min, max } = self.room(0.0, time);
+        self.with_sides(Domain::new(min.x, max.x, min.y, max.y))
+    }
+
+    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
+        self.planes.get(wall)?.moved(time)
+    }
+
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         // Most walls are far away, so their positions need not be computed.
         let (position, radius, time) = (probe.position(), probe.radius(), probe.time());

@@ -17,6 +17,8 @@ forward! { Boundary for [&mut T, Box<T>] {
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2>;
+    fn edges(&self, time: f64) -> Domain;
+    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)>;
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
     fn tight_fit(&self, radius: f64) -> Option<usize>;
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>>;

@@ -144,6 +144,14 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         }
     }
 
+    fn edges(&self, time: f64) -> Domain {
+        self.boundary.edges(time)
+    }
+
+    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
+        self.boundary.wall_motion(wall, time)
+    }
+
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let depth = |(index, obstacle): (usize, &Disk)| {
             let distance = self.domain().separation(obstacle.position(), probe.position()).length();

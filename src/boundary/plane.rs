@@ -174,6 +174,17 @@ impl Plane {
         self.normal * (self.place + self.motion.state(time + self.phase).displacement)
     }
 
+    /// Returns displacement and phase at a time, if the wall moves along its normal.
+    pub(super) fn moved(&self, time: f64) -> Option<(DVec2, f64)> {
+        let (low, high) = self.motion.reach();
+        let displacement = self.motion.state(time + self.phase).displacement;
+        // The phase of a piston depends on the time origin, and tells nothing.
+        let is_piston = self.motion.stroke().is_some();
+        let phase = if is_piston { 0.0 } else { self.motion.phase(time + self.phase) };
+        // Adding zeros leaves no zero with a sign.
+        (low < high).then(|| (displacement * self.normal + DVec2::ZERO, phase))
+    }
+
     /// Returns whether a disk is so near that it may overlap the wall at some phase of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {

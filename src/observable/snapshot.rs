@@ -144,6 +144,41 @@ impl<'a> Snapshot<'a> {
         Some(walls.boundary.surface(wall, point, walls.time).velocity)
     }
 
+    /// Returns the rectangle of the domain with its edges where the walls are at this time.
+    ///
+    /// The [`domain`](Self::domain) leaves room for walls that move.
+    pub fn edges(&self) -> Domain {
+        self.walls.map_or(self.domain, |walls| walls.boundary.edges(walls.time))
+    }
+
+    /// Returns the walls that move: the index of each, its displacement from its place at rest, and the phase
+    /// of its motion, which is the time since the motion began, less whole periods.
+    ///
+    /// Walls that move together, as the bricks of a part do, appear once.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    ///
+    /// let base = BiParabolic::new(0.1, 10.0)?;
+    /// let container = Container::closed(8.0, 8.0)?.with_motion(Wall::Floor, base)?;
+    /// let grain = Disk::new(DVec2::new(4.0, 6.0), 0.5)?;
+    /// let mut run = Simulation::builder(Elastic, container).disks([grain]).build()?;
+    /// run.run_until(0.75, &mut ())?;
+    /// let &[(wall, displacement, phase)] = run.snapshot().moving_walls().as_slice() else { panic!() };
+    /// assert_eq!((wall, displacement.y), (2, base.state(phase).displacement));
+    /// assert!((phase - 0.75 % base.period().unwrap()).abs() < 1e-12);
+    /// assert_eq!(run.snapshot().edges().bottom, displacement.y);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn moving_walls(&self) -> Vec<(usize, DVec2, f64)> {
+        let Some(Walls { boundary, time }) = self.walls else { return Vec::new() };
+        let moved = |wall| {
+            let (displacement, phase) = boundary.wall_motion(wall, time)?;
+            Some((wall, displacement, phase))
+        };
+        (0..self.wall_count).filter_map(moved).collect()
+    }
+
     /// Returns the area of the places in `region` at which the center of a disk of this radius is free;
     /// `None` if it is not known.
     ///

@@ -1,49 +1,77 @@
 //! Disks as a table of comma-separated values.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, Write};
 
-use super::entry::{Columns, Entry, Field};
-use super::lines::Lines;
+use super::column::Column;
+use super::lines::{Text, lossy};
+use super::table::Table;
 use super::{ReadError, State};
 use crate::disk::numbered;
 
-impl State {
-    /// Reads disks from a table of comma-separated values.
-    ///
-    /// The first line names the columns: `x`, `y` and `radius`, and any of `id`, `kind`, `vx`, `vy`, `angle`,
-    /// `angular_velocity`, `mass`, `inertia_factor`, `image_x` and `image_y`. Where there is no column, a
-    /// disk has the value that [`Disk::new`](crate::Disk::new) gives it. A table has no time and no box.
-    ///
-    /// # Errors
-    /// If the input fails, a column is missing, is unknown or appears twice, a number cannot be read or is
-    /// out of range, a value is missing, an `id` appears twice, or disks overlap. The error names the line.
-    ///
-    /// ```
-    /// use granular_edmd::trajectory::State;
-    /// let error = State::from_csv("x,y,radius,weight\n".as_bytes()).unwrap_err();
-    /// let known = "one of id, kind, x, y, vx, vy, angle, angular_velocity, radius, mass, inertia_factor, \
-    ///              image_x, image_y";
-    /// assert_eq!(error.to_string(), format!("line 1: a column must be {known}, but is \"weight\""));
-    /// ```
-    pub fn from_csv(input: impl BufRead) -> Result<Self, ReadError> {
-        let mut lines = Lines::new(input);
-        let (names, line) = lines.need("the names of the columns")?;
-        let fields = names.split(',').map(|name| field(name, line)).collect::<Result<_, _>>()?;
-        let columns = Columns::new(fields, line)?;
-        let mut entries = Vec::new();
-        while let Some((text, line)) = lines.next_filled()? {
-            entries.push(columns.entry(text.split(','), line)?);
-        }
-        let disks = Entry::checked(entries, None)?;
-        Ok(Self { disks, domain: None, time: None, gravity: None })
+/// Reads a table whose first line names the columns.
+///
+/// Commas, semicolons, tabs or spaces divide the cells, whichever of them the first line has. A line that
+/// begins with `#` is a comment, except before the names.
+pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
+    let mut lines = text.lines()?;
+    let Some((names, line)) = lines.next_filled() else {
+        return Err(ReadError::End { line: 0, what: "a frame".to_owned() });
+    };
+    let names = names.trim_start_matches('#').trim_start();
+    let divider = [',', ';', '\t'].into_iter().find(|&divider| names.contains(divider));
+    let columns: Vec<Column> = cells(names, divider).flat_map(|name| Column::of(name, 1)).collect();
+    if columns.iter().all(|column| column.slot.is_none()) {
+        return Err(unknown(line, names));
     }
+    let mut table = Table::new(columns, line)?;
+    while let Some((text, line)) = lines.next_filled() {
+        if !text.starts_with('#') {
+            table.push(cells(text, divider), line)?;
+        }
+    }
+    Ok(table)
+}
 
-    /// Writes the disks as a table that [`from_csv`](Self::from_csv) reads back to the same bits.
+/// Creates the error of a text in none of the formats.
+fn unknown(line: usize, found: &str) -> ReadError {
+    let known = "extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose first line names columns \
+                 such as x, y and radius";
+    ReadError::unexpected(line, "the file", known, lossy(found.as_bytes()))
+}
+
+/// Returns the cells of a line without their quotes.
+fn cells(text: &str, divider: Option<char>) -> impl Iterator<Item = &str> {
+    let mut rest = Some(text);
+    std::iter::from_fn(move || {
+        let text = rest?;
+        let mut is_quoted = false;
+        let ends = |letter: char| {
+            is_quoted ^= letter == '"';
+            !is_quoted && divider.map_or(letter.is_whitespace(), |divider| letter == divider)
+        };
+        let (cell, after) = match text.find(ends) {
+            Some(end) => (&text[..end], Some(&text[end..])),
+            None => (text, None),
+        };
+        rest = after.map(|after| {
+            let after = &after[after.chars().next().map_or(0, char::len_utf8)..];
+            if divider.is_none() { after.trim_start() } else { after }
+        });
+        let cell = cell.trim();
+        Some(cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).unwrap_or(cell))
+    })
+}
+
+/// Columns of the tables that are written.
+const COLUMNS: &str = "id,kind,x,y,vx,vy,angle,angular_velocity,radius,mass,inertia_factor,image_x,image_y";
+
+impl State {
+    /// Writes the disks as a table that a [`Reader`](super::Reader) reads back to the same bits.
     ///
     /// # Errors
     /// If the writer fails.
     pub fn write_csv(&self, mut out: impl Write) -> io::Result<()> {
-        writeln!(out, "{}", Field::NAMED.map(|(name, _)| name).join(","))?;
+        writeln!(out, "{COLUMNS}")?;
         for (id, disk) in numbered(&self.disks) {
             let (position, velocity, [right, up]) = (disk.position(), disk.velocity(), disk.image());
             write!(out, "{id},{},{:?},{:?},", disk.kind().number(), position.x, position.y)?;
@@ -53,14 +81,4 @@ impl State {
         }
         out.flush()
     }
-}
-
-/// Returns the field of this name.
-fn field(name: &str, line: usize) -> Result<Field, ReadError> {
-    let name = name.trim();
-    let known = Field::NAMED.iter().find(|(known, _)| *known == name).map(|(_, field)| *field);
-    known.ok_or_else(|| {
-        let names = Field::NAMED.map(|(name, _)| name).join(", ");
-        ReadError::unexpected(line, "a column", format!("one of {names}"), name)
-    })
 }

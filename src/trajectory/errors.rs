@@ -96,17 +96,22 @@ impl RecordError {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
     }
+
+    /// Creates the error of a name that a format cannot use.
+    pub(super) fn unusable(path: &Path, reason: &str) -> Self {
+        Self::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason))
+    }
 }
 
 /// An error in reading disks from a file.
 ///
-/// Lines are counted from 1.
+/// Lines are counted from 1. In a file of GSD, which has no lines, they are the disks.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 ///
 /// ```
-/// use granular_edmd::trajectory::State;
-/// let error = State::from_csv("x,y,radius\n1,1,0.5\n1.5,1,half\n".as_bytes()).unwrap_err();
+/// use granular_edmd::trajectory::Reader;
+/// let error = Reader::new().read_from("x,y,radius\n1,1,0.5\n1.5,1,half\n".as_bytes()).unwrap_err();
 /// assert_eq!(error.to_string(), "line 3: radius must be a number, but is \"half\"");
 /// ```
 #[derive(Debug, Error)]
@@ -192,15 +197,35 @@ pub enum ReadError {
         /// Vertical position of the center.
         y: f64,
     },
-    /// Two disks overlap by more than rounding.
-    #[error("line {line}: the disk overlaps that of line {other} by {}", Rounded(*.depth))]
+    /// A file of GSD is damaged, or a frame of it is not one of disks.
+    #[error("{reason}")]
+    Gsd {
+        /// The frame and the chunk, and the condition that it should have met.
+        reason: String,
+    },
+    /// Disks overlap by more than rounding, or by more than the reader's tolerance.
+    #[error("line {line}: the disk overlaps the disk of line {other} by {}, a share of {} of their distance at \
+        contact; it is the deepest of {count} such overlaps; a tolerance or shrunk radii accept them",
+        Rounded(*.depth), Rounded(*.share))]
     Overlap {
         /// Number of the line.
         line: usize,
         /// Number of the line of the other disk.
         other: usize,
-        /// Depth of the overlap.
+        /// Depth of the overlap, the deepest of all.
         depth: f64,
+        /// Depth of the overlap in units of the sum of the radii.
+        share: f64,
+        /// Number of overlaps, counted up to eight for each disk.
+        count: usize,
+    },
+    /// The file does not have the frame.
+    #[error("there is no frame of {wanted}: the file has {count}")]
+    NoFrame {
+        /// Number or step of the frame.
+        wanted: String,
+        /// Number of frames in the file.
+        count: usize,
     },
 }
 
@@ -214,6 +239,11 @@ impl ReadError {
     ) -> Self {
         let found: String = found.into().chars().take(60).collect();
         Self::Unexpected { line, what: what.into(), requirement: requirement.into(), found }
+    }
+
+    /// Creates the error of a file of GSD.
+    pub(super) fn gsd(reason: impl Into<String>) -> Self {
+        Self::Gsd { reason: reason.into() }
     }
 
     /// Creates the error for a missing field.

@@ -14,18 +14,14 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    pub(super) fn push(&mut self, time: f64, bytes: &[u8], end: u64) {
-        self.times.push(time);
-        self.digests.push(digest(bytes));
-        self.end = end;
-    }
-
     /// Adds a frame that was found in a file.
     pub(super) fn add(&mut self, time: f64, bytes: &[u8], end: u64) -> io::Result<()> {
         if self.times.last().is_some_and(|&last| last >= time) || !time.is_finite() {
             return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
         }
-        self.push(time, bytes, end);
+        self.times.push(time);
+        self.digests.push(digest(bytes));
+        self.end = end;
         Ok(())
     }
 }

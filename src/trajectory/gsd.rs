@@ -1,30 +1,29 @@
 //! GSD, the binary format of HOOMD-blue, for OVITO, freud and the Python package `gsd`.
 
+mod archive;
 mod indexed;
+mod read;
 
 pub(super) use indexed::Indexed;
+pub(super) use read::{frames, frames_of_file, is_gsd};
 
 use std::io::{self, Write};
 
-use super::extended_xyz::{shown_depth, shown_top};
-use super::{Format, Frame};
+use super::Frame;
+use super::extended_xyz::{half_turn, shown_depth, shown_top};
 use crate::Disk;
 use crate::disk::numbered;
 use crate::observable::Snapshot;
 
-/// The format of a frame, as the bytes of its chunks, one after another. It stays inside this module, since
-/// the file also needs an index, which [`Indexed`] keeps.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct HoomdSchema;
-
 /// The number of rows of a chunk.
 #[derive(Debug, Clone, Copy)]
 enum Rows {
-    One,
-    Six,
+    Fixed(u64),
     /// One for each kind up to the largest.
     Kinds,
     Disks,
+    /// One for each wall that moves.
+    Walls,
 }
 
 /// Codes of the types of numbers.
@@ -39,15 +38,14 @@ const F64: u8 = 10;
 /// Bytes of the name of a kind: its number and a zero.
 const NAME: usize = 6;
 
-/// Numbers in double precision at the end of a frame; the first is its time.
-const LOG: usize = 5;
-
 /// The chunks of each frame in their order: name, type, numbers in a row, rows.
-const CHUNKS: [(&str, u8, u32, Rows); 18] = [
-    ("configuration/step", U64, 1, Rows::One),
-    ("configuration/dimensions", U8, 1, Rows::One),
-    ("configuration/box", F32, 1, Rows::Six),
-    ("particles/N", U32, 1, Rows::One),
+///
+/// `read_log` of the package `gsd` takes a chunk of one row for a single number, so vectors are columns.
+const CHUNKS: [(&str, u8, u32, Rows); 24] = [
+    ("configuration/step", U64, 1, Rows::Fixed(1)),
+    ("configuration/dimensions", U8, 1, Rows::Fixed(1)),
+    ("configuration/box", F32, 1, Rows::Fixed(6)),
+    ("particles/N", U32, 1, Rows::Fixed(1)),
     ("particles/types", I8, NAME as u32, Rows::Kinds),
     ("particles/typeid", U32, 1, Rows::Disks),
     ("particles/mass", F32, 1, Rows::Disks),
@@ -59,72 +57,91 @@ const CHUNKS: [(&str, u8, u32, Rows); 18] = [
     ("particles/angmom", F32, 4, Rows::Disks),
     ("particles/image", I32, 3, Rows::Disks),
     ("log/particles/id", U64, 1, Rows::Disks),
-    ("log/time", F64, 1, Rows::One),
-    ("log/gravity", F64, 2, Rows::One),
-    ("log/center", F64, 2, Rows::One),
+    ("log/periodic", U8, 1, Rows::Fixed(2)),
+    ("log/time", F64, 1, Rows::Fixed(1)),
+    ("log/gravity", F64, 1, Rows::Fixed(2)),
+    ("log/center", F64, 1, Rows::Fixed(2)),
+    ("log/domain", F64, 1, Rows::Fixed(4)),
+    ("log/walls/index", U32, 1, Rows::Walls),
+    ("log/walls/x", F64, 1, Rows::Walls),
+    ("log/walls/y", F64, 1, Rows::Walls),
+    ("log/walls/phase", F64, 1, Rows::Walls),
 ];
 
-/// The shape of a frame: its number, its disks, and the number of kinds up to the largest.
+/// The shape of a frame: its number, its disks, the number of kinds up to the largest, and its moving walls.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
     number: usize,
     disks: usize,
     kinds: usize,
+    walls: usize,
 }
 
 impl Shape {
-    fn of(number: usize, disks: &[Disk]) -> Self {
+    fn of(frame: &Frame<'_>) -> Self {
+        let (disks, walls) = (frame.snapshot().disks(), frame.snapshot().moving_walls().len());
         let kinds = disks.iter().map(|disk| usize::from(disk.kind().number()) + 1).max().unwrap_or(1);
-        Self { number, disks: disks.len(), kinds }
+        Self { number: frame.number(), disks: disks.len(), kinds, walls }
     }
 
     const fn rows(self, rows: Rows) -> u64 {
         match rows {
-            Rows::One => 1,
-            Rows::Six => 6,
+            Rows::Fixed(rows) => rows,
             Rows::Kinds => self.kinds as u64,
             Rows::Disks => self.disks as u64,
+            Rows::Walls => self.walls as u64,
         }
     }
 }
 
-impl Format for HoomdSchema {
-    fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
-        let (snapshot, disks) = (frame.snapshot(), frame.snapshot().disks());
-        let Shape { kinds, .. } = Shape::of(frame.number(), disks);
-        let Ok(count) = u32::try_from(disks.len()) else {
-            return Err(io::Error::other("a file of GSD has room for 2^32 disks"));
-        };
-        let (center, [width, height]) = seen_box(snapshot);
-        out.write_all(&(frame.number() as u64).to_le_bytes())?;
-        out.write_all(&[2])?;
-        // Of a box in the plane, readers ignore the depth. The last three numbers are its tilts.
-        singles(out, [width, height, shown_depth(disks), 0.0, 0.0, 0.0])?;
-        out.write_all(&count.to_le_bytes())?;
-        for kind in 0..kinds {
-            let mut name = [0; NAME];
-            write!(name.as_mut_slice(), "{kind}")?;
-            out.write_all(&name)?;
-        }
-        disks.iter().try_for_each(|disk| out.write_all(&u32::from(disk.kind().number()).to_le_bytes()))?;
-        let mut column = |numbers: &dyn Fn(&Disk) -> [f64; 4], columns: usize| {
-            disks.iter().try_for_each(|disk| singles(out, numbers(disk).into_iter().take(columns)))
-        };
-        column(&|disk| [disk.mass(); 4], 1)?;
-        column(&|disk| [2.0 * disk.radius(); 4], 1)?;
-        column(&|disk| [0.0, 0.0, moment_of_inertia(disk), 0.0], 3)?;
-        column(&|disk| [disk.position().x - center[0], disk.position().y - center[1], 0.0, 0.0], 3)?;
-        column(&half_turn, 4)?;
-        column(&|disk| [disk.velocity().x, disk.velocity().y, 0.0, 0.0], 3)?;
-        column(&angular_momentum, 4)?;
-        for [right, up] in disks.iter().map(Disk::image) {
-            [right, up, 0].iter().try_for_each(|image| out.write_all(&image.to_le_bytes()))?;
-        }
-        numbered(disks).try_for_each(|(id, _)| out.write_all(&id.to_le_bytes()))?;
-        let gravity = snapshot.gravity().acceleration();
-        let log: [f64; LOG] = [snapshot.time(), gravity.x, gravity.y, center[0], center[1]];
-        log.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
+/// Writes the chunks of a frame, one after another. The file also needs an index, which [`Indexed`] keeps.
+fn write_chunks(frame: &Frame<'_>, out: &mut Vec<u8>) -> io::Result<()> {
+    let (snapshot, disks, shape) = (frame.snapshot(), frame.snapshot().disks(), Shape::of(frame));
+    let Ok(count) = u32::try_from(disks.len()) else {
+        return Err(io::Error::other("a file of GSD has room for 2^32 disks"));
+    };
+    let (center, [width, height]) = seen_box(snapshot);
+    out.write_all(&(frame.number() as u64).to_le_bytes())?;
+    out.write_all(&[2])?;
+    // Of a box in the plane, readers ignore the depth. The last three numbers are its tilts.
+    singles(out, [width, height, shown_depth(disks), 0.0, 0.0, 0.0])?;
+    out.write_all(&count.to_le_bytes())?;
+    for kind in 0..shape.kinds {
+        let mut name = [0; NAME];
+        write!(name.as_mut_slice(), "{kind}")?;
+        out.write_all(&name)?;
     }
+    disks.iter().try_for_each(|disk| out.write_all(&u32::from(disk.kind().number()).to_le_bytes()))?;
+    let mut column = |numbers: &dyn Fn(&Disk) -> [f64; 4], columns: usize| {
+        disks.iter().try_for_each(|disk| singles(out, numbers(disk).into_iter().take(columns)))
+    };
+    column(&|disk| [disk.mass(); 4], 1)?;
+    column(&|disk| [2.0 * disk.radius(); 4], 1)?;
+    column(&|disk| [0.0, 0.0, moment_of_inertia(disk), 0.0], 3)?;
+    column(&|disk| [disk.position().x - center[0], disk.position().y - center[1], 0.0, 0.0], 3)?;
+    column(&|disk| [half_turn(disk)[0], 0.0, 0.0, half_turn(disk)[1]], 4)?;
+    column(&|disk| [disk.velocity().x, disk.velocity().y, 0.0, 0.0], 3)?;
+    column(&angular_momentum, 4)?;
+    for [right, up] in disks.iter().map(Disk::image) {
+        [right, up, 0].iter().try_for_each(|image| out.write_all(&image.to_le_bytes()))?;
+    }
+    numbered(disks).try_for_each(|(id, _)| out.write_all(&id.to_le_bytes()))?;
+    write_log(snapshot, center, out);
+    Ok(())
+}
+
+/// Writes the numbers of the whole frame, in double precision.
+fn write_log(snapshot: &Snapshot<'_>, [x, y]: [f64; 2], out: &mut Vec<u8>) {
+    let (domain, gravity) = (snapshot.domain(), snapshot.gravity().acceleration());
+    out.extend([domain.periodic_sides, domain.periodic_ends].map(u8::from));
+    let numbers = [snapshot.time(), gravity.x, gravity.y, x, y];
+    let walls = snapshot.moving_walls();
+    let edges = [domain.left, domain.right, domain.bottom, domain.top];
+    out.extend(numbers.iter().chain(&edges).flat_map(|number| number.to_le_bytes()));
+    out.extend(walls.iter().flat_map(|wall| (wall.0 as u32).to_le_bytes()));
+    out.extend(walls.iter().flat_map(|wall| wall.1.x.to_le_bytes()));
+    out.extend(walls.iter().flat_map(|wall| wall.1.y.to_le_bytes()));
+    out.extend(walls.iter().flat_map(|wall| wall.2.to_le_bytes()));
 }
 
 /// Returns the center and the size of the box that a file shows. In the file, positions count from the
@@ -147,16 +164,10 @@ fn moment_of_inertia(disk: &Disk) -> f64 {
     disk.inertia_factor() * disk.mass() * disk.radius() * disk.radius()
 }
 
-/// Returns the orientation as a quaternion, that is by half of the angle.
-fn half_turn(disk: &Disk) -> [f64; 4] {
-    let half = 0.5 * disk.angle();
-    [libm::cos(half), 0.0, 0.0, libm::sin(half)]
-}
-
 /// Returns the angular momentum as HOOMD-blue has it: twice the orientation times the momentum in the frame
 /// of the body, as quaternions.
 fn angular_momentum(disk: &Disk) -> [f64; 4] {
-    let ([real, _, _, up], momentum) = (half_turn(disk), moment_of_inertia(disk) * disk.angular_velocity());
+    let ([real, up], momentum) = (half_turn(disk), moment_of_inertia(disk) * disk.angular_velocity());
     [-2.0 * up * momentum, 0.0, 0.0, 2.0 * real * momentum]
 }
 

@@ -3,13 +3,14 @@
 mod header;
 mod read;
 
-use std::f64::consts::PI;
+pub(super) use read::{is_data, table};
+
 use std::io::{self, Write};
 
 use super::State;
+use super::disks::sphere_mass;
 use super::extended_xyz::{shown_depth, shown_top};
 use crate::Disk;
-use crate::boundary::Domain;
 use crate::disk::numbered;
 
 /// Words in the title that tell the files of this crate from others.
@@ -24,14 +25,14 @@ impl State {
     /// gets one around the disks. The format has no place for angles, inertia factors, periodic directions
     /// and walls.
     ///
-    /// [`from_lammps_data`](Self::from_lammps_data) reads it back to the same bits, except that a mass may
+    /// A [`Reader`](super::Reader) reads it back to the same bits, except that a mass may
     /// differ by one rounding.
     ///
     /// # Errors
     /// If the writer fails.
     pub fn write_lammps_data(&self, mut out: impl Write) -> io::Result<()> {
         let disks = &self.disks;
-        let domain = self.domain.unwrap_or_else(|| around(disks));
+        let domain = self.snapshot().domain();
         let (top, half) = (shown_top(&domain, disks), 0.5 * shown_depth(disks));
         let types = disks.iter().map(|disk| u32::from(disk.kind().number()) + 1).max().unwrap_or(1);
         write!(out, "LAMMPS data file, atom_style sphere, {WRITER}")?;
@@ -61,29 +62,10 @@ fn write_velocity(out: &mut impl Write, id: u64, disk: &Disk) -> io::Result<()> 
     writeln!(out, "{id} {:?} {:?} 0.0 0.0 0.0 {turning:?}", velocity.x, velocity.y)
 }
 
-/// Returns the mass of a sphere, with the operations in the order of LAMMPS.
-fn mass(density: f64, radius: f64) -> f64 {
-    4.0 * PI / 3.0 * radius * radius * radius * density
-}
-
 /// Returns the density of a sphere of this mass, or a neighboring number if only that gives back the same
 /// mass.
 fn density(mass: f64, radius: f64) -> f64 {
-    let density = mass / self::mass(1.0, radius);
+    let density = mass / sphere_mass(1.0, radius);
     let near = [density, density.next_up(), density.next_down()];
-    near.into_iter().find(|&density| self::mass(density, radius) == mass).unwrap_or(density)
-}
-
-/// Returns the rectangle around these disks.
-fn around(disks: &[Disk]) -> Domain {
-    let end = |value: fn(&Disk) -> f64| disks.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
-    if disks.is_empty() {
-        return Domain::new(0.0, 1.0, 0.0, 1.0);
-    }
-    Domain::new(
-        -end(|disk| disk.radius() - disk.position().x),
-        end(|disk| disk.radius() + disk.position().x),
-        -end(|disk| disk.radius() - disk.position().y),
-        end(|disk| disk.radius() + disk.position().y),
-    )
+    near.into_iter().find(|&density| sphere_mass(density, radius) == mass).unwrap_or(density)
 }

@@ -1,5 +1,9 @@
 //! Dump files in the format of LAMMPS.
 
+mod read;
+
+pub(super) use read::frames;
+
 use std::io::{self, BufRead, Write};
 
 use super::extended_xyz::{shown_depth, shown_top};
@@ -8,7 +12,7 @@ use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::numbered;
 
-/// The dump format of LAMMPS, as `dump custom` writes it with `units yes time yes`.
+/// The dump format of LAMMPS, as `dump custom` writes it.
 ///
 /// | column | |
 /// |---|---|
@@ -18,65 +22,130 @@ use crate::disk::numbered;
 /// | `vx vy` | velocity of the center |
 /// | `angle`, `omegaz` | angle and angular velocity in radians, counterclockwise |
 /// | `radius`, `mass` | of the disk |
+/// | `v_time` | time of the frame |
 ///
-/// The time step is the number of the frame, and the units are called `lj`. Periodic directions are `pp`,
-/// walls are `ff`. An open box is `fs`, and ends above the highest disk.
+/// The time step is the number of the frame. Periodic directions are `pp`, walls are `ff`. An open box is
+/// `fs`, and ends above the highest disk. The format has no place for inertia factors, gravity and walls that
+/// move.
+///
+/// The time is a column since some programs, such as MDAnalysis, know no `ITEM: TIME`. Only a frame without
+/// disks has that item; [`TimedLammpsDump`] has it in all.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::Snapshot;
 /// use granular_edmd::trajectory::{Format, Frame, LammpsDump};
+/// # use granular_edmd::{Disk, glam::DVec2};
 ///
-/// let snapshot = Snapshot::new(2.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0).with_periodic_sides(), 1.0);
+/// let disks = [Disk::new(DVec2::new(1.0, 2.0), 0.5)?];
+/// let snapshot = Snapshot::new(2.5, &disks, Domain::new(0.0, 4.0, 0.0, 6.0).with_periodic_sides(), 1.0);
 /// let mut text = Vec::new();
 /// LammpsDump.write_frame(&Frame::new(0, &snapshot), &mut text)?;
 /// let text = String::from_utf8(text)?;
-/// assert!(text.starts_with("ITEM: UNITS\nlj\nITEM: TIME\n2.5\nITEM: TIMESTEP\n0\n"));
+/// assert!(text.starts_with("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\n"));
 /// assert!(text.contains("ITEM: BOX BOUNDS pp ff pp\n0.0 4.0\n0.0 6.0\n"));
+/// assert!(text.ends_with(" 0.5 1.0 2.5\n"), "radius, mass and time");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LammpsDump;
 
-/// The line above the disks.
+/// The format of [`LammpsDump`] with `ITEM: UNITS` and `ITEM: TIME` instead of the column `v_time`, as
+/// `dump custom` writes it with `units yes time yes`.
+///
+/// OVITO shows the time. The units are called `lj`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct TimedLammpsDump;
+
+/// The line above the disks, which the time follows as a column.
 const COLUMNS: &str = "ITEM: ATOMS id type x y z xu yu ix iy vx vy angle omegaz radius mass";
+const TIME: &str = " v_time";
 
 impl Format for LammpsDump {
     fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
-        let snapshot = frame.snapshot();
-        let (domain, disks) = (snapshot.domain(), snapshot.disks());
-        let (top, half) = (shown_top(&domain, disks), 0.5 * shown_depth(disks));
-        let sides = if domain.periodic_sides { "pp" } else { "ff" };
-        let open = if domain.top.is_finite() { "ff" } else { "fs" };
-        let ends = if domain.periodic_ends { "pp" } else { open };
-        // Units appear once in a file: if they came again, OVITO would find only the first frame.
-        if frame.number() == 0 {
-            writeln!(out, "ITEM: UNITS\nlj")?;
-        }
-        writeln!(out, "ITEM: TIME\n{:?}", snapshot.time())?;
-        writeln!(out, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}", frame.number(), disks.len())?;
-        writeln!(out, "ITEM: BOX BOUNDS {sides} {ends} pp\n{:?} {:?}", domain.left, domain.right)?;
-        writeln!(out, "{:?} {top:?}\n{:?} {half:?}\n{COLUMNS}", domain.bottom, -half)?;
-        numbered(disks).try_for_each(|(id, disk)| write_disk(out, id, disk, &domain))
+        write_frame(frame, false, out)
     }
 
     fn skip_frame(&self, input: &mut dyn BufRead) -> io::Result<Option<f64>> {
-        let Some(name) = whole_line(input)? else { return Ok(None) };
-        let time = if name == "ITEM: UNITS" {
-            let Some(_) = whole_line(input)? else { return Ok(None) };
-            item(input, "ITEM: TIME")?
-        } else {
-            after("ITEM: TIME", &name, input)?
-        };
-        let Some(time) = time else { return Ok(None) };
-        let Some(_) = item(input, "ITEM: TIMESTEP")? else { return Ok(None) };
-        let Some(count) = item(input, "ITEM: NUMBER OF ATOMS")? else { return Ok(None) };
-        let time = time.parse().map_err(|_| no_frame("a time", &time))?;
-        let count: usize = count.parse().map_err(|_| no_frame("a number of atoms", &count))?;
-        let Some(_) = item(input, "ITEM: BOX BOUNDS")? else { return Ok(None) };
-        // Two more lines of the box, and the names of the columns.
-        Ok(skip_lines(input, count.saturating_add(3))?.then_some(time))
+        skip_frame(input, false)
     }
+}
+
+impl Format for TimedLammpsDump {
+    fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
+        write_frame(frame, true, out)
+    }
+
+    fn skip_frame(&self, input: &mut dyn BufRead) -> io::Result<Option<f64>> {
+        skip_frame(input, true)
+    }
+}
+
+fn write_frame(frame: &Frame<'_>, is_timed: bool, out: &mut dyn Write) -> io::Result<()> {
+    let snapshot = frame.snapshot();
+    let (time, domain, disks) = (snapshot.time(), snapshot.domain(), snapshot.disks());
+    let (top, half) = (shown_top(&domain, disks), 0.5 * shown_depth(disks));
+    let sides = if domain.periodic_sides { "pp" } else { "ff" };
+    let open = if domain.top.is_finite() { "ff" } else { "fs" };
+    let ends = if domain.periodic_ends { "pp" } else { open };
+    // Units appear once in a file: if they came again, OVITO would find only the first frame.
+    if is_timed && frame.number() == 0 {
+        writeln!(out, "ITEM: UNITS\nlj")?;
+    }
+    if is_timed || disks.is_empty() {
+        writeln!(out, "ITEM: TIME\n{time:?}")?;
+    }
+    writeln!(out, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}", frame.number(), disks.len())?;
+    writeln!(out, "ITEM: BOX BOUNDS {sides} {ends} pp\n{:?} {:?}", domain.left, domain.right)?;
+    let column = if is_timed { String::new() } else { format!(" {time:?}") };
+    let name = if is_timed { "" } else { TIME };
+    writeln!(out, "{:?} {top:?}\n{:?} {half:?}\n{COLUMNS}{name}", domain.bottom, -half)?;
+    numbered(disks).try_for_each(|(id, disk)| {
+        write_disk(out, id, disk, &domain)?;
+        writeln!(out, "{column}")
+    })
+}
+
+fn skip_frame(input: &mut dyn BufRead, is_timed: bool) -> io::Result<Option<f64>> {
+    let Some(mut name) = whole_line(input)? else { return Ok(None) };
+    if name == "ITEM: UNITS" {
+        if !is_timed {
+            return Err(no_frame(
+                "a dump without units, as `LammpsDump` writes it",
+                "one of `TimedLammpsDump`",
+            ));
+        }
+        let (Some(_), Some(next)) = (whole_line(input)?, whole_line(input)?) else { return Ok(None) };
+        name = next;
+    }
+    let mut time = None;
+    if is_timed || name == "ITEM: TIME" {
+        let (Some(text), Some(next)) = (after("ITEM: TIME", &name, input)?, whole_line(input)?) else {
+            return Ok(None);
+        };
+        (time, name) = (Some(text), next);
+    }
+    let Some(_) = after("ITEM: TIMESTEP", &name, input)? else { return Ok(None) };
+    let Some(count) = item(input, "ITEM: NUMBER OF ATOMS")? else { return Ok(None) };
+    let count: usize = count.parse().map_err(|_| no_frame("a number of atoms", &count))?;
+    let Some(_) = item(input, "ITEM: BOX BOUNDS")? else { return Ok(None) };
+    if !skip_lines(input, 2)? {
+        return Ok(None);
+    }
+    let Some(columns) = whole_line(input)? else { return Ok(None) };
+    if columns.strip_prefix(COLUMNS) != Some(if is_timed { "" } else { TIME }) {
+        return Err(no_frame("the columns of this version", &columns));
+    }
+    let rest = if time.is_none() && count > 0 {
+        let Some(row) = whole_line(input)? else { return Ok(None) };
+        time = row.split(' ').next_back().map(str::to_owned);
+        count - 1
+    } else {
+        count
+    };
+    let time = time.unwrap_or_default();
+    let time = time.parse().map_err(|_| no_frame("a time", &time))?;
+    Ok(skip_lines(input, rest)?.then_some(time))
 }
 
 /// Skips a line that must begin with this name, and returns the line after it.
@@ -96,5 +165,5 @@ fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io:
     write!(out, "{id} {} {:?} {:?} 0.0 ", u32::from(disk.kind().number()) + 1, position.x, position.y)?;
     write!(out, "{:?} {:?} {right} {up} {:?} {:?} ", unwrapped.x, unwrapped.y, velocity.x, velocity.y)?;
     write!(out, "{:?} {:?} ", disk.angle(), disk.angular_velocity())?;
-    writeln!(out, "{:?} {:?}", disk.radius(), disk.mass())
+    write!(out, "{:?} {:?}", disk.radius(), disk.mass())
 }

@@ -1,4 +1,4 @@
-//! Lines of a text with their numbers.
+//! Lines of a text with their numbers, and the numbers in them.
 
 use std::io::{BufRead, Read};
 
@@ -9,79 +9,167 @@ use crate::boundary::Domain;
 /// to one that fills the memory.
 pub(super) const LONGEST: u64 = 1 << 20;
 
-/// With this letter, some programs begin a text.
+/// Some programs begin a text with this character.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// The lines of a text, counted from 1.
+/// A text that is read line by line. Lines are counted from 1.
 #[derive(Debug)]
-pub(super) struct Lines<R> {
+pub(super) struct Input<R> {
     input: R,
-    text: String,
     line: usize,
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> Input<R> {
     pub(super) const fn new(input: R) -> Self {
-        Self { input, text: String::new(), line: 0 }
+        Self { input, line: 0 }
     }
 
-    /// Returns the number of the line that was read last.
-    pub(super) const fn line(&self) -> usize {
-        self.line
+    /// Returns an empty text that begins with the next line.
+    pub(super) const fn text(&self) -> Text {
+        Text { first: self.line + 1, bytes: Vec::new() }
     }
 
-    /// Returns the next line without its line break, and its number, if there is one.
-    ///
-    /// A text without a line break at its end may be torn inside its last number, which then reads as another
-    /// number. A file that tools write ends with a line break, so one without is an error.
-    pub(super) fn next(&mut self) -> Result<Option<(&str, usize)>, ReadError> {
-        self.text.clear();
-        let line = self.line + 1;
-        let mut input = self.input.by_ref().take(LONGEST);
-        let length = input.read_line(&mut self.text).map_err(|source| ReadError::Io { line, source })?;
-        if length == 0 {
-            return Ok(None);
-        }
-        self.line = line;
+    /// Adds the next line to a text, and returns false at the end of the input.
+    pub(super) fn copy(&mut self, text: &mut Text) -> Result<bool, ReadError> {
+        let (line, start) = (self.line + 1, text.bytes.len());
+        let read = self.input.by_ref().take(LONGEST).read_until(b'\n', &mut text.bytes);
+        let length = read.map_err(|source| ReadError::Io { line, source })?;
         if length as u64 == LONGEST {
             let most = format!("of fewer than {LONGEST} bytes");
-            return Err(ReadError::unexpected(line, "the line", most, &self.text));
+            return Err(ReadError::unexpected(line, "the line", most, lossy(&text.bytes[start..])));
         }
-        if !self.text.ends_with('\n') && !self.text.trim().is_empty() {
-            return Err(ReadError::End { line, what: "a line break".to_owned() });
+        self.line += usize::from(length > 0);
+        Ok(length > 0)
+    }
+
+    /// Adds this number of lines of disks to a text.
+    pub(super) fn copy_disks(&mut self, count: usize) -> Result<Text, ReadError> {
+        let mut text = self.text();
+        for number in 0..count {
+            if !self.copy(&mut text)? {
+                let what = format!("disk {} of {count}", number + 1);
+                return Err(ReadError::End { line: self.line, what });
+            }
         }
-        if line == 1 && self.text.starts_with(BYTE_ORDER_MARK) {
-            self.text.remove(0);
-        }
-        Ok(Some((self.text.trim_end_matches(['\n', '\r']), line)))
+        Ok(text)
+    }
+
+    /// Returns the next line without white space around it, and its number, if there is one.
+    pub(super) fn next(&mut self) -> Result<Option<(String, usize)>, ReadError> {
+        let mut text = self.text();
+        let is_there = self.copy(&mut text)?;
+        Ok(text.lines()?.next().filter(|_| is_there).map(|(text, line)| (text.trim().to_owned(), line)))
     }
 
     /// Returns the next line that is not empty.
-    pub(super) fn next_filled(&mut self) -> Result<Option<(&str, usize)>, ReadError> {
-        while self.next()?.is_some() {
-            if !self.text.trim().is_empty() {
-                return Ok(Some((self.text.trim(), self.line)));
+    pub(super) fn next_filled(&mut self) -> Result<Option<(String, usize)>, ReadError> {
+        while let Some((text, line)) = self.next()? {
+            if !text.is_empty() {
+                return Ok(Some((text, line)));
             }
         }
         Ok(None)
     }
 
     /// Returns the next line, which must be there.
-    pub(super) fn need(&mut self, what: &str) -> Result<(&str, usize), ReadError> {
+    pub(super) fn need(&mut self, what: &str) -> Result<(String, usize), ReadError> {
         let end = ReadError::End { line: self.line, what: what.to_owned() };
         self.next()?.ok_or(end)
     }
+
+    /// Returns all lines that are left.
+    pub(super) fn rest(mut self) -> Result<Text, ReadError> {
+        let mut text = self.text();
+        while self.copy(&mut text)? {}
+        Ok(text)
+    }
 }
 
-/// Reads a number.
+/// Lines of a file in memory: one frame, or the whole file.
+#[derive(Debug)]
+pub(super) struct Text {
+    first: usize,
+    bytes: Vec<u8>,
+}
+
+impl Text {
+    /// Returns whether the last line has no line break, so that its last number may be torn.
+    pub(super) fn is_torn(&self) -> bool {
+        self.bytes.last().is_some_and(|&last| last != b'\n')
+    }
+
+    /// Returns the lines, if they are text.
+    pub(super) fn lines(&self) -> Result<Lines<'_>, ReadError> {
+        let text = str::from_utf8(&self.bytes).map_err(|error| {
+            let before = &self.bytes[..error.valid_up_to()];
+            let lines = || before.rsplit(|&byte| byte == b'\n');
+            let start = before.len() - lines().next().map_or(0, <[u8]>::len);
+            let line = self.first + lines().count() - 1;
+            ReadError::unexpected(line, "the text", "UTF-8", lossy(&self.bytes[start..]))
+        })?;
+        let text = if self.first == 1 { text.trim_start_matches(BYTE_ORDER_MARK) } else { text };
+        Ok(Lines { rest: text, line: self.first - 1 })
+    }
+}
+
+/// Returns the first line of some bytes as text, whatever they are.
+pub(super) fn lossy(bytes: &[u8]) -> String {
+    let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    String::from_utf8_lossy(&line[..line.len().min(240)]).trim().to_owned()
+}
+
+/// The lines of a [`Text`], one after another.
+#[derive(Debug)]
+pub(super) struct Lines<'a> {
+    rest: &'a str,
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// Returns the number of the line that was read last.
+    pub(super) const fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Returns the next line that is not empty, without white space around it.
+    pub(super) fn next_filled(&mut self) -> Option<(&'a str, usize)> {
+        self.by_ref().map(|(text, line)| (text.trim(), line)).find(|(text, _)| !text.is_empty())
+    }
+
+    /// Returns the next line, which must be there.
+    pub(super) fn need(&mut self, what: &str) -> Result<(&'a str, usize), ReadError> {
+        let end = ReadError::End { line: self.line, what: what.to_owned() };
+        self.next().ok_or(end)
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (&'a str, usize);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
+        self.rest = rest;
+        self.line += 1;
+        Some((line.trim_end_matches('\r'), self.line))
+    }
+}
+
+/// Reads a number. As in Fortran, its exponent may begin with a D.
 pub(super) fn number(what: &str, text: &str, line: usize) -> Result<f64, ReadError> {
-    text.trim().parse().map_err(|_| ReadError::unexpected(line, what, "a number", text))
+    let text = text.trim();
+    let number = text.parse().or_else(|_| text.replace(['d', 'D'], "e").parse());
+    number.map_err(|_| ReadError::unexpected(line, what, "a number", text))
 }
 
-/// Reads a whole number.
+/// Reads a whole number, which may end in `.0`.
 pub(super) fn whole<T: std::str::FromStr>(what: &str, text: &str, line: usize) -> Result<T, ReadError> {
     let requirement = format!("a whole number that fits into {}", std::any::type_name::<T>());
-    text.trim().parse().map_err(|_| ReadError::unexpected(line, what, requirement, text))
+    let text = text.trim();
+    let digits = text.strip_suffix(".0").unwrap_or(text);
+    digits.parse().map_err(|_| ReadError::unexpected(line, what, requirement, text))
 }
 
 /// Reads a number that must be finite.
@@ -100,4 +188,10 @@ pub(super) fn checked_box(domain: Domain, line: usize) -> Result<Domain, ReadErr
     }
     let found = format!("{left} to {right} and {bottom} to {top}");
     Err(ReadError::unexpected(line, "the box", "from smaller to larger numbers", found))
+}
+
+/// Returns whether a box is a rectangle, but for rounding.
+pub(super) fn is_upright(sides: [f64; 2], tilts: impl IntoIterator<Item = f64>) -> bool {
+    let most = 1e-9 * sides[0].abs().max(sides[1].abs());
+    tilts.into_iter().all(|tilt: f64| tilt.abs() <= most)
 }

@@ -7,14 +7,24 @@ use std::path::Path;
 use super::RecordError;
 use crate::file::{Growing, Locked};
 
-/// Creates a new file, locked for one recorder.
-pub(super) fn create(path: &Path) -> Result<Growing<Locked>, RecordError> {
-    let made = File::options().read(true).write(true).create_new(true).open(path);
-    let file = made.map_err(|error| match error.kind() {
+/// Creates a new file, locked for one recorder, or takes one that is there and empty if it may be.
+pub(super) fn create(path: &Path, may_exist: bool) -> Result<Growing<Locked>, RecordError> {
+    let mut options = File::options();
+    options.read(true).write(true).create(may_exist).create_new(!may_exist);
+    let file = options.open(path).map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.to_owned() },
         _ => RecordError::io("create", path)(error),
     })?;
-    Ok(Growing::new(path, locked(file, path)?, 0, Vec::new()))
+    let file = locked(file, path)?;
+    if file.file().metadata().is_ok_and(|there| there.len() > 0) {
+        return Err(RecordError::Exists { path: path.to_owned() });
+    }
+    Ok(Growing::new(path, file, 0, Vec::new()))
+}
+
+/// Returns whether a recorder compresses a file, by its name.
+pub(super) fn is_gzip(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "gz")
 }
 
 /// Waits until the system has stored everything.

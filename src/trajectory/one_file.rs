@@ -1,24 +1,22 @@
 //! Frames one after another in one file, plain or compressed.
 
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::frames::{Frames, digest};
 #[cfg(feature = "gzip")]
 use super::gzip::{self, Member};
-use super::media;
-use super::open::is_gzip;
-use super::store::Store;
-use super::{Format, RecordError};
+use super::media::{self, is_gzip};
+use super::sink::{Layout, Sink};
+use super::{Format, Frame, RecordError};
 use crate::file::{Growing, Locked};
-use crate::observable::Snapshot;
 
 /// Frames in one file.
-#[derive(Debug)]
 pub(super) struct OneFile {
-    file: Growing<Locked>,
+    format: Box<dyn Format + Send + Sync>,
     packing: Packing,
-    frames: Frames,
+    /// Digests of the bytes of the frames.
+    digests: Vec<u64>,
 }
 
 /// The way in which frames become bytes of the file.
@@ -30,64 +28,44 @@ enum Packing {
 }
 
 impl OneFile {
-    /// Begins a new file.
-    pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
+    /// Begins a file.
+    pub(super) fn create(
+        path: &Path,
+        format: Box<dyn Format + Send + Sync>,
+        may_exist: bool,
+    ) -> Result<Sink, RecordError> {
         let packing = Packing::of(path)?;
-        let file = media::create(path)?;
-        Ok(Self { file, packing, frames: Frames::default() })
-    }
-
-    /// Begins in a file that is there and empty.
-    pub(super) fn begin_in(path: &Path) -> Result<Self, RecordError> {
-        let packing = Packing::of(path)?;
-        let file = Growing::new(path, media::reopen(path)?, 0, Vec::new());
-        Ok(Self { file, packing, frames: Frames::default() })
+        Ok(Sink::new(media::create(path, may_exist)?, Self { format, packing, digests: Vec::new() }))
     }
 
     /// Goes on after the last whole frame of a file.
-    pub(super) fn reopen(path: &Path, format: &dyn Format) -> Result<Self, RecordError> {
+    pub(super) fn reopen(path: &Path, format: Box<dyn Format + Send + Sync>) -> Result<Sink, RecordError> {
         let mut packing = Packing::of(path)?;
         let file = media::reopen(path)?;
-        let frames = packing.frames(&mut BufReader::new(file.file()), format);
-        let frames = frames.map_err(RecordError::io("go on in", path))?;
-        if frames.times.is_empty() {
-            return Err(RecordError::NoFrame { path: path.to_owned() });
+        let frames = packing.frames(&mut BufReader::new(file.file()), &*format);
+        let Frames { times, digests, end } = frames.map_err(RecordError::io("go on in", path))?;
+        let mut file = Growing::new(path, file, end, packing.ending());
+        if !times.is_empty() {
+            packing.mend(&mut file).map_err(RecordError::io("write to", path))?;
         }
-        let file = Growing::new(path, file, frames.end, packing.ending());
-        Ok(Self { file, packing, frames })
-    }
-
-    fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
-        match &mut self.packing {
-            Packing::Plain => self.file.push(bytes, &[]),
-            #[cfg(feature = "gzip")]
-            Packing::Gzip(member) => {
-                let (piece, longer) = member.packed(bytes)?;
-                self.file.push(&piece, &longer.ending())?;
-                *member = longer;
-                Ok(())
-            }
-        }
+        Sink::new(file, Self { format, packing, digests }).with_frames(times)
     }
 }
 
-impl Store for OneFile {
-    fn times(&self) -> &[f64] {
-        &self.frames.times
+impl Layout for OneFile {
+    fn make(&self, frame: &Frame<'_>, bytes: &mut Vec<u8>) -> io::Result<()> {
+        self.format.write_frame(frame, bytes)
     }
 
-    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
-        self.push(bytes).map_err(RecordError::io("write to", &self.file.path))?;
-        self.frames.push(snapshot.time(), bytes, self.file.length);
+    fn push(&mut self, file: &mut Growing<Locked>, _: &Frame<'_>, bytes: &[u8]) -> Result<(), RecordError> {
+        let pushed = self.packing.push(file, bytes);
+        pushed.map_err(RecordError::io("write to", &file.path))?;
+        self.digests.push(digest(bytes));
         Ok(())
     }
 
-    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
-        Ok(self.frames.digests.get(number) == Some(&digest(bytes)))
-    }
-
-    fn file(&self) -> &Growing<Locked> {
-        &self.file
+    fn has(&self, _: &Growing<Locked>, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
+        Ok(self.digests.get(number) == Some(&digest(bytes)))
     }
 }
 
@@ -114,6 +92,28 @@ impl Packing {
             #[cfg(feature = "gzip")]
             Self::Gzip(member) => member.ending(),
         }
+    }
+
+    fn push(&mut self, file: &mut Growing<Locked>, bytes: &[u8]) -> io::Result<()> {
+        match self {
+            Self::Plain => file.push(bytes, &[]),
+            #[cfg(feature = "gzip")]
+            Self::Gzip(member) => {
+                let (piece, longer) = member.packed(bytes)?;
+                file.push(&piece, &longer.ending())?;
+                *member = longer;
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes the ending again if it was cut off: without it, readers find the file damaged, and a run that
+    /// ends before its next frame would leave it so.
+    fn mend(&self, file: &mut Growing<Locked>) -> io::Result<()> {
+        let (ending, mut there, mut medium) = (self.ending(), Vec::new(), file.medium.file());
+        medium.seek(SeekFrom::Start(file.length))?;
+        medium.take(ending.len() as u64).read_to_end(&mut there)?;
+        if there == ending { Ok(()) } else { file.push(&[], &ending) }
     }
 
     /// Finds the whole frames of a file.

@@ -6,7 +6,6 @@ use glam::DVec2;
 
 use crate::Disk;
 use crate::boundary::Domain;
-use crate::disk::TOUCHING;
 
 /// Disks of similar size, in squares a little wider than the largest of them.
 ///
@@ -46,16 +45,33 @@ fn key(square: DVec2) -> [u64; 2] {
     [(square.x + 0.0).to_bits(), (square.y + 0.0).to_bits()]
 }
 
-/// Returns two disks that overlap by more than rounding, and the depth of their overlap, if there are such
-/// disks.
+/// The overlaps that were found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Overlap {
+    /// Indices of the two disks that overlap most, in units of the sum of their radii.
+    pub(super) pair: [usize; 2],
+    pub(super) depth: f64,
+    /// Depth in units of the sum of the radii.
+    pub(super) share: f64,
+    /// Number of all overlaps.
+    pub(super) count: usize,
+    /// True if all are counted. Disks on one heap overlap too many times for that.
+    pub(super) is_counted: bool,
+}
+
+/// Largest number of overlaps per disk that are counted. Disks that overlap little have three each at most.
+const MOST: usize = 8;
+
+/// Returns the deepest overlap beyond this share of the sum of radii, if there is one.
 ///
 /// The disks come in the order of their sizes, the largest first, and each looks among those that came
-/// before. Since these do not overlap, a square holds only a few of them.
-pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, usize, f64)> {
+/// before. As long as these overlap little, a square holds only a few of them.
+pub(super) fn deepest(disks: &[Disk], domain: Option<&Domain>, least: f64) -> Option<Overlap> {
     let shifts: Vec<DVec2> = domain.map_or_else(|| vec![DVec2::ZERO], |domain| domain.images().collect());
     let mut order: Vec<usize> = (0..disks.len()).collect();
     order.sort_by(|&a, &b| disks[b].radius().total_cmp(&disks[a].radius()));
     let mut classes: Vec<Class> = Vec::new();
+    let mut found: Option<Overlap> = None;
     for index in order {
         let disk = &disks[index];
         for (class, shift) in classes.iter().flat_map(|class| shifts.iter().map(move |shift| (class, shift)))
@@ -67,8 +83,17 @@ pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, u
             for other in class.near(place).filter(|&other| other != index) {
                 let contact = disk.radius() + disks[other].radius();
                 let depth = contact - place.distance(disks[other].position());
-                if depth > TOUCHING * contact {
-                    return Some((index, other, depth));
+                if depth <= least * contact {
+                    continue;
+                }
+                let share = depth / contact;
+                let count = found.map_or(1, |found| found.count + 1);
+                let is_counted = count <= MOST * disks.len();
+                let here = Overlap { pair: [index, other], depth, share, count, is_counted };
+                let deepest = found.filter(|found| found.share >= share).unwrap_or(here);
+                found = Some(Overlap { count, is_counted, ..deepest });
+                if !is_counted {
+                    return found;
                 }
             }
         }
@@ -80,5 +105,5 @@ pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, u
             class.squares.entry(key).or_default().push(index);
         }
     }
-    None
+    found
 }

@@ -1,32 +1,37 @@
 //! The state that a file holds.
 
 use crate::boundary::Domain;
+use crate::error::Rounded;
 use crate::observable::Snapshot;
 use crate::{Disk, Gravity};
 
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
-/// No two disks overlap, and none has its center outside the box.
-/// [`build`](crate::simulation::SimulationBuilder::build) checks them against the walls.
+/// A [`Reader`](super::Reader) reads it. No two disks overlap by more than its tolerance, and none has its
+/// center outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks them against the
+/// walls.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
-/// use granular_edmd::trajectory::State;
+/// use granular_edmd::trajectory::Reader;
 ///
-/// let state = State::from_csv("x,y,radius,vx\n1.0,1.0,0.5,2.0\n3.0,1.0,0.5,0.0\n".as_bytes())?;
+/// let state = Reader::new().read_from("x,y,radius,vx\n1.0,1.0,0.5,2.0\n3.0,1.0,0.5,0.0\n".as_bytes())?;
 /// let run = Simulation::builder(Elastic, Container::open(4.0)?).disks(state.into_disks()).build()?;
 /// assert_eq!(run.disks()[0].velocity(), DVec2::new(2.0, 0.0));
-///
-/// let error = State::from_csv("x,y,radius\n1.0,1.0,0.5\n1.5,1.0,0.5\n".as_bytes()).unwrap_err();
-/// assert_eq!(error.to_string(), "line 3: the disk overlaps that of line 2 by 0.5");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     pub(super) disks: Vec<Disk>,
     pub(super) domain: Option<Domain>,
     pub(super) time: Option<f64>,
     pub(super) gravity: Option<Gravity>,
+    pub(super) kind_names: Vec<String>,
+    pub(super) ignored: Vec<String>,
+    pub(super) wrapped: usize,
+    pub(super) shrunk: f64,
+    /// Other sentences about the file.
+    pub(super) notes: Vec<String>,
 }
 
 impl State {
@@ -37,10 +42,19 @@ impl State {
             domain: Some(snapshot.domain()),
             time: Some(snapshot.time()),
             gravity: Some(snapshot.gravity()),
+            ..Self::default()
         }
     }
 
-    /// Returns the disks, in the order of their numbers if the file numbers them.
+    /// Returns a snapshot of the state, for a [`Format`](super::Format).
+    ///
+    /// A file without a box, time or gravity gives the rectangle around the disks, time 0 and no gravity.
+    pub fn snapshot(&self) -> Snapshot<'_> {
+        let domain = self.domain.unwrap_or_else(|| around(&self.disks));
+        Snapshot::new(self.time.unwrap_or_default(), &self.disks, domain, self.gravity.unwrap_or_default())
+    }
+
+    /// Returns the disks, in the order of the file.
     pub fn disks(&self) -> &[Disk] {
         &self.disks
     }
@@ -64,4 +78,55 @@ impl State {
     pub const fn gravity(&self) -> Option<Gravity> {
         self.gravity
     }
+
+    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on.
+    ///
+    /// It is empty if the kinds are numbers in the file.
+    pub fn kind_names(&self) -> &[String] {
+        &self.kind_names
+    }
+
+    /// Returns the names of columns in the file that belong to no property of a disk.
+    pub fn ignored(&self) -> &[String] {
+        &self.ignored
+    }
+
+    /// Returns the number of disks that were outside of periodic sides, and are moved by whole periods.
+    pub const fn wrapped(&self) -> usize {
+        self.wrapped
+    }
+
+    /// Returns the share of each radius by which the reader shrank the disks; 0 if it did not.
+    pub const fn shrunk(&self) -> f64 {
+        self.shrunk
+    }
+
+    /// Returns sentences about all that the reader ignored or changed.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = self.notes.clone();
+        if !self.ignored.is_empty() {
+            notes.push(format!("ignored columns: {}", self.ignored.join(", ")));
+        }
+        if self.wrapped > 0 {
+            notes.push(format!("disks outside of periodic sides, wrapped: {}", self.wrapped));
+        }
+        if self.shrunk > 0.0 {
+            notes.push(format!("all radii are shrunk by a share of {} of them", Rounded(self.shrunk)));
+        }
+        notes
+    }
+}
+
+/// Returns the rectangle around these disks.
+fn around(disks: &[Disk]) -> Domain {
+    let end = |value: fn(&Disk) -> f64| disks.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+    if disks.is_empty() {
+        return Domain::new(0.0, 1.0, 0.0, 1.0);
+    }
+    Domain::new(
+        -end(|disk| disk.radius() - disk.position().x),
+        end(|disk| disk.radius() + disk.position().x),
+        -end(|disk| disk.radius() - disk.position().y),
+        end(|disk| disk.radius() + disk.position().y),
+    )
 }

@@ -10,31 +10,19 @@ use std::io::{self, Write};
 use glam::DVec2;
 
 use self::array::{write_field, write_integers, write_numbers};
+use super::State;
 use super::extended_xyz::shown_top;
-use super::{Format, Frame, State};
 use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::numbered;
 use crate::observable::Snapshot;
-
-/// The format of a file that holds one frame. It stays inside this module, since a recorder of one file would
-/// write several such files into one.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct PolyData;
-
-impl Format for PolyData {
-    fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
-        let snapshot = frame.snapshot();
-        write_disks(out, snapshot.disks(), Some(&snapshot.domain()), Some(snapshot.time()))
-    }
-}
 
 impl State {
     /// Writes the disks as VTK's `PolyData`, a `.vtp` file for ParaView with a point for each disk.
     ///
     /// The arrays are `id` (from 1), `kind`, `velocity`, `angle`, `angular_velocity`, `radius`, `mass`,
     /// `inertia_factor`, `image` and `unwrapped` (position), and `TimeValue` for the whole file. Numbers are
-    /// in binary. [`Recorder::create_vtk`](super::Recorder::create_vtk) makes a series of such files. In
+    /// in binary. A [`Recorder`](super::Recorder) with [`Vtk`](super::Vtk) makes a series of such files. In
     /// ParaView, the filter Glyph shows the disks: choose a sphere of radius 1, scaled by the array `radius`.
     ///
     /// # Errors
@@ -82,10 +70,10 @@ fn write_disks(
     out.write_all(TAIL.as_bytes())
 }
 
-/// Writes the edges of the box and other walls as lines. The array `periodic` is 1 for edges that are not
+/// Writes the edges of the box where its walls are, and other walls, as lines. The array `periodic` is 1 for edges that are not
 /// walls, and `part` is 1 for walls that are not edges. An open box has no lid.
 fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
-    let (domain, walls) = (snapshot.domain(), snapshot.wall_lines());
+    let (domain, walls) = (snapshot.edges(), snapshot.wall_lines());
     let Domain { left, right, bottom, .. } = domain;
     let top = shown_top(&domain, snapshot.disks());
     let corners = [(left, top), (left, bottom), (right, bottom), (right, top)].map(DVec2::from);

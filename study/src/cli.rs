@@ -1,5 +1,5 @@
 //! The command line of a study, for any experiment: `new`, `explain`, `check`, `run`, `status`, `tables`,
-//! `trajectory`, `replay`, `diff`, `accept`, `bench` and `completions`.
+//! `trajectory`, `convert`, `replay`, `diff`, `accept`, `bench` and `completions`.
 //!
 //! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
 //! paper's box.
@@ -38,8 +38,11 @@
 mod arguments;
 mod bench;
 mod collision_rows;
+mod convert;
 mod diff;
+mod files;
 mod keys;
+mod plans;
 mod replay;
 mod source;
 mod template;
@@ -52,20 +55,17 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, ValueEnum};
+use clap::Parser;
 
 use super::errors::{PlanError, StudyError, chain};
 use super::json::Object;
-use super::{Control, Experiment, Plan, Progress, Ramp, RampStatus, Study};
+use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status` has
 /// all.
 const LISTED: usize = 8;
-
-/// Largest number of values of a ramp that `check` prints in full.
-const MOST_VALUES: usize = 60;
 
 /// The way in which a command ended, with its exit code.
 #[derive(Clone, Copy)]
@@ -97,16 +97,17 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,
 ) -> ExitCode {
     let ended = match Arguments::parse().command {
-        Command::New { file } => new(example, file.as_deref()),
-        Command::Explain { key } => explain::<E>(key.as_deref()),
-        Command::Check { plan } => check::<E>(&plan),
+        Command::New { file } => plans::new(example, file.as_deref()),
+        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
+        Command::Check { plan } => plans::check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
-        Command::Trajectory { plan, out, ramp, cycles } => trajectory::write::<E>(&plan, ramp, cycles, &out),
+        Command::Trajectory(wishes) => trajectory::write::<E>(&wishes),
+        Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
-        Command::Completions { shell } => completions(&shell),
+        Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
         Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
@@ -140,20 +141,6 @@ fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     }
 }
 
-fn new<E: Experiment>(
-    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
-    file: Option<&Path>,
-) -> Result<End, Failure> {
-    let text = template::commented(&example()?)?;
-    let Some(path) = file else {
-        say(text.trim_end())?;
-        return Ok(End::Done);
-    };
-    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(StudyError::io("write", path))?;
-    Ok(End::Done)
-}
-
 /// Reads a file, or standard input for the name `-`.
 fn read(path: &Path) -> Result<String, Failure> {
     let text =
@@ -173,63 +160,6 @@ fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure>
         StudyError::Plan(source) => refused(path)(source),
         error => error,
     })?)
-}
-
-fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
-    say(&keys::explained::<E>(key)?)?;
-    Ok(End::Done)
-}
-
-fn completions(shell: &str) -> Result<End, Failure> {
-    let (mut command, mut text) = (Arguments::command(), Vec::new());
-    if shell == "man" {
-        clap_mangen::Man::new(command).render(&mut text)?;
-    } else {
-        let shell = clap_complete::Shell::from_str(shell, true).map_err(|_| {
-            format!("completions are for bash, elvish, fish, powershell, zsh and man, not {shell}")
-        })?;
-        clap_complete::generate(shell, &mut command, "granular-edmd", &mut text);
-    }
-    say(String::from_utf8(text)?.trim_end())?;
-    Ok(End::Done)
-}
-
-fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
-    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
-    let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
-    let repeats = match plan.repeats() {
-        1 => String::new(),
-        repeats => format!(", {repeats} repeats among them"),
-    };
-    let (ramp, value) = (counted(ramps, "ramp"), counted(values, "value"));
-    say(&format!("{ramp} of {value} of {cycles} cycles{repeats}"))?;
-    if plan.varied().next().is_none() {
-        return Ok(End::Done);
-    }
-    (0..ramps.min(LISTED)).try_for_each(|ramp| say(&values_of(&plan, ramp)))?;
-    if ramps > LISTED {
-        say(&format!("and {} more", ramps - LISTED))?;
-    }
-    Ok(End::Done)
-}
-
-fn counted(count: usize, name: &str) -> String {
-    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
-}
-
-/// Returns a line with the values of all parameters that differ in or among the ramps.
-fn values_of<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
-    let changing = plan.ramp().map(Ramp::parameter);
-    let fixed = plan.parameters(ramp, 0).into_iter().filter(|(name, _)| Some(*name) != changing);
-    let mut parts: Vec<String> = fixed.map(|(name, value)| format!("{name} = {value}")).collect();
-    if let Some(ramp) = plan.ramp() {
-        let mut values: Vec<String> = ramp.path().map(|(_, value)| value.to_string()).collect();
-        if values.len() > MOST_VALUES {
-            values.splice(LISTED..values.len() - 1, ["…".to_owned()]);
-        }
-        parts.push(format!("{} = {}", ramp.parameter(), values.join(", ")));
-    }
-    format!("  {ramp}: {}", parts.join("; "))
 }
 
 fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {

@@ -613,7 +613,7 @@ fn wishes_that_cannot_be_are_refused() {
         (&["--ramp", "4"], 2, "index of a ramp must be below the number of ramps, but is 4"),
         (&["--value", "1"], 2, "index of a value"),
         (&["--start", "none.xyz"], 1, "cannot open none.xyz"),
-        (&["--start", "plan.toml"], 1, "this is not a checkpoint"),
+        (&["--start", "plan.toml"], 1, "the file must be extended XYZ, a dump"),
         (&["--out", "mine.csv"], 1, "cannot write mine.csv"),
         (&["--out", "no/where.csv"], 1, "cannot write no/where.csv"),
     ] {
@@ -650,4 +650,103 @@ fn a_signal_ends_replay_and_diff() {
         assert_eq!(child.wait().unwrap().code(), Some(130));
         assert!(!scratch.0.join("new.csv").exists());
     }
+}
+
+/// Files of others are read by their contents and written by the ending of the new name; notes and refusals
+/// are on standard error.
+#[test]
+fn files_of_disks_are_converted() {
+    let scratch = Scratch::new("convert");
+    let dump = "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff pp\n0 10\n0 5\n-1 1\n\
+                ITEM: ATOMS id type x y vx vy radius fx\n9 1 11 2 3 4 0.5 7\n4 2 3 2 0 0 0.5 7\n";
+    fs::write(scratch.0.join("soft.txt"), dump.to_owned() + &dump.replace("9 1 11 2", "9 1 12.01 2"))
+        .unwrap();
+    let of = |arguments: &[&str]| scratch.runs(&[&["convert", "soft.txt"], arguments].concat());
+    let output = of(&["first.csv", "--frame", "0"]);
+    assert_eq!((code(&output), output.stdout.as_slice()), (Some(0), b"".as_slice()), "{}", said(&output));
+    let notes: Vec<String> = said(&output).lines().map(str::to_owned).collect();
+    assert_eq!(
+        notes,
+        [
+            "note: ignored columns: fx",
+            "note: disks outside of periodic sides, wrapped: 1",
+            "note: first.csv has no place for the box of the file",
+        ]
+    );
+    // A row a disk, in the order of the file.
+    let text = fs::read_to_string(scratch.0.join("first.csv")).unwrap();
+    let expected = "id,kind,x,y,vx,vy,angle,angular_velocity,radius,mass,inertia_factor,image_x,image_y\n\
+                    9,0,1.0,2.0,3.0,4.0,0.0,0.0,0.5,1.0,0.5,1,0\n4,1,3.0,2.0,0.0,0.0,0.0,0.0,0.5,1.0,0.5,0,0\n";
+    assert_eq!(text, expected);
+    // The last frame has an overlap.
+    let output = of(&["last.csv"]);
+    assert!(
+        code(&output) == Some(1)
+            && said(&output).contains("line 22: the disk overlaps the disk of line 21 by 0.01")
+    );
+    assert_eq!(code(&of(&["last.csv", "--frame", "last", "--tolerance", "0.02"])), Some(0));
+    let output = of(&["shrunk.xyz", "--shrink"]);
+    assert!(code(&output) == Some(0) && said(&output).contains("all radii are shrunk by a share of 0.01"));
+    for (name, start) in [
+        ("a.extxyz", b"2\nLattice=".as_slice()),
+        ("a.xyz.gz", &[0x1f, 0x8b]),
+        ("a.lammpstrj", b"ITEM: "),
+        ("a.dump", b"ITEM: "),
+        ("a.gsd", &[0xdf, 0x65]),
+        ("a.pvd", b"<?xml"),
+        ("a.vtp", b"<?xml"),
+        ("a.data", b"LAMMPS data"),
+    ] {
+        let output = scratch.runs(&["convert", "shrunk.xyz", name]);
+        assert_eq!(code(&output), Some(0), "{name} {}", said(&output));
+        assert!(fs::read(scratch.0.join(name)).unwrap().starts_with(start), "{name}");
+        assert_eq!(code(&scratch.runs(&["convert", "shrunk.xyz", name])), Some(1), "{name} is overwritten");
+    }
+    assert_eq!(code(&scratch.runs(&["convert", "a.xyz.gz", "again.csv"])), Some(0));
+    for (arguments, status, reason) in [
+        (["a.png"].as_slice(), 2, "a.png must end in one of .xyz, .extxyz, .lammpstrj, .dump"),
+        (&["xyz"], 2, "xyz must end in one of"),
+        (&["b.csv", "--frame", "2"], 1, "there is no frame of number 2: the file has 2"),
+        (&["b.csv", "--step", "6"], 1, "there is no frame of step 6: the file has 2"),
+        (&["b.csv", "--frame", "first"], 2, "invalid value 'first'"),
+        (&["b.csv", "--tolerance", "-1"], 2, "tolerance must be finite and not negative, but is -1"),
+        (&["b.csv", "--radius", "0"], 2, "radius must be finite and positive, but is 0"),
+    ] {
+        let output = of(arguments);
+        assert_eq!(code(&output), Some(status), "{arguments:?} {}", said(&output));
+        assert!(said(&output).contains(reason), "{arguments:?} {}", said(&output));
+    }
+    assert!(!scratch.0.join("b.csv").exists());
+    assert_eq!(code(&scratch.runs(&["convert", "none.xyz", "b.csv"])), Some(1));
+}
+
+/// A trajectory is of the format that its name says, and starts from any file of disks.
+#[test]
+fn a_trajectory_is_what_its_name_says() {
+    let scratch = Scratch::new("trajectory-names");
+    scratch.small_plan();
+    let of = |arguments: &[&str]| {
+        scratch.runs(&[&["trajectory", "plan.toml", "--cycles", "2"], arguments].concat())
+    };
+    assert_eq!(code(&of(&["--out", "run.lammpstrj"])), Some(0));
+    let text = fs::read_to_string(scratch.0.join("run.lammpstrj")).unwrap();
+    assert_eq!(text.matches("ITEM: TIMESTEP").count(), 2);
+    assert_eq!(code(&of(&["--out", "run.pvd"])), Some(0));
+    for name in ["run.csv", "run.txt"] {
+        let output = of(&["--out", name]);
+        assert!(
+            code(&output) == Some(2) && said(&output).contains("must end in one of .xyz"),
+            "{}",
+            said(&output)
+        );
+        assert!(!scratch.0.join(name).exists());
+    }
+    let output = of(&["--out", "more.xyz", "--start", "run.lammpstrj"]);
+    assert_eq!(code(&output), Some(0), "{}", said(&output));
+    let start = scratch.runs(&["convert", "more.xyz", "more.csv"]);
+    assert!(
+        code(&start) == Some(0) && said(&start).contains("no place for the box, time, gravity"),
+        "{}",
+        said(&start)
+    );
 }

@@ -1,50 +1,103 @@
-//! Files of disks with random changes: each reader gives an error that names a line, or disks that survive
-//! their file.
-
-use std::io::Cursor;
+//! Files of disks with random changes, cut anywhere, or of random bytes: the reader gives an error that
+//! names a line, or disks that survive their file.
 
 use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::observable::Snapshot;
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, ReadError, State};
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, Reader, State};
 use granular_edmd::{Disk, initial};
 use proptest::prelude::*;
 
 use crate::cases::config;
 use crate::edits::{edit, edited};
 
-type Read = fn(Cursor<Vec<u8>>) -> Result<State, ReadError>;
-
 fn disks() -> Vec<Disk> {
     let container = Container::closed(8.0, 8.0).unwrap();
     initial::with_maxwellian_velocities(initial::lattice(&container, 6, 0.5).unwrap(), 1.0, 3).unwrap()
 }
 
-fn with_snapshot<T>(disks: &[Disk], use_it: impl FnOnce(&Snapshot<'_>) -> T) -> T {
-    use_it(&Snapshot::new(0.25, disks, Container::closed(8.0, 8.0).unwrap().domain(), 0.1))
+/// The texts of all formats that the library writes and reads.
+fn texts() -> [(&'static str, String); 4] {
+    let disks = disks();
+    let snapshot = Snapshot::new(0.25, &disks, Container::closed(8.0, 8.0).unwrap().domain(), 0.1);
+    let state = State::of(&snapshot);
+    let text = |write: &dyn Fn(&mut Vec<u8>) -> std::io::Result<()>| {
+        let mut bytes = Vec::new();
+        write(&mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
+    };
+    let frame = Frame::new(0, &snapshot);
+    [
+        ("extended XYZ", text(&|out| ExtendedXyz.write_frame(&frame, out))),
+        ("dump", text(&|out| LammpsDump.write_frame(&frame, out))),
+        ("CSV", text(&|out| state.write_csv(out))),
+        ("LAMMPS data", text(&|out| state.write_lammps_data(out))),
+    ]
 }
 
-/// The texts of all formats that the library reads, with their readers.
-fn texts() -> Vec<(&'static str, String, Read)> {
-    let disks = disks();
-    let state = with_snapshot(&disks, State::of);
-    let (mut xyz, mut csv, mut lammps) = (Vec::new(), Vec::new(), Vec::new());
-    with_snapshot(&disks, |snapshot| ExtendedXyz.write_frame(&Frame::new(0, snapshot), &mut xyz)).unwrap();
-    state.write_csv(&mut csv).unwrap();
-    state.write_lammps_data(&mut lammps).unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    vec![
-        ("extended XYZ", text(xyz), |input| State::from_xyz(input)),
-        ("CSV", text(csv), |input| State::from_csv(input)),
-        ("LAMMPS data", text(lammps), |input| State::from_lammps_data(input)),
-    ]
+fn read(bytes: &[u8]) -> Result<State, ReadError> {
+    Reader::new().read_from(bytes)
+}
+
+/// Checks what came of a file that may hold anything.
+fn is_sound(read: &Result<State, ReadError>) -> bool {
+    match read {
+        Ok(state) => {
+            let is_sound = |disk: &Disk| disk.position().is_finite() && disk.radius() > 0.0;
+            state.disks().iter().all(is_sound) && state.time().is_none_or(f64::is_finite)
+        }
+        // A message is for people: whatever is in the file, it fits on a screen.
+        Err(error) => error.to_string().len() < 2000,
+    }
 }
 
 #[test]
 fn the_texts_themselves_are_read() {
-    for (name, text, read) in texts() {
-        let state = read(Cursor::new(text.into_bytes())).unwrap();
-        assert_eq!(state.disks().len(), 6, "{name}");
+    for (name, text) in texts() {
+        let state = read(text.as_bytes()).unwrap();
+        assert_eq!((state.disks().len(), state.notes()), (6, Vec::new()), "{name}");
     }
+}
+
+/// A cut file is refused, or the reader tells that its last number may be cut. A table says nowhere how many
+/// rows it has, and a data file need not have velocities.
+#[test]
+fn texts_cut_at_every_byte() {
+    for (name, text) in texts() {
+        for cut in 0..text.len() {
+            let bytes = &text.as_bytes()[..cut];
+            let is_whole = name == "CSV" || name == "LAMMPS data" && !text[..cut].contains("Velocities");
+            let is_whole = is_whole && bytes.ends_with(b"\n");
+            match read(bytes) {
+                Ok(state) => assert!(is_whole || !state.notes().is_empty(), "{name}, cut at {cut}"),
+                Err(error) => assert!(error.to_string().len() < 2000, "{name}, cut at {cut}: {error}"),
+            }
+        }
+    }
+}
+
+/// Numbers of disks, steps and columns for which there is no room anywhere.
+#[test]
+fn huge_numbers_are_only_numbers() {
+    let most = u64::MAX;
+    for text in [
+        format!("{most}\nProperties=pos:R:2:radius:R:1\n1 2 0.5\n"),
+        format!("1\nProperties=pos:R:2:radius:R:1:a:R:{most}\n1 2 0.5\n"),
+        format!("1\nProperties=pos:R:2:radius:R:1:id:I:1\n1 2 0.5 {most}\n"),
+        format!("ITEM: TIMESTEP\n{most}\nITEM: NUMBER OF ATOMS\n{most}\nITEM: ATOMS x y radius\n1 2 0.5\n"),
+        format!("\n{most} atoms\n0 9 xlo xhi\n0 9 ylo yhi\n\nAtoms\n\n1 1 1 1 2 2 0\n"),
+        format!("id,x,y,radius,image_x\n{most},1,2,0.5,{most}\n"),
+        "9".repeat(100_000),
+        "1\n".to_owned() + &"[".repeat(100_000),
+        "x,y,radius\n".to_owned() + &",".repeat(100_000),
+        "\"".repeat(100_000) + "\n",
+    ] {
+        assert!(read(text.as_bytes()).is_err_and(|error| error.to_string().len() < 2000), "{text:.80}");
+    }
+    // Disks on one heap: so many overlap that counting them all would take for ever.
+    let heap = "x,y,radius\n".to_owned() + &"1,2,0.5\n".repeat(200_000);
+    let begun = std::time::Instant::now();
+    assert!(read(heap.as_bytes()).is_err());
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }
 
 proptest! {
@@ -52,17 +105,19 @@ proptest! {
 
     #[test]
     fn random_texts_are_read_or_refused(edits in prop::collection::vec(edit(), 1..5)) {
-        for (name, text, read) in texts() {
+        for (name, text) in texts() {
             let text = edited(&text, &edits);
-            match read(Cursor::new(text.clone().into_bytes())) {
-                Ok(state) => {
-                    let is_sound = |disk: &Disk| disk.position().is_finite() && disk.radius() > 0.0;
-                    prop_assert!(state.disks().iter().all(is_sound), "{}: {}", name, text);
-                    prop_assert!(state.time().is_none_or(f64::is_finite), "{}: {}", name, text);
-                }
-                // A message is for people: whatever is in the file, it fits on a screen.
-                Err(error) => prop_assert!(error.to_string().len() < 2000, "{}: {}", name, error),
-            }
+            let read = read(text.as_bytes());
+            prop_assert!(is_sound(&read), "{}: {:?}, {}", name, read, text);
+        }
+    }
+
+    #[test]
+    fn random_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400), kept in 0..400_usize) {
+        prop_assert!(is_sound(&read(&bytes)));
+        for (name, text) in texts() {
+            let bytes = [&text.as_bytes()[..kept.min(text.len())], bytes.as_slice()].concat();
+            prop_assert!(is_sound(&read(&bytes)), "{}", name);
         }
     }
 }

@@ -7,7 +7,7 @@ use granular_edmd::simulation::BuildError;
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
 #[cfg(feature = "serde")]
-use granular_edmd::trajectory::State;
+use granular_edmd::trajectory::{Reader, State};
 use granular_edmd::{Disk, Kind, Simulation};
 use proptest::prelude::*;
 
@@ -165,7 +165,7 @@ fn ids_stay_with_their_disks() -> Result<(), Box<dyn std::error::Error>> {
     let mut table = Vec::new();
     State::of(&run.snapshot()).write_csv(&mut table)?;
     // A table is read in the order of the ids.
-    let read = State::from_csv(table.as_slice())?;
+    let read = Reader::new().read_from(table.as_slice())?;
     assert_eq!(ids(read.disks()), [1, 2, 3, 4, 5, 6, 8, 9]);
     let mut second = Simulation::builder(Elastic, box_of()?).disks(read.into_disks()).build()?;
     second.remove(|_, _| true)?;

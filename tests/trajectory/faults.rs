@@ -6,12 +6,18 @@ use std::io::Read as _;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Snapshot;
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, State, XyzFrames};
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, Reader, State};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::report::report;
 use crate::states::{domain, random_disks};
+
+const UNKNOWN: &str = "line 1: the file must be extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose \
+                       first line names columns such as x, y and radius, but is \"weight,height\"";
+
+const OVERLAP: &str = "line 4: the disk overlaps the disk of line 2 by 0.25, a share of 0.25 of their distance at \
+                       contact; it is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them";
 
 #[track_caller]
 fn assert_told<T: std::fmt::Debug>(read: Result<T, ReadError>, expected: &str) {
@@ -21,7 +27,7 @@ fn assert_told<T: std::fmt::Debug>(read: Result<T, ReadError>, expected: &str) {
 #[test]
 fn faults_of_tables() {
     let cases = [
-        ("", "the file ends after line 0, where the names of the columns should follow"),
+        ("", "the file ends after line 0, where a frame should follow"),
         ("x,y\n", "line 1: the column `radius` is missing"),
         ("x,y,radius,x\n", "line 1: the column `x` stands in line 1 already"),
         ("x,y,radius\n1,2,0.5\n\n1,zwei,0.5\n", "line 4: y must be a number, but is \"zwei\""),
@@ -30,7 +36,11 @@ fn faults_of_tables() {
             "x,y,radius\n1,2,0.5,9\n",
             "line 2: the number of values must be 3, one for each column, but is \"4\"",
         ),
-        ("x,y,radius\n1,2,0.5\n3,2,0.2", "the file ends after line 3, where a line break should follow"),
+        ("weight,height\n1,2\n", UNKNOWN),
+        (
+            "x,y,radius,diameter\n1,2,0.5,1\n3,2,0.25,0.25\n",
+            "line 3: radius must be the same in all columns that tell it, but is \"0.25 and 0.125\"",
+        ),
         ("x,y,radius\n1,2,-0.5\n", "line 2 is no disk: radius must be finite and positive, but is -0.5"),
         (
             "x,y,radius\n1,inf,0.5\n",
@@ -41,53 +51,62 @@ fn faults_of_tables() {
             "line 2: kind must be a whole number that fits into u16, but is \"-1\"",
         ),
         ("x,y,radius,id\n1,2,0.5,4\n3,2,0.5,3\n5,2,0.5,4\n", "line 4: the disk 4 stands in line 2 already"),
-        ("x,y,radius\n1,2,0.5\n8,2,1\n1.75,2,0.5\n", "line 4: the disk overlaps that of line 2 by 0.25"),
+        ("x,y,radius\n1,2,0.5\n8,2,1\n1.75,2,0.5\n", OVERLAP),
     ];
     for (text, expected) in cases {
-        assert_told(State::from_csv(text.as_bytes()), expected);
+        assert_told(Reader::new().read_from(text.as_bytes()), expected);
     }
     assert_eq!(
-        report(&State::from_csv(&b"x,y,\xff\n"[..]).unwrap_err()),
-        "cannot read line 1: stream did not contain valid UTF-8"
+        report(&Reader::new().read_from(&b"x,y,\xff\n"[..]).unwrap_err()),
+        "line 1: the text must be UTF-8, but is \"x,y,\u{fffd}\""
     );
 }
 
 #[test]
 fn faults_of_extended_xyz() {
-    let keys = "Lattice=\"10 0 0 0 10 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1";
-    let told = |text: &str, expected: &str| assert_told(State::from_xyz(text.as_bytes()), expected);
+    let keys = "Lattice=\"10 0 0 0 10 0 0 0 1\" pbc=\"F F F\" Properties=id:I:1:pos:R:3:radius:R:1";
+    let told = |text: &str, expected: &str| assert_told(Reader::new().read_from(text.as_bytes()), expected);
     told("", "the file ends after line 0, where a frame should follow");
-    told("two\n", "line 1: the first line of a frame must be the number of its disks, but is \"two\"");
+    told(
+        "two\nProperties=pos:R:3\n",
+        "line 1: the first line of a frame must be the number of its disks, but is \"two\"",
+    );
     told("1\n", "the file ends after line 1, where the keys of a frame should follow");
-    told("1\nTime=1\n1 1 0 1\n", "line 2: `Properties` is missing");
+    told("1\nTime=1\n1 1 0 1\n", "line 2: the column `radius` is missing");
+    told("two\nTime=1\n1 1 0 1\n", &UNKNOWN.replace("weight,height", "two"));
     told("1\nProperties=pos:R:3\n1 1 0\n", "line 2: the column `radius` is missing");
     told(
-        "1\nProperties=pos:R\n",
+        "0\nProperties=pos:R\n",
         "line 2: each of `Properties` must be a name, a type and a number, but is \"pos:R\"",
     );
     told(&format!("2\n{keys}\n1 1 1 0 0.5\n"), "the file ends after line 3, where disk 2 of 2 should follow");
     told(
-        &format!("1\n{keys}\n1 1 1 2 0.5\n"),
-        "line 3: the third component must be 0, for disks lie in a plane, but is \"2\"",
+        &format!("2\n{keys}\n1 1 1 2 0.5\n2 3 3 2.5 0.5\n"),
+        "line 4: pos must be the same for all disks, which lie in a plane, but is \"2.5\"",
     );
     told(&format!("1\n{keys}\n1 1 11 0 0.5\n"), "line 3: the disk at (1, 11) is outside the box");
     told(
         &format!("2\n{keys}\n1 1 1 0 0.5\n2 1 1.5 0 0.5\n"),
-        "line 4: the disk overlaps that of line 3 by 0.5",
+        "line 4: the disk overlaps the disk of line 3 by 0.5, a share of 0.5 of their distance at contact; it \
+         is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
     );
     // The disks of a periodic box meet across its sides.
     let disks = "2\n{}\n1 0.25 1 0 0.5\n2 9.75 1 0 0.5\n";
-    State::from_xyz(disks.replace("{}", keys).as_bytes()).unwrap();
+    Reader::new().read_from(disks.replace("{}", keys).as_bytes()).unwrap();
     told(
-        &disks.replace("{}", &format!("{keys} pbc=\"T F F\"")),
-        "line 4: the disk overlaps that of line 3 by 0.5",
+        &disks.replace("{}", &keys.replace("F F F", "T F F")),
+        "line 4: the disk overlaps the disk of line 3 by 0.5, a share of 0.5 of their distance at contact; it \
+         is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
     );
-    told(&format!("0\n{keys} pbc=\"T F\"\n"), "line 2: pbc must be three letters T or F, but is \"T F\"");
+    told(
+        &format!("0\n{}\n", keys.replace("F F F", "T x F")),
+        "line 2: pbc must be three letters T or F, but is \"T x F\"",
+    );
     told(&format!("0\n{keys} Time=now\n"), "line 2: Time must be a number, but is \"now\"");
     let skew = keys.replace("10 0 0 0", "10 1 0 0");
     for domain in ["3 1 0 9", "0 9 nan nan", "0 0 0 9"] {
         let text = format!("0\nDomain=\"{domain}\" Properties=id:I:1:pos:R:3:radius:R:1\n");
-        let error = State::from_xyz(text.as_bytes()).unwrap_err().to_string();
+        let error = Reader::new().read_from(text.as_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("line 2: "), "{error}");
     }
     told(&format!("0\n{skew}\n"), "line 2: Lattice must be a rectangle, but is \"10 1 0 0 10 1 0 0 1\"");
@@ -99,7 +118,7 @@ fn faults_of_extended_xyz() {
     }
     for domain in ["-inf 9 0 9", "0 inf 0 9", "0 9 -inf 9", "-1e308 1e308 0 9"] {
         let text = format!("0\nDomain=\"{domain}\" Properties=pos:R:2:radius:R:1\n");
-        let error = State::from_xyz(text.as_bytes()).unwrap_err().to_string();
+        let error = Reader::new().read_from(text.as_bytes()).unwrap_err().to_string();
         assert!(error.starts_with("line 2: the box must be from smaller to larger numbers"), "{error}");
     }
     let text = "0\nDomain=\"0 9 0 inf\" Properties=pos:R:2:radius:R:1 pbc=\"F T F\"\n";
@@ -115,7 +134,8 @@ fn faults_of_extended_xyz() {
             format!("line 3: the number of values must be 5, one for each column, but is \"{count}\"");
         told(&format!("{one}{row}\n"), &told_count);
     }
-    told(&format!("{one}1 1 0 0.5 3"), "the file ends after line 3, where a line break should follow");
+    let own = one.replace("Properties", "Domain=\"0 9 0 9\" Properties");
+    told(&format!("{own}1 1 0 0.5 3"), "the file ends after line 3, where a line break should follow");
     told(
         "9999999999999999999999\n",
         "line 1: the first line of a frame must be the number of its disks, but is \"9999999999999999999999\"",
@@ -129,15 +149,16 @@ fn faults_of_extended_xyz() {
 #[test]
 fn frames_before_a_fault_are_read() {
     let text = "1\nProperties=pos:R:2:radius:R:1\n1 1 0.5\n1\nProperties=pos:R:2:radius:R:1\n1 1\n1\n";
-    let frames: Vec<_> = XyzFrames::new(text.as_bytes()).collect();
+    let frames: Vec<_> = Reader::new().frames(text.as_bytes()).unwrap().collect();
     assert_eq!(frames.len(), 2);
     assert!(frames[0].is_ok() && frames[1].is_err());
 }
 
 #[test]
 fn faults_of_data_of_lammps() {
-    let told = |text: &str, expected: &str| assert_told(State::from_lammps_data(text.as_bytes()), expected);
+    let told = |text: &str, expected: &str| assert_told(Reader::new().read_from(text.as_bytes()), expected);
     let head = "t\n\n2 atoms\n1 atom types\n0 9 xlo xhi\n0 9 ylo yhi\n\n";
+    let one = head.replace("2 atoms", "1 atoms");
     told("t\n\n0 9 xlo xhi\n0 9 ylo yhi\n", "line 4: the number of atoms is missing");
     told("t\n\n1 atoms\n0 9 xlo xhi\n", "line 4: `ylo yhi` is missing");
     told(
@@ -149,10 +170,10 @@ fn faults_of_data_of_lammps() {
         "line 8: the style of atoms must be `sphere`, but is \"atomic\"",
     );
     told(
-        &format!("{head}Atoms\n\n1 1 0 0 0\n"),
+        &format!("{one}Atoms\n\n1 1 0 0 0\n"),
         "line 10: an atom must be of 7 or 10 columns, as `sphere` has them, but is \"1 1 0 0 0\"",
     );
-    told(&format!("{head}Atoms\n\n1 0 1 1 2 2 0\n"), "line 10: type must be from 1 to 65536, but is \"0\"");
+    told(&format!("{one}Atoms\n\n1 0 1 1 2 2 0\n"), "line 10: type must be from 1 to 65536, but is \"0\"");
     told(
         &format!("{head}Atoms\n\n1 1 1 1 2 2 0\n"),
         "the file ends after line 10, where atom 2 of 2 should follow",
@@ -167,10 +188,14 @@ fn faults_of_data_of_lammps() {
     told(&ours, "line 1: time must be finite, but is \"nan\"");
     // Words of another program in the title are no time.
     let other = head.replace("t\n\n2 atoms", "runtime = 7\n\n0 atoms");
-    assert_eq!(State::from_lammps_data(other.as_bytes()).unwrap().time(), None);
+    assert_eq!(Reader::new().read_from(other.as_bytes()).unwrap().time(), None);
     let atoms = format!("{head}Atoms\n\n2 1 1 1 2 2 0\n");
     told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 stands in line 10 already");
-    told(&format!("{atoms}1 1 1 1 2.5 2 0\n"), "line 11: the disk overlaps that of line 10 by 0.5");
+    told(
+        &format!("{atoms}1 1 1 1 2.5 2 0\n"),
+        "line 11: the disk overlaps the disk of line 10 by 0.5, a share of 0.5 of their distance at contact; it \
+         is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
+    );
     told(&format!("{atoms}1 1 1 1 9.5 2 0\n"), "line 11: the disk at (9.5, 2) is outside the box");
     told(
         &format!("{atoms}1 1 0 1 4 2 0\n"),
@@ -179,8 +204,8 @@ fn faults_of_data_of_lammps() {
     let moving = format!("{atoms}1 1 1 1 4 4 0\n\nVelocities\n\n");
     told(&format!("{moving}3 0 0 0 0 0 0\n"), "line 15: the atom 3, which has a velocity here, is missing");
     told(
-        &format!("{moving}1 0 0 1 0 0 0\n"),
-        "line 15: the third component must be 0, for disks lie in a plane, but is \"1\"",
+        &format!("{moving}1 0 0 1 0 0 0\n2 0 0 0 0 0 0\n"),
+        "line 11: vz must be 0, for disks move in a plane, but is \"1\"",
     );
     told(
         &format!("{moving}1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
@@ -205,17 +230,17 @@ fn lines_are_bounded() {
         );
     };
     let input = |head: &'static str| std::io::BufReader::new(head.as_bytes().chain(endless()));
-    told(State::from_csv(input("")), "line 1");
-    told(State::from_csv(input("x,y,radius\n")), "line 2");
-    told(State::from_xyz(input("1\n")), "line 2");
-    told(State::from_lammps_data(input("title\n\n")), "line 3");
+    told(Reader::new().read_from(input("")), "line 1");
+    told(Reader::new().read_from(input("x,y,radius\n")), "line 2");
+    told(Reader::new().read_from(input("1\n")), "line 2");
+    told(Reader::new().read_from(input("title\n\n")), "line 3");
     for head in ["", "1\n", "1\nTime=1\n", "ITEM: UNITS\n"] {
         for format in [&ExtendedXyz as &dyn Format, &LammpsDump] {
             assert!(format.skip_frame(&mut input(head)).is_err(), "{head:?}");
         }
     }
-    let columns = format!("1\nProperties=pos:R:2:radius:R:1{}\n", ":a:R:1000".repeat(2000));
-    let error = State::from_xyz(columns.as_bytes()).unwrap_err().to_string();
+    let columns = format!("0\nProperties=pos:R:2:radius:R:1{}\n", ":a:R:1000".repeat(2000));
+    let error = Reader::new().read_from(columns.as_bytes()).unwrap_err().to_string();
     assert!(error.starts_with("line 2: `Properties` must be of at most 1000 columns"), "{error}");
 }
 
@@ -228,11 +253,11 @@ fn one_giant_does_not_slow_a_reader() {
         writeln!(text, "0,{row},0.5").unwrap();
     }
     let begun = std::time::Instant::now();
-    assert_eq!(State::from_csv(text.as_bytes()).unwrap().disks().len(), 100_001);
+    assert_eq!(Reader::new().read_from(text.as_bytes()).unwrap().disks().len(), 100_001);
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
     text.push_str("0.25,99999.5,0.1\n");
-    let told = report(&State::from_csv(text.as_bytes()).unwrap_err());
-    assert!(told.starts_with("line 100003: the disk overlaps that of line 10000"), "{told}");
+    let told = report(&Reader::new().read_from(text.as_bytes()).unwrap_err());
+    assert!(told.starts_with("line 100003: the disk overlaps the disk of line 10000"), "{told}");
 }
 
 /// Overlaps among disks of all sizes, in boxes of all sorts, are those that a loop over all pairs finds.
@@ -261,7 +286,7 @@ fn overlaps_are_found() {
         let overlaps = disks.iter().enumerate().any(|(index, a)| {
             disks[..index].iter().any(|b| domain.separation(place(a), place(b)).length() < a.2 + b.2)
         });
-        assert_eq!(State::from_xyz(text.as_bytes()).is_err(), overlaps, "{text}");
+        assert_eq!(Reader::new().read_from(text.as_bytes()).is_err(), overlaps, "{text}");
         found += usize::from(overlaps);
     }
     assert!((50..350).contains(&found), "{found} of 400");
@@ -290,11 +315,7 @@ fn damage_does_no_harm() {
                 _ => bytes.insert(place, bytes[generator.random_range(0..bytes.len())]),
             }
         }
-        let read = match case % 3 {
-            0 => State::from_xyz(bytes.as_slice()),
-            1 => State::from_csv(bytes.as_slice()),
-            _ => State::from_lammps_data(bytes.as_slice()),
-        };
+        let read = Reader::new().read_from(bytes.as_slice());
         refused += usize::from(read.is_err());
     }
     assert!((1000..5500).contains(&refused), "{refused} of 6000");

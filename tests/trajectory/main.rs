@@ -4,6 +4,10 @@
 #[path = "../support/report.rs"]
 mod report;
 
+mod corpus;
+mod corpus_dumps;
+mod corpus_files;
+mod corpus_xyz;
 mod faults;
 mod gsd;
 mod recording;

@@ -1,10 +1,15 @@
 //! Files read back to the same bits, and start the same run.
 
+use std::fs::File;
+use std::io::BufReader;
+
 use granular_edmd::boundary::{Container, Domain, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, Snapshot};
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, Recorder, State, XyzFrames, open};
+use granular_edmd::trajectory::{
+    ExtendedXyz, Format, Frame, Gsd, LammpsDump, Reader, Recorder, State, TimedLammpsDump,
+};
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation};
 
@@ -20,7 +25,7 @@ fn text(format: &dyn Format, snapshot: &Snapshot<'_>) -> Vec<u8> {
 #[test]
 fn extended_xyz_keeps_all_bits() {
     for_each_snapshot(|snapshot| {
-        let state = State::from_xyz(text(&ExtendedXyz, snapshot).as_slice()).unwrap();
+        let state = Reader::new().read_from(text(&ExtendedXyz, snapshot).as_slice()).unwrap();
         assert_same_bits(state.disks(), snapshot.disks());
         assert_eq!(state, State::of(snapshot));
     });
@@ -31,7 +36,7 @@ fn tables_keep_all_bits_of_disks() {
     for_each_snapshot(|snapshot| {
         let mut table = Vec::new();
         State::of(snapshot).write_csv(&mut table).unwrap();
-        assert_same_bits(State::from_csv(table.as_slice()).unwrap().disks(), snapshot.disks());
+        assert_same_bits(Reader::new().read_from(table.as_slice()).unwrap().disks(), snapshot.disks());
     });
 }
 
@@ -43,7 +48,7 @@ fn data_of_lammps_keep_the_bits_that_they_have_a_place_for() {
     for_each_snapshot(|snapshot| {
         let mut data = Vec::new();
         State::of(snapshot).write_lammps_data(&mut data).unwrap();
-        let state = State::from_lammps_data(data.as_slice()).unwrap();
+        let state = Reader::new().read_from(data.as_slice()).unwrap();
         assert_eq!(state.time(), Some(snapshot.time()));
         let domain = state.domain().unwrap();
         let Domain { left, right, bottom, top, .. } = snapshot.domain();
@@ -69,7 +74,11 @@ fn a_run_starts_from_any_frame_as_if_it_had_not_stopped() {
     let mut run = mixture();
     let mut recorder = Recorder::create(&path, ExtendedXyz, SampleTimes::every(0.5).unwrap()).unwrap();
     run.run_until(4.0, &mut recorder).unwrap();
-    let states: Vec<State> = XyzFrames::new(open(&path).unwrap()).collect::<Result<_, _>>().unwrap();
+    let states: Vec<State> = Reader::new()
+        .frames(BufReader::new(File::open(&path).unwrap()))
+        .unwrap()
+        .collect::<Result<_, _>>()
+        .unwrap();
     assert_eq!(states.len(), 8);
     assert_same_bits(states[7].disks(), &run.disks());
     assert!(states[7].disks().iter().any(|disk| disk.image()[0] != 0), "no disk has passed the sides");
@@ -97,18 +106,18 @@ fn a_run_starts_from_any_frame_as_if_it_had_not_stopped() {
 fn a_byte_order_mark_is_no_text() {
     let disk = Disk::new(DVec2::new(1.0, 2.0), 0.5).unwrap();
     let xyz = "\u{feff}1\nProperties=pos:R:2:radius:R:1\n1 2 0.5\n";
-    assert_eq!(State::from_xyz(xyz.as_bytes()).unwrap().disks(), [disk]);
-    assert_eq!(State::from_csv("\u{feff}x,y,radius\n1,2,0.5\n".as_bytes()).unwrap().disks(), [disk]);
+    assert_eq!(Reader::new().read_from(xyz.as_bytes()).unwrap().disks(), [disk]);
+    assert_eq!(Reader::new().read_from("\u{feff}x,y,radius\n1,2,0.5\n".as_bytes()).unwrap().disks(), [disk]);
     let lammps = "\u{feff}\n1 atoms\n0 9 xlo xhi\n0 9 ylo yhi\n\nAtoms\n\n1 1 1 1 1 2 0\n";
-    assert_eq!(State::from_lammps_data(lammps.as_bytes()).unwrap().disks()[0].position(), disk.position());
-    assert!(State::from_csv("x,y,radius\n\u{feff}1,2,0.5\n".as_bytes()).is_err());
+    assert_eq!(Reader::new().read_from(lammps.as_bytes()).unwrap().disks()[0].position(), disk.position());
+    assert!(Reader::new().read_from("x,y,radius\n\u{feff}1,2,0.5\n".as_bytes()).is_err());
 }
 
 #[test]
 fn files_of_others_are_read() {
     let ase = "2\r\nLattice=\"10 0 0 0 5 0 0 0 1\" Origin=\"-1 0 0\" Properties=species:S:1:pos:R:3:forces:R:3:radius:R:1 \
                title=\"Time=9 a word\" pbc=\"T T F\" energy=-3.5\r\n1 0.0 1.0 0.0 9 9 9 0.5\r\n0 4 1 0 9 9 9 0.25\r\n";
-    let state = State::from_xyz(ase.as_bytes()).unwrap();
+    let state = Reader::new().read_from(ase.as_bytes()).unwrap();
     assert_eq!((state.time(), state.gravity()), (None, None));
     let domain = Domain::new(-1.0, 9.0, 0.0, 5.0).with_periodic_sides().with_periodic_ends();
     assert_eq!(state.domain(), Some(domain));
@@ -119,11 +128,58 @@ fn files_of_others_are_read() {
                   -1 61 xlo xhi\n-1 151 ylo yhi\n-0.5 0.5 zlo zhi\n\nPair Coeffs # gran/hooke/history\n\n1\n2\n\n\
                   Atoms # sphere\n\n2 2 1 1.9 9 10 0 0 0 0\n1 1 1 1.9 5 10 0 0 0 0\n\nVelocities\n\n\
                   2 1 -2 0 0 0 0.5\n1 0 0 0 0 0 0\n";
-    let state = State::from_lammps_data(lammps.as_bytes()).unwrap();
-    let [first, second] = state.disks() else { panic!("{state:?}") };
+    let state = Reader::new().read_from(lammps.as_bytes()).unwrap();
+    let [second, first] = state.disks() else { panic!("{state:?}") };
     assert_eq!((first.position().x, second.position().x), (5.0, 9.0));
     assert_eq!((second.velocity(), second.angular_velocity()), (DVec2::new(1.0, -2.0), 0.5));
     assert_eq!((second.kind().number(), state.time()), (1, None));
+}
+
+/// A dump has no place for inertia factors, gravity and an open top, but for all else.
+#[test]
+fn dumps_are_read_back_to_the_same_bits() {
+    for_each_snapshot(|snapshot| {
+        for format in [&LammpsDump as &dyn Format, &TimedLammpsDump] {
+            let state = Reader::new().read_from(text(format, snapshot).as_slice()).unwrap();
+            let disks = snapshot.disks().iter().zip(state.disks());
+            let disks: Vec<Disk> =
+                disks.map(|(disk, read)| disk.with_inertia_factor(read.inertia_factor()).unwrap()).collect();
+            assert_same_bits(state.disks(), &disks);
+            assert_eq!((state.time(), state.domain()), (Some(snapshot.time()), Some(snapshot.domain())));
+            assert!(state.notes().is_empty(), "{:?}", state.notes());
+        }
+    });
+}
+
+/// Single precision for the disks, double precision for time, gravity and the box.
+#[test]
+fn gsd_is_read_back_to_single_precision() {
+    let scratch = Scratch::new("gsd-back");
+    let (gsd, xyz) = (scratch.path("run.gsd"), scratch.path("run.xyz"));
+    let times = SampleTimes::every(0.5).unwrap();
+    let mut both =
+        [Recorder::create(&gsd, Gsd, times).unwrap(), Recorder::create(&xyz, ExtendedXyz, times).unwrap()];
+    let [one, other] = &mut both;
+    mixture().run_until(6.0, &mut (one, other)).unwrap();
+    for frame in 0..12 {
+        let reader = Reader::new().with_frame(frame);
+        let (read, exact) = (reader.read(&gsd).unwrap(), reader.read(&xyz).unwrap());
+        assert_eq!(reader.read_from(std::fs::read(&gsd).unwrap().as_slice()).unwrap(), read);
+        assert_eq!((read.time(), read.domain()), (exact.time(), exact.domain()));
+        assert_eq!((read.gravity(), read.disks().len()), (exact.gravity(), 40));
+        for (read, exact) in read.disks().iter().zip(exact.disks()) {
+            let near = |read: f64, exact: f64, size: f64| {
+                assert!((read - exact).abs() <= 2e-7 * size, "{read} {exact}");
+            };
+            near(read.position().distance(exact.position()), 0.0, 40.0);
+            near(read.velocity().distance(exact.velocity()), 0.0, exact.velocity().length());
+            near((0.5 * (read.angle() - exact.angle())).sin(), 0.0, 1.0);
+            near(read.angular_velocity(), exact.angular_velocity(), 2.0 * exact.angular_velocity().abs());
+            near(read.inertia_factor(), exact.inertia_factor(), 1.0);
+            assert_eq!([read.radius(), read.mass()], [exact.radius(), exact.mass()]);
+            assert_eq!((read.kind(), read.image(), read.id()), (exact.kind(), exact.image(), exact.id()));
+        }
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use granular_edmd::boundary::{Container, Part, Vessel};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::SampleTimes;
-use granular_edmd::trajectory::{RecordError, Recorder};
+use granular_edmd::trajectory::{RecordError, Recorder, Vtk};
 use granular_edmd::{Disk, Simulation};
 
 use crate::report::report;
@@ -33,7 +33,7 @@ fn files(scratch: &Scratch) -> Vec<(String, Vec<u8>)> {
 fn a_killed_series_goes_on() {
     let scratch = Scratch::new("series");
     let path = scratch.path("run.pvd");
-    let mut recorder = Recorder::create_vtk(&path, times()).unwrap();
+    let mut recorder = Recorder::create(&path, Vtk, times()).unwrap();
     mixture().run_until(3.0, &mut recorder).unwrap();
     drop(recorder);
     let whole = files(&scratch);
@@ -48,7 +48,7 @@ fn a_killed_series_goes_on() {
         let bytes = fs::read(&last).unwrap();
         fs::write(&last, &bytes[..cut % bytes.len()]).unwrap();
         let _ = fs::remove_file(scratch.path("run/box_000005.vtp"));
-        let mut recorder = Recorder::append_vtk(&path, times()).unwrap();
+        let mut recorder = Recorder::append(&path, Vtk, times()).unwrap();
         assert!(recorder.times().len() >= 2, "{cut}");
         if recorder.times().len() == 6 {
             // A kill cannot have done this, since files come before their line.
@@ -67,13 +67,13 @@ fn no_file_of_a_series_is_overwritten() {
     let path = scratch.path("run.pvd");
     fs::create_dir(scratch.path("run")).unwrap();
     fs::write(scratch.path("run/disks_000000.vtp"), "mine").unwrap();
-    assert!(matches!(Recorder::create_vtk(&path, times()), Err(RecordError::Exists { .. })));
+    assert!(matches!(Recorder::create(&path, Vtk, times()), Err(RecordError::Exists { .. })));
     fs::write(&path, "my notes").unwrap();
-    assert!(matches!(Recorder::create_vtk(&path, times()), Err(RecordError::Exists { .. })));
-    assert!(matches!(Recorder::append_vtk(&path, times()), Err(RecordError::NoFrame { .. })));
+    assert!(matches!(Recorder::create(&path, Vtk, times()), Err(RecordError::Exists { .. })));
+    assert!(matches!(Recorder::append(&path, Vtk, times()), Err(RecordError::NoFrame { .. })));
     assert_eq!(fs::read_to_string(&path).unwrap(), "my notes");
     assert_eq!(fs::read_to_string(scratch.path("run/disks_000000.vtp")).unwrap(), "mine");
-    let error = Recorder::create_vtk(scratch.path("run.vtk"), times()).unwrap_err();
+    let error = Recorder::create(scratch.path("run.vtk"), Vtk, times()).unwrap_err();
     assert!(report(&error).ends_with("the name must be of Unicode letters and end in .pvd"));
 }
 
@@ -81,13 +81,13 @@ fn no_file_of_a_series_is_overwritten() {
 fn a_series_that_somebody_has_changed_is_left() {
     let scratch = Scratch::new("series-changed");
     let path = scratch.path("run.pvd");
-    mixture().run_until(3.0, &mut Recorder::create_vtk(&path, times()).unwrap()).unwrap();
+    mixture().run_until(3.0, &mut Recorder::create(&path, Vtk, times()).unwrap()).unwrap();
     let text = fs::read_to_string(&path).unwrap();
     for changed in
         [text.replace("000004", "000005"), text.clone() + "<!-- my notes -->", text.replace("2.5", "2.50")]
     {
         fs::write(&path, &changed).unwrap();
-        assert!(matches!(Recorder::append_vtk(&path, times()), Err(RecordError::Io { .. })), "{changed}");
+        assert!(matches!(Recorder::append(&path, Vtk, times()), Err(RecordError::Io { .. })), "{changed}");
         assert_eq!(fs::read_to_string(&path).unwrap(), changed);
     }
 }
@@ -105,7 +105,7 @@ fn the_walls_are_those_of_the_run() {
     let mut vessel = Vessel::new(container).with("paddle", paddle).unwrap().with("gate", gate).unwrap();
     let disk = Disk::new(place(5.0, 15.0), 0.5).unwrap();
     let mut run = Simulation::builder(Elastic, vessel.clone()).disks([disk]).build().unwrap();
-    let mut recorder = Recorder::create_vtk(&path, times()).unwrap();
+    let mut recorder = Recorder::create(&path, Vtk, times()).unwrap();
     run.run_until(1.0, &mut recorder).unwrap();
     vessel.remove("gate").unwrap();
     run.set_boundary(vessel).unwrap();

@@ -24,7 +24,7 @@ use clap::Parser;
 use granular_edmd::Kind;
 use granular_edmd::observable::{OfKind, Temperatures, from_fn};
 use granular_edmd::prelude::*;
-use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, State};
+use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State};
 use serde_json::{Value, json};
 
 use gallery::command_line::{self, Failure, whole};
@@ -35,7 +35,7 @@ use gallery::progress::Progress;
 /// A run in files that other programs open.
 #[derive(Parser)]
 struct Arguments {
-    /// Number of frames, one for each oscillation.
+    /// Number of frames, one every 1.1 oscillations.
     #[arg(long, default_value_t = 20, value_parser = whole::<100_000>)]
     frames: u64,
     /// Number of disks.
@@ -108,23 +108,15 @@ fn start(arguments: &Arguments) -> Result<Run, Box<dyn Error>> {
 /// Returns the time between two frames, and the time of the last one.
 fn times(arguments: &Arguments) -> (f64, f64) {
     let frames = if arguments.quick { arguments.frames.min(4) } else { arguments.frames };
-    let oscillation = TAU / 10.0;
-    (oscillation, frames as f64 * oscillation)
+    let interval = 1.1 * TAU / 10.0;
+    (interval, frames as f64 * interval)
 }
 
 /// Begins a file of each format.
 fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordError> {
-    let mut recorders = vec![
-        Recorder::create(folder.join("run.xyz"), ExtendedXyz, times)?,
-        Recorder::create(folder.join("run.dump"), LammpsDump, times)?,
-        Recorder::create_gsd(folder.join("run.gsd"), times)?,
-        Recorder::create_vtk(folder.join("run.pvd"), times)?,
-    ];
-    if cfg!(feature = "gzip") {
-        recorders.push(Recorder::create(folder.join("run.xyz.gz"), ExtendedXyz, times)?);
-        recorders.push(Recorder::create(folder.join("run.dump.gz"), LammpsDump, times)?);
-    }
-    Ok(recorders)
+    let packed = if cfg!(feature = "gzip") { ["run.xyz.gz", "run.dump.gz"].as_slice() } else { &[] };
+    let names = ["run.xyz", "run.dump", "run.gsd", "run.pvd"].iter().chain(packed);
+    names.map(|name| Recorder::create(folder.join(name), ByEnding, times)).collect()
 }
 
 /// Begins a file that was not there.
@@ -183,7 +175,11 @@ fn all_of(snapshot: &Snapshot<'_>) -> Value {
         "left": domain.left,
         "right": domain.right,
         "bottom": domain.bottom,
+        // Of an open box, it is null.
+        "top": domain.top,
         "periodic": [domain.periodic_sides, domain.periodic_ends],
+        "floor": snapshot.edges().bottom,
+        "walls": snapshot.moving_walls().iter().map(|(wall, by, phase)| [*wall as f64, by.x, by.y, *phase]).collect::<Vec<_>>(),
         "disks": snapshot.disks().iter().enumerate().map(disk).collect::<Vec<_>>(),
     })
 }

@@ -169,6 +169,14 @@ impl Travel {
         self.along.as_ref().map_or(DVec2::ZERO, |along| along.shift(phase.along))
     }
 
+    /// Returns the displacement along the direction, and the phase of this motion reduced to a period. For a
+    /// part that only turns, the phase is the time within a turn.
+    pub(in crate::boundary) fn moved(&self, phase: Phase) -> Option<(DVec2, f64)> {
+        let turning = || self.frame().map(|turning| phase.turning % turning.period());
+        let along = self.along.as_ref().map(|along| along.motion.phase(phase.along));
+        along.or_else(turning).map(|reduced| (self.shift(phase) + DVec2::ZERO, reduced))
+    }
+
     /// Returns the place of the part at a phase.
     pub(in crate::boundary) fn pose(&self, phase: Phase) -> Pose {
         let shift = self.shift(phase);

@@ -73,6 +73,18 @@ impl Boundary for Vessel {
         Some(placed.part.travel().pose(placed.phase.after(time)).outward(brick.landmarks().next()?))
     }
 
+    fn edges(&self, time: f64) -> Domain {
+        self.container.edges(time)
+    }
+
+    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
+        let Some(brick) = wall.checked_sub(self.container.wall_count()) else {
+            return self.container.wall_motion(wall, time);
+        };
+        let placed = &self.parts[self.walls.get(brick)?.part];
+        if placed.first == brick { placed.part.travel().moved(placed.phase.after(time)) } else { None }
+    }
+
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let parts = self.overlap_with_parts(probe);
         Overlap::deepest(self.container.overlap(probe).into_iter().chain(parts))

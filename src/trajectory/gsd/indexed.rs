@@ -1,18 +1,16 @@
 //! A file of GSD: a header, an index of chunks, their names, and the chunks.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-use super::{CHUNKS, F64, I8, LOG, Shape, U8, U64};
+use super::{CHUNKS, F64, I8, Shape, U8, U64, write_chunks};
 use crate::file::{Growing, Locked, Medium as _};
-use crate::observable::Snapshot;
-use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
-use crate::trajectory::media;
-use crate::trajectory::open::is_gzip;
-use crate::trajectory::store::Store;
+use crate::trajectory::media::{self, is_gzip};
+use crate::trajectory::sink::{Layout, Sink};
+use crate::trajectory::{Frame, RecordError};
 
 /// Bytes of the header, and of an entry of the index.
 const HEADER: usize = 256;
@@ -21,148 +19,191 @@ const ENTRY: usize = 32;
 /// Entries for which the first index has room. An index that is full is followed by one of twice its size.
 const ROOM: usize = 1024;
 
-/// A store of frames in a file of GSD.
+/// Number of the chunk with the time of a frame.
+const TIME: usize = 16;
+
+/// Frames in a file of GSD, and its index: its place and the number of entries for which it has room, the
+/// entries, and the chunks of each frame. The entries are written in place.
 ///
 /// A frame counts once the first of its entries is in the index. So the chunks are written first, then the
 /// other entries, and the first entry at last: a process that dies meanwhile leaves bytes that nobody sees.
 pub(in crate::trajectory) struct Indexed {
-    /// All but the entries of the present index, which are written in place.
-    file: Growing<Locked>,
-    index: Index,
-}
-
-/// The index: its place and the number of entries for which it has room, the entries, and the frames that
-/// they list.
-#[derive(Default)]
-struct Index {
     location: u64,
     room: usize,
     entries: Vec<u8>,
-    times: Vec<f64>,
-    /// The chunks of each frame.
     places: Vec<Range<u64>>,
+    /// True if the file was cut: its index lists frames that it does not have, or its header names an index
+    /// that it does not have.
+    is_cut: bool,
 }
 
 impl Indexed {
-    /// Begins a new file. A name that asks for compression is an error, since an index needs plain bytes.
-    pub(in crate::trajectory) fn create(path: &Path) -> Result<Self, RecordError> {
+    /// Begins a file. A name that asks for compression is an error, since an index needs plain bytes.
+    pub(in crate::trajectory) fn create(path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
         if is_gzip(path) {
             let reason = "a file of GSD is not compressed, so its name must not end in .gz";
-            let error = io::Error::new(io::ErrorKind::InvalidInput, reason);
-            return Err(RecordError::io("use", path)(error));
+            return Err(RecordError::unusable(path, reason));
         }
-        let mut file = media::create(path)?;
-        let index = Index { location: HEADER as u64, room: ROOM, ..Index::default() };
+        let mut file = media::create(path, may_exist)?;
+        let index = Self::first();
         let head = [header(index.location, ROOM as u64), vec![0; ROOM * ENTRY], names()].concat();
-        file.push(&head, &[]).map_err(|error| {
-            // The file is new, and has nothing that could be lost.
-            let _ = fs::remove_file(path);
-            RecordError::io("write to", path)(error)
-        })?;
-        Ok(Self { file, index })
+        file.push(&head, &[]).map_err(RecordError::io("write to", path))?;
+        Ok(Sink::new(file, index))
     }
 
     /// Goes on after the last whole frame of a file.
-    pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
+    pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let medium = media::reopen(path)?;
-        let found = Index::read(medium.file());
-        let (index, length) = found.map_err(RecordError::io("go on in", path))?;
-        if index.times.is_empty() {
-            return Err(RecordError::NoFrame { path: path.to_owned() });
-        }
-        Ok(Self { file: Growing::new(path, medium, length, Vec::new()), index })
+        let mut index = Self::first();
+        let times = index.read(medium.file()).map_err(RecordError::io("go on in", path))?;
+        let file = Growing::new(path, medium, index.end(), Vec::new());
+        Sink::new(file, index).with_frames(times)
     }
 
-    fn push(&mut self, shape: Shape, bytes: &[u8]) -> io::Result<()> {
-        if self.index.entries.len() / ENTRY + CHUNKS.len() > self.index.room {
-            self.enlarge_index()?;
+    /// Returns the index of a file without frames.
+    const fn first() -> Self {
+        Self { location: HEADER as u64, room: ROOM, entries: Vec::new(), places: Vec::new(), is_cut: false }
+    }
+
+    /// Returns the place after everything that the index lists, and after the index.
+    fn end(&self) -> u64 {
+        let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
+        let frames = self.places.last().map_or(0, |place| place.end);
+        least.max(self.location + (self.room * ENTRY) as u64).max(frames)
+    }
+
+    fn write(&mut self, file: &mut Growing<Locked>, shape: Shape, bytes: &[u8]) -> io::Result<()> {
+        if self.is_cut {
+            self.mend(file)?;
         }
-        let start = self.file.length;
-        self.file.push(bytes, &[])?;
+        if self.entries.len() / ENTRY + CHUNKS.len() > self.room {
+            self.enlarge(file)?;
+        }
+        let start = file.length;
+        file.push(bytes, &[])?;
         let (entries, end) = entries(shape, start);
-        let place = self.index.location + self.index.entries.len() as u64;
+        let place = self.location + self.entries.len() as u64;
         // A frame that was not finished may have left more entries than this one has.
         let mut others = entries[ENTRY..].to_vec();
         others.resize((CHUNKS.len() - 1) * ENTRY, 0);
-        self.file.medium.write_at(place + ENTRY as u64, &others)?;
-        self.file.medium.write_at(place, &entries[..ENTRY])?;
-        self.index.entries.extend(entries);
-        self.index.places.push(start..end);
+        file.medium.write_at(place + ENTRY as u64, &others)?;
+        file.medium.write_at(place, &entries[..ENTRY])?;
+        self.entries.extend(entries);
+        self.places.push(start..end);
+        Ok(())
+    }
+
+    /// Takes everything that a cut has torn out of the index, before other bytes take its place.
+    fn mend(&mut self, file: &mut Growing<Locked>) -> io::Result<()> {
+        let rest = vec![0; self.room * ENTRY - self.entries.len()];
+        file.medium.write_at(self.location + self.entries.len() as u64, &rest)?;
+        file.medium.write_at(0, &header(self.location, self.room as u64))?;
+        self.is_cut = false;
         Ok(())
     }
 
     /// Writes the index again after the chunks, with twice the room. The header then points to it.
-    fn enlarge_index(&mut self) -> io::Result<()> {
-        let (location, room) = (self.file.length, 2 * self.index.room);
-        let mut larger = self.index.entries.clone();
+    fn enlarge(&mut self, file: &mut Growing<Locked>) -> io::Result<()> {
+        let (location, room) = (file.length, 2 * self.room);
+        let mut larger = self.entries.clone();
         larger.resize(room * ENTRY, 0);
-        self.file.push(&larger, &[])?;
-        self.file.medium.write_at(0, &header(location, room as u64))?;
-        (self.index.location, self.index.room) = (location, room);
-        Ok(())
-    }
-}
-
-impl Store for Indexed {
-    fn times(&self) -> &[f64] {
-        &self.index.times
-    }
-
-    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
-        let shape = Shape::of(self.index.times.len(), snapshot.disks());
-        self.push(shape, bytes).map_err(RecordError::io("write to", &self.file.path))?;
-        self.index.times.push(snapshot.time());
+        file.push(&larger, &[])?;
+        file.medium.write_at(0, &header(location, room as u64))?;
+        (self.location, self.room) = (location, room);
         Ok(())
     }
 
-    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
-        let place = self.index.places[number].clone();
-        let there = read_at(self.file.medium.file(), place.start, place.end - place.start);
-        Ok(there.map_err(RecordError::io("read", &self.file.path))? == bytes)
-    }
-
-    fn file(&self) -> &Growing<Locked> {
-        &self.file
-    }
-}
-
-impl Index {
-    /// Reads the index of a file, and the number of bytes that the next frame must not overwrite.
-    fn read(file: &File) -> io::Result<(Self, u64)> {
-        let size = file.metadata()?.len();
-        let head = read_at(file, 0, HEADER as u64)?;
-        let (location, room) = (number(&head, 8), number(&head, 16));
-        let mut index = Self { location, room: usize::try_from(room).unwrap_or(0), ..Self::default() };
-        let end = room.checked_mul(ENTRY as u64).and_then(|bytes| bytes.checked_add(location));
-        let Some(end) = end.filter(|&end| end <= size && head == header(location, room)) else {
-            return Err(no_frame("a file of GSD by granular-edmd", "another"));
-        };
-        let entries = read_at(file, location, end - location)?;
-        let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
-        let mut length = end.max(least);
+    /// Reads the index of a file, and returns the times of its whole frames.
+    ///
+    /// Each index but the first lies after the frames of the one before, which stays as it was. So a file
+    /// that lost its last index has the frames of the one before.
+    fn read(&mut self, file: &File) -> io::Result<Vec<f64>> {
+        let (size, head) = (file.metadata()?.len(), read_at(file, 0, HEADER as u64)?);
+        let last = (number(&head, 8), number(&head, 16));
+        check_header(&head, last)?;
+        if size < self.end() {
+            return Err(no_frame("a file of GSD with its index", "a shorter one"));
+        }
+        let mut times = Vec::new();
         loop {
-            let rest = &entries[index.entries.len()..];
-            // The first entry of a frame is written last, so a frame that has it was whole once.
-            if rest.len() < ENTRY || number(rest, 16) == 0 {
-                return Ok((index, length));
+            self.read_frames(file, size, &mut times)?;
+            let next = Self { location: self.end(), room: 2 * self.room, ..Self::first() };
+            let is_last = (self.location, self.room as u64) == last;
+            if is_last || self.is_cut || size < next.end() {
+                self.is_cut |= !is_last;
+                return Ok(times);
             }
-            let start = number(rest, 16);
-            let shape = shape_at(rest, index.times.len());
-            let known = shape.map(|shape| self::entries(shape, start));
-            let Some((known, end)) = known.filter(|(known, end)| rest.starts_with(known) && *end <= size)
-            else {
-                return Err(no_frame("a whole frame", "a damaged one"));
-            };
-            let time = f64::from_bits(number(&read_at(file, end - (8 * LOG) as u64, 8)?, 0));
-            if !time.is_finite() || index.times.last().is_some_and(|&last| last >= time) {
-                return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
+            (self.location, self.room) = (next.location, next.room);
+            if read_at(file, self.location, self.entries.len() as u64)? != self.entries {
+                return Err(no_frame("an index that lists all frames", "another"));
             }
-            index.entries.extend(known);
-            index.times.push(time);
-            index.places.push(start..end);
-            length = length.max(end);
         }
     }
+
+    /// Reads the frames that the present index lists beyond those that are known.
+    fn read_frames(&mut self, file: &File, size: u64, times: &mut Vec<f64>) -> io::Result<()> {
+        let known = self.entries.len();
+        let entries = read_at(file, self.location + known as u64, (self.room * ENTRY - known) as u64)?;
+        let mut rest = entries.as_slice();
+        // The first entry of a frame is written last, so a frame that has it was whole once.
+        while rest.len() >= ENTRY && number(rest, 16) != 0 {
+            let start = number(rest, 16);
+            let (known, end) = self::entries(shape_at(rest, times.len()), start);
+            let Some(after) = rest.strip_prefix(known.as_slice()).filter(|_| start == self.end()) else {
+                return Err(no_frame("a whole frame", "a damaged one"));
+            };
+            if end > size {
+                self.is_cut = true;
+                return Ok(());
+            }
+            let time = known
+                .chunks_exact(ENTRY)
+                .find(|entry| id(entry) == TIME)
+                .map_or(0, |entry| number(entry, 16));
+            let time = f64::from_bits(number(&read_at(file, time, 8)?, 0));
+            if !time.is_finite() || times.last().is_some_and(|&last| last >= time) {
+                return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
+            }
+            times.push(time);
+            self.entries.extend(known);
+            self.places.push(start..end);
+            rest = after;
+        }
+        Ok(())
+    }
+}
+
+impl Layout for Indexed {
+    fn make(&self, frame: &Frame<'_>, bytes: &mut Vec<u8>) -> io::Result<()> {
+        write_chunks(frame, bytes)
+    }
+
+    fn push(
+        &mut self,
+        file: &mut Growing<Locked>,
+        frame: &Frame<'_>,
+        bytes: &[u8],
+    ) -> Result<(), RecordError> {
+        let before = file.length;
+        let written = self.write(file, Shape::of(frame), bytes);
+        written.inspect_err(|_| file.length = before).map_err(RecordError::io("write to", &file.path))
+    }
+
+    fn has(&self, file: &Growing<Locked>, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
+        let place = self.places[number].clone();
+        let there = read_at(file.medium.file(), place.start, place.end - place.start);
+        Ok(there.map_err(RecordError::io("read", &file.path))? == bytes)
+    }
+}
+
+/// Checks that a file is of this version, and that its index is of a size that this version makes.
+fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
+    if head == header(location, room) && (room / ROOM as u64).is_power_of_two() {
+        return Ok(());
+    }
+    let is_ours = head[48..].starts_with(b"granular-edmd");
+    let found = if is_ours { "one of another version, with other chunks" } else { "another" };
+    Err(no_frame("a file of GSD by this version of granular-edmd", found))
 }
 
 /// Returns the header of a file whose index is here, and has room for so many entries.
@@ -184,14 +225,20 @@ fn header(location: u64, room: u64) -> Vec<u8> {
     header
 }
 
-/// Returns the shape of the frame whose entries come next, if they can be those of a frame.
-fn shape_at(entries: &[u8], number: usize) -> Option<Shape> {
-    let rows = |index: usize| {
-        let entry = entries.get(index * ENTRY..(index + 1) * ENTRY)?;
-        let rows = u32::try_from(self::number(entry, 8)).ok()?;
-        (usize::from(u16::from_le_bytes([entry[28], entry[29]])) == index).then_some(rows as usize)
+/// Returns the shape of the frame whose entries come next.
+fn shape_at(entries: &[u8], number: usize) -> Shape {
+    let is_of_frame = |entry: &&[u8]| self::number(entry, 0) == number as u64;
+    let own = || entries.chunks_exact(ENTRY).take(CHUNKS.len()).take_while(is_of_frame);
+    let rows = |chunk| {
+        let rows = own().find(|entry| id(entry) == chunk).map(|entry| self::number(entry, 8));
+        rows.and_then(|rows| u32::try_from(rows).ok()).map_or(0, |rows| rows as usize)
     };
-    Some(Shape { number, disks: rows(5).unwrap_or(0), kinds: rows(4)? })
+    Shape { number, disks: rows(5), kinds: rows(4), walls: rows(20) }
+}
+
+/// Returns the number of the chunk that an entry lists.
+fn id(entry: &[u8]) -> usize {
+    usize::from(u16::from_le_bytes([entry[28], entry[29]]))
 }
 
 /// Returns the entries of a frame whose chunks begin at this place, and the place after the chunks. Chunks

@@ -1,31 +1,41 @@
 //! The header of a data file, which is everything before the first section.
 
-use std::io::BufRead;
-
 use crate::boundary::Domain;
 use crate::trajectory::ReadError;
-use crate::trajectory::lines::{Lines, checked_box, finite, whole};
+use crate::trajectory::lines::{Lines, checked_box, finite, is_upright, whole};
 
 /// The values of the header that the reader needs.
 #[derive(Debug, Default)]
-pub(super) struct Header {
+pub(super) struct Header<'a> {
     pub(super) time: Option<f64>,
     atoms: Found<usize>,
     sides: Found<[f64; 2]>,
     ends: Found<[f64; 2]>,
+    tilts: Found<[f64; 3]>,
+    /// The vectors of a general box and its origin.
+    vectors: [Found<[f64; 3]>; 4],
+    /// Things that disks do not have, such as bonds.
+    pub(super) other: Found<&'a str>,
 }
 
-impl Header {
+/// Names of things by which other styles of atoms are known.
+const OTHERS: [&str; 8] =
+    ["bodies", "ellipsoids", "lines", "triangles", "bonds", "angles", "dihedrals", "impropers"];
+
+/// Names of the vectors of a general box.
+const VECTORS: [&str; 4] = ["avec", "bvec", "cvec", "origin"];
+
+impl<'a> Header<'a> {
     /// Reads the header, and returns it with the name of the first section, if there is one.
-    pub(super) fn read<R: BufRead>(lines: &mut Lines<R>) -> Result<(Self, Option<String>), ReadError> {
+    pub(super) fn read(lines: &mut Lines<'a>) -> Result<(Self, Option<&'a str>), ReadError> {
         let (title, line) = lines.need("the title")?;
         let time = title.split_once(", time = ").map(|(_, time)| finite("time", time, line)).transpose();
         // In a title that another program wrote, words may follow instead of a number.
         let time = if title.contains(super::WRITER) { time? } else { time.unwrap_or(None) };
         let mut header = Self { time, ..Self::default() };
-        while let Some((text, line)) = lines.next_filled()? {
+        while let Some((text, line)) = lines.next_filled() {
             if text.starts_with(char::is_alphabetic) {
-                return Ok((header, Some(text.to_owned())));
+                return Ok((header, Some(text)));
             }
             header.take(text.split('#').next().unwrap_or(""), line)?;
         }
@@ -33,8 +43,8 @@ impl Header {
     }
 
     /// Reads a line of the header.
-    fn take(&mut self, text: &str, line: usize) -> Result<(), ReadError> {
-        let words: Vec<&str> = text.split_whitespace().collect();
+    fn take(&mut self, text: &'a str, line: usize) -> Result<(), ReadError> {
+        let words: Vec<&'a str> = text.split_whitespace().collect();
         let ends = |low: &str, high: &str| -> Result<_, ReadError> {
             Ok([finite("a side of the box", low, line)?, finite("a side of the box", high, line)?])
         };
@@ -45,10 +55,19 @@ impl Header {
             }
             [low, high, "xlo", "xhi"] => once(&mut self.sides, ends(low, high)?, "`xlo xhi`", line)?,
             [low, high, "ylo", "yhi"] => once(&mut self.ends, ends(low, high)?, "`ylo yhi`", line)?,
-            [.., "xy", "xz", "yz"] | [.., "avec" | "bvec" | "cvec"] => {
-                return Err(ReadError::unexpected(line, "the box", "a rectangle", text));
+            [xy, xz, yz, "xy", "xz", "yz"] => {
+                let tilt = |tilt| finite("a tilt of the box", tilt, line);
+                once(&mut self.tilts, [tilt(xy)?, tilt(xz)?, tilt(yz)?], "`xy xz yz`", line)?;
             }
-            // Numbers of things that disks do not have, such as bonds.
+            [x, y, z, name @ ("avec" | "bvec" | "cvec")] | [x, y, z, "abc", name @ "origin"] => {
+                let what = "a vector of the box";
+                let vector = [finite(what, x, line)?, finite(what, y, line)?, finite(what, z, line)?];
+                let index = VECTORS.iter().position(|known| *known == name).unwrap_or_default();
+                once(&mut self.vectors[index], vector, &format!("`{name}`"), line)?;
+            }
+            [count, what] if OTHERS.contains(&what) && count != "0" => {
+                self.other = Some((what, line));
+            }
             _ => {}
         }
         Ok(())
@@ -61,9 +80,24 @@ impl Header {
 
     /// Returns the box.
     pub(super) fn domain(&self, line: usize) -> Result<Domain, ReadError> {
-        let [left, right] = found(self.sides, "`xlo xhi`", line)?;
-        let [bottom, top] = found(self.ends, "`ylo yhi`", line)?;
-        checked_box(Domain::new(left, right, bottom, top), self.ends.map_or(line, |(_, line)| line))
+        let vectors = self.vectors;
+        let is_general = vectors[..3].iter().all(Option::is_some);
+        let [width, height, depth, origin] = vectors.map(|found| found.unwrap_or(([0.0; 3], line)));
+        let ([left, right], [bottom, top], tilts, line, name) = if is_general {
+            let ([width, a, b], [c, height, d], [e, f, _]) = (width.0, height.0, depth.0);
+            let [left, bottom, _] = origin.0;
+            let (sides, ends) = ([left, left + width], [bottom, bottom + height]);
+            (sides, ends, vec![a, b, c, d, e, f], depth.1, "off the diagonal")
+        } else {
+            let (tilts, line) = self.tilts.unwrap_or(([0.0; 3], self.ends.map_or(line, |(_, line)| line)));
+            let (sides, ends) = (found(self.sides, "`xlo xhi`", line), found(self.ends, "`ylo yhi`", line));
+            (sides?, ends?, tilts.to_vec(), line, "xy xz yz")
+        };
+        if !is_upright([right - left, top - bottom], tilts.iter().copied()) {
+            let found = tilts.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+            return Err(ReadError::unexpected(line, "the box", "a rectangle", format!("{found} {name}")));
+        }
+        checked_box(Domain::new(left, right, bottom, top), line)
     }
 }
 

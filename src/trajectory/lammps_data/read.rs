@@ -1,84 +1,151 @@
-//! Data files of LAMMPS, read into disks.
+//! Data files of LAMMPS, read into a table.
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
-use std::io::BufRead;
-
-use glam::DVec2;
+use std::collections::HashMap;
+use std::iter;
 
 use super::header::Header;
-use crate::Kind;
-use crate::trajectory::entry::{Draft, Entry, flat};
-use crate::trajectory::lines::{Lines, number, whole};
-use crate::trajectory::{ReadError, State};
+use crate::boundary::Domain;
+use crate::trajectory::ReadError;
+use crate::trajectory::lines::{Lines, Text, whole};
+use crate::trajectory::table::Table;
 
-/// The atoms of a file by their numbers, with their lines.
-type Atoms = BTreeMap<u64, (usize, Draft)>;
+/// Columns of an atom of the style `sphere`, and of `hybrid sphere`.
+const SPHERE: &str = "id type diameter density x y z";
+const HYBRID: &str = "id type x y z diameter density";
 
-/// The number of the line with the velocity of each atom.
-type Seen = BTreeMap<u64, usize>;
+/// Columns of the periods that an atom has passed, and of its velocity, which follow.
+const OTHERS: &str = "ix iy iz vx vy vz wx wy wz";
 
-impl State {
-    /// Reads a data file of LAMMPS with `atom_style sphere`, as its command `write_data` writes it.
-    ///
-    /// Disks come in the order of the atoms' numbers. The kind of a disk is the type of its atom minus 1. The
-    /// mass is that of a sphere, `m = 4π/3 ρR³`. Without a section of velocities, all are at rest. The box
-    /// has walls on all sides, since the file does not say which directions are periodic. Other sections are
-    /// skipped. Particles that overlap, as soft ones do, are an error here, as in any other file.
-    ///
-    /// # Errors
-    /// If the input fails, the box, the number of atoms, an atom or one of the velocities is missing, an atom
-    /// or a velocity appears twice, the atom style is not `sphere`, a number cannot be read or is out of
-    /// range, a third component is not 0, or disks overlap or are outside the box. The error names the line.
-    ///
-    /// ```
-    /// use granular_edmd::trajectory::State;
-    /// let data = "title\n\n1 atoms\n1 atom types\n\n0 4 xlo xhi\n0 6 ylo yhi\n\n\
-    ///             Atoms # sphere\n\n1 1 1.0 1.5 2.0 3.0 0.0\n";
-    /// let state = State::from_lammps_data(data.as_bytes())?;
-    /// assert_eq!(state.disks()[0].radius(), 0.5);
-    /// assert!((state.disks()[0].mass() - 0.25 * std::f64::consts::PI).abs() < 1e-15);
-    /// # Ok::<(), granular_edmd::trajectory::ReadError>(())
-    /// ```
-    pub fn from_lammps_data(input: impl BufRead) -> Result<Self, ReadError> {
-        let mut lines = Lines::new(input);
-        let (header, mut section) = Header::read(&mut lines)?;
-        let count = header.atoms(lines.line())?;
-        let domain = header.domain(lines.line())?;
-        let (mut atoms, mut seen, mut has_velocities) = (Atoms::new(), Seen::new(), false);
-        while let Some(name) = section {
-            section = match words(&name).first().copied() {
-                Some("Atoms") => {
-                    check_style(&name, lines.line())?;
-                    read_section(&mut lines, |cells, line| add_atom(&mut atoms, cells, line))?
-                }
-                Some("Velocities") => {
-                    has_velocities = true;
-                    read_section(&mut lines, |cells, line| add_velocity(&mut atoms, &mut seen, cells, line))?
-                }
-                _ => read_section(&mut lines, |_, _| Ok(()))?,
-            };
+/// Returns whether a text has lines of the header of a data file.
+pub(in crate::trajectory) fn is_data(text: &str) -> bool {
+    text.lines().skip(1).any(|line| matches!(words(line)[..], [_, "atoms"] | [_, _, "xlo", "xhi"]))
+}
+
+/// Rows of a section by the ids of their atoms, in the order of the file.
+#[derive(Default)]
+struct Section<'a> {
+    rows: Vec<(&'a str, usize)>,
+    of_id: HashMap<u64, usize>,
+}
+
+impl<'a> Section<'a> {
+    fn add(&mut self, what: &str, row: &'a str, line: usize) -> Result<u64, ReadError> {
+        let id = id(row, line)?;
+        if let Some(first) = self.of_id.insert(id, self.rows.len()) {
+            let first = self.rows[first].1;
+            return Err(ReadError::Doubled { line, first, what: format!("{what} {id}") });
         }
-        check_number("atom", atoms.len(), count, lines.line())?;
-        if has_velocities {
-            check_number("velocity", seen.len(), count, lines.line())?;
-        }
-        let entries = atoms.into_values().map(|(line, draft)| draft.entry(line));
-        let disks = Entry::checked(entries.collect::<Result<_, _>>()?, Some(&domain))?;
-        Ok(Self { disks, domain: Some(domain), time: header.time, gravity: None })
+        self.rows.push((row, line));
+        Ok(id)
     }
 }
 
-/// Reads the lines of a section, and returns the name of the next one, if there is one.
-fn read_section<R: BufRead>(
-    lines: &mut Lines<R>,
-    mut take: impl FnMut(&[&str], usize) -> Result<(), ReadError>,
-) -> Result<Option<String>, ReadError> {
-    while let Some((text, line)) = lines.next_filled()? {
-        if text.starts_with(char::is_alphabetic) {
-            return Ok(Some(text.to_owned()));
+/// The sections of a file.
+#[derive(Default)]
+struct Sections<'a> {
+    /// Columns of the atoms, whether the file names their style, and the line that may do so.
+    columns: (&'a str, bool),
+    line: usize,
+    atoms: Section<'a>,
+    velocities: Option<Section<'a>>,
+    /// Numbers of types by their labels.
+    labels: HashMap<&'a str, &'a str>,
+    /// Something that only other styles have, with its line.
+    other: Option<(&'a str, usize)>,
+}
+
+/// Reads a data file.
+pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
+    let mut lines = text.lines()?;
+    let (header, mut section) = Header::read(&mut lines)?;
+    let count = header.atoms(lines.line())?;
+    let domain = header.domain(lines.line())?;
+    let mut sections = Sections { other: header.other, columns: (SPHERE, false), ..Sections::default() };
+    while let Some(name) = section {
+        section = sections.read(&mut lines, name)?;
+    }
+    sections.check(count, lines.line())?;
+    let mut table = sections.table(domain)?;
+    table.time = header.time;
+    Ok(table)
+}
+
+impl<'a> Sections<'a> {
+    /// Reads a section, and returns the name of the next one, if there is one.
+    fn read(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<Option<&'a str>, ReadError> {
+        let Self { atoms, labels, .. } = self;
+        match words(name)[..] {
+            ["Atoms"] => {
+                (self.columns, self.line) = (columns(name, lines.line())?, lines.line());
+                read_section(lines, |row, line| atoms.add("the atom", row, line).map(drop))
+            }
+            ["Velocities"] => {
+                let section = self.velocities.get_or_insert_default();
+                read_section(lines, |row, line| {
+                    let id = section.add("the velocity of atom", row, line)?;
+                    let missing = || format!("the atom {id}, which has a velocity here,");
+                    let is_there = atoms.of_id.contains_key(&id);
+                    is_there.then_some(()).ok_or_else(|| ReadError::missing(line, missing()))
+                })
+            }
+            ["Atom", "Type", "Labels"] => read_section(lines, |row, _| {
+                if let [number, label] = words(row)[..] {
+                    labels.insert(label, number);
+                }
+                Ok(())
+            }),
+            ["Masses" | "Bodies" | "Ellipsoids" | "Lines" | "Triangles" | "Bonds"] => {
+                self.other = self.other.or(Some((name, lines.line())));
+                read_section(lines, |_, _| Ok(()))
+            }
+            _ => read_section(lines, |_, _| Ok(())),
         }
-        take(&words(text), line)?;
+    }
+
+    /// Checks that the atoms are of the style `sphere`, and that none is missing.
+    fn check(&self, count: usize, line: usize) -> Result<(), ReadError> {
+        if let (false, Some((other, line))) = (self.columns.1, self.other) {
+            let found = format!("one with `{other}`");
+            return Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", found));
+        }
+        check_number("atom", self.atoms.rows.len(), count, line)?;
+        let velocities = self.velocities.as_ref();
+        velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
+    }
+
+    /// Returns the disks. Only those of a periodic box pass its sides.
+    fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
+        let names: Vec<&str> = self.columns.0.split_whitespace().collect();
+        let mut table = Table::of_lammps(names.iter().copied().chain(OTHERS.split(' ')), self.line)?;
+        let kind = names.iter().position(|&name| name == "type");
+        for &(row, line) in &self.atoms.rows {
+            let mut atom = atom(row, names.len(), line)?;
+            if let Some(kind) = kind.and_then(|kind| atom.get_mut(kind)) {
+                *kind = self.labels.get(kind).copied().unwrap_or(kind);
+            }
+            domain.periodic_sides |= atom[names.len()] != "0";
+            domain.periodic_ends |= atom[names.len() + 1] != "0";
+            let velocity = velocity(self.velocities.as_ref(), id(row, line)?)?;
+            table.push(atom.into_iter().chain(velocity), line)?;
+        }
+        table.domain = Some(domain);
+        Ok(table)
+    }
+}
+
+/// Reads the rows of a section, and returns the name of the next one, if there is one.
+fn read_section<'a>(
+    lines: &mut Lines<'a>,
+    mut take: impl FnMut(&'a str, usize) -> Result<(), ReadError>,
+) -> Result<Option<&'a str>, ReadError> {
+    while let Some((text, line)) = lines.next_filled() {
+        if text.starts_with(char::is_alphabetic) {
+            return Ok(Some(text));
+        }
+        if !text.starts_with('#') {
+            take(text, line)?;
+        }
     }
     Ok(None)
 }
@@ -99,66 +166,46 @@ fn words(text: &str) -> Vec<&str> {
     text.split('#').next().unwrap_or("").split_whitespace().collect()
 }
 
-/// Checks the style of atoms, if the file names it.
-fn check_style(name: &str, line: usize) -> Result<(), ReadError> {
-    match name.split_once('#').map(|(_, style)| style.trim()) {
-        None | Some("sphere") => Ok(()),
-        Some(style) => Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", style)),
+/// Returns the id with which a row begins.
+fn id(row: &str, line: usize) -> Result<u64, ReadError> {
+    whole("id", row.split_whitespace().next().unwrap_or_default(), line)
+}
+
+/// Returns the columns of the style that the comment behind `Atoms` names, and whether it names the style
+/// `sphere`. The names of the columns may follow the style. LAMMPS writes `hybrid` alone.
+fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {
+    let style = name.split_once('#').map_or("", |(_, style)| style.trim());
+    let words: Vec<&str> = style.split_whitespace().collect();
+    match words[..] {
+        [] => Ok((SPHERE, false)),
+        ["sphere"] => Ok((SPHERE, true)),
+        ["hybrid"] => Ok((HYBRID, false)),
+        ["hybrid", "sphere"] => Ok((HYBRID, true)),
+        ["sphere", ..] if words.contains(&"diameter") => Ok((style.trim_start_matches("sphere"), true)),
+        _ => Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", style)),
     }
 }
 
-/// Adds an atom from its number, type, diameter, density, position, and the periods that it has passed if
-/// they are given.
-fn add_atom(atoms: &mut Atoms, cells: &[&str], line: usize) -> Result<(), ReadError> {
-    let wrong = || {
-        let columns = "of 7 or 10 columns, as `sphere` has them";
-        ReadError::unexpected(line, "an atom", columns, cells.join(" "))
-    };
-    let (&[id, kind, diameter, density, x, y, z], image) = cells.split_first_chunk().ok_or_else(wrong)?;
-    let image = match *image {
-        [] => [0; 2],
-        [right, up, _] => [whole("image", right, line)?, whole("image", up, line)?],
-        _ => return Err(wrong()),
-    };
-    flat(z, line)?;
-    let radius = 0.5 * number("diameter", diameter, line)?;
-    let id = whole("id", id, line)?;
-    let draft = Draft {
-        id: Some(id),
-        kind: of_type(kind, line)?,
-        position: DVec2::new(number("x", x, line)?, number("y", y, line)?),
-        radius,
-        mass: Some(super::mass(number("density", density, line)?, radius)),
-        image,
-        ..Draft::default()
-    };
-    match atoms.insert(id, (line, draft)) {
-        None => Ok(()),
-        Some((first, _)) => Err(ReadError::Doubled { line, first, what: format!("the atom {id}") }),
+/// Returns the cells of an atom: its columns, and the periods that it has passed.
+fn atom(row: &str, columns: usize, line: usize) -> Result<Vec<&str>, ReadError> {
+    let cells = words(row);
+    match cells.len().checked_sub(columns) {
+        Some(0) => Ok(cells.into_iter().chain(iter::repeat_n("0", 3)).collect()),
+        Some(3) => Ok(cells),
+        _ => {
+            let columns = format!("of {columns} or {} columns, as `sphere` has them", columns + 3);
+            Err(ReadError::unexpected(line, "an atom", columns, cells.join(" ")))
+        }
     }
 }
 
-/// Returns the kind for an atom type.
-fn of_type(kind: &str, line: usize) -> Result<Kind, ReadError> {
-    let number = whole::<u32>("type", kind, line)?.checked_sub(1).and_then(|kind| u16::try_from(kind).ok());
-    let number = number.ok_or_else(|| ReadError::unexpected(line, "type", "from 1 to 65536", kind))?;
-    Ok(Kind::new(number))
-}
-
-/// Adds the velocity and the angular velocity of an atom.
-fn add_velocity(atoms: &mut Atoms, seen: &mut Seen, cells: &[&str], line: usize) -> Result<(), ReadError> {
-    let &[id, vx, vy, vz, _, _, turning] = cells else {
-        return Err(ReadError::unexpected(line, "a velocity", "of 7 columns", cells.join(" ")));
-    };
-    flat(vz, line)?;
-    let id = whole("id", id, line)?;
-    if let Some(first) = seen.insert(id, line) {
-        return Err(ReadError::Doubled { line, first, what: format!("the velocity of atom {id}") });
+/// Returns the velocity and the angular velocity of an atom, or zeros if the file has no velocities.
+fn velocity<'a>(velocities: Option<&Section<'a>>, id: u64) -> Result<Vec<&'a str>, ReadError> {
+    let found = velocities.and_then(|section| Some(section.rows[*section.of_id.get(&id)?]));
+    let Some((row, line)) = found else { return Ok(vec!["0"; 6]) };
+    let cells = words(row);
+    match cells.len() {
+        7 => Ok(cells[1..].to_vec()),
+        _ => Err(ReadError::unexpected(line, "a velocity", "of 7 columns", cells.join(" "))),
     }
-    let Some((_, atom)) = atoms.get_mut(&id) else {
-        return Err(ReadError::missing(line, format!("the atom {id}, which has a velocity here,")));
-    };
-    atom.velocity = DVec2::new(number("vx", vx, line)?, number("vy", vy, line)?);
-    atom.angular_velocity = number("angular velocity", turning, line)?;
-    Ok(())
 }

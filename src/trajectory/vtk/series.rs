@@ -4,13 +4,12 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::write_box;
+use super::{write_box, write_disks};
 use crate::file::{Growing, Locked};
-use crate::observable::Snapshot;
-use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media;
-use crate::trajectory::store::Store;
+use crate::trajectory::sink::{Layout, Sink};
+use crate::trajectory::{Frame, RecordError};
 
 /// Beginning and ending of the file of times. The ending follows each frame, so that the file is always
 /// whole.
@@ -18,55 +17,46 @@ const HEAD: &str = "<?xml version=\"1.0\"?>\n\
     <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const TAIL: &str = "</Collection>\n</VTKFile>\n";
 
-/// A store of frames in separate files, in a folder beside the file of times.
+/// Frames in separate files, in a folder beside the file of times.
 pub(in crate::trajectory) struct Series {
     folder: PathBuf,
     /// Name of the folder, as it stands in the file of times.
     name: String,
-    file: Growing<Locked>,
-    times: Vec<f64>,
 }
 
 impl Series {
     /// Begins a new series.
-    pub(in crate::trajectory) fn create(path: &Path) -> Result<Self, RecordError> {
+    pub(in crate::trajectory) fn create(path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
         let (folder, name) = place(path)?;
         fs::create_dir(&folder).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => RecordError::Exists { path: folder.clone() },
             _ => RecordError::io("create", &folder)(error),
         })?;
-        let file = media::create(path).inspect_err(|_| {
+        let file = media::create(path, may_exist).inspect_err(|_| {
             // The folder is new and empty, so nothing is lost.
             let _ = fs::remove_dir(&folder);
         });
         let mut file = file?;
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
-        Ok(Self { folder, name, file, times: Vec::new() })
+        Ok(Sink::new(file, Self { folder, name }))
     }
 
     /// Goes on after the last whole frame of a series.
-    pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
+    pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let (folder, name) = place(path)?;
         let file = media::reopen(path)?;
         let text = io::read_to_string(file.file()).map_err(RecordError::io("read", path))?;
         let (times, length) = times(&text, &name);
-        if times.is_empty() {
-            return Err(RecordError::NoFrame { path: path.to_owned() });
-        }
-        if !is_torn(&text[length..], &name, times.len()) {
+        if !times.is_empty() && !is_torn(&text[length..], &name, times.len()) {
             return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
         }
         let file = Growing::new(path, file, length as u64, TAIL.into());
-        Ok(Self { folder, name, file, times })
-    }
-
-    fn file_of(&self, part: &str, number: usize) -> PathBuf {
-        self.folder.join(file_name(part, number))
+        Sink::new(file, Self { folder, name }).with_frames(times)
     }
 
     /// Writes one of the files of a frame. A killed run may have left that file, whole or torn.
-    fn write(&self, part: &str, bytes: &[u8]) -> Result<(), RecordError> {
-        let path = self.file_of(part, self.times.len());
+    fn write(&self, part: &str, number: usize, bytes: &[u8]) -> Result<(), RecordError> {
+        let path = self.folder.join(file_name(part, number));
         let file = match fs::read(&path) {
             Ok(there) if there == bytes => return Ok(()),
             Ok(there) if bytes.starts_with(&there) => File::create(&path),
@@ -82,30 +72,30 @@ impl Series {
     }
 }
 
-impl Store for Series {
-    fn times(&self) -> &[f64] {
-        &self.times
+impl Layout for Series {
+    fn make(&self, frame: &Frame<'_>, bytes: &mut Vec<u8>) -> io::Result<()> {
+        let snapshot = frame.snapshot();
+        write_disks(bytes, snapshot.disks(), Some(&snapshot.domain()), Some(snapshot.time()))
     }
 
-    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
-        let mut edges = Vec::new();
-        write_box(&mut edges, snapshot).map_err(RecordError::io("make a frame of", &self.file.path))?;
-        self.write("disks", bytes)?;
-        self.write("box", &edges)?;
-        let entry = entry(&self.name, self.times.len(), snapshot.time());
-        let pushed = self.file.push(entry.as_bytes(), TAIL.as_bytes());
-        pushed.map_err(RecordError::io("write to", &self.file.path))?;
-        self.times.push(snapshot.time());
-        Ok(())
+    fn push(
+        &mut self,
+        file: &mut Growing<Locked>,
+        frame: &Frame<'_>,
+        bytes: &[u8],
+    ) -> Result<(), RecordError> {
+        let (mut edges, number, snapshot) = (Vec::new(), frame.number(), frame.snapshot());
+        write_box(&mut edges, snapshot).map_err(RecordError::io("make a frame of", &file.path))?;
+        self.write("disks", number, bytes)?;
+        self.write("box", number, &edges)?;
+        let entry = entry(&self.name, number, snapshot.time());
+        let pushed = file.push(entry.as_bytes(), TAIL.as_bytes());
+        pushed.map_err(RecordError::io("write to", &file.path))
     }
 
-    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
-        let path = self.file_of("disks", number);
+    fn has(&self, _: &Growing<Locked>, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
+        let path = self.folder.join(file_name("disks", number));
         Ok(fs::read(&path).map_err(RecordError::io("read", &path))? == bytes)
-    }
-
-    fn file(&self) -> &Growing<Locked> {
-        &self.file
     }
 }
 
@@ -115,8 +105,7 @@ fn place(path: &Path) -> Result<(PathBuf, String), RecordError> {
     if let Some(name) = name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
         return Ok((path.with_extension(""), escaped(name)));
     }
-    let reason = "the name must be of Unicode letters and end in .pvd";
-    Err(RecordError::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason)))
+    Err(RecordError::unusable(path, "the name must be of Unicode letters and end in .pvd"))
 }
 
 fn file_name(part: &str, number: usize) -> String {

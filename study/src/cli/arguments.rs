@@ -69,21 +69,15 @@ pub(super) enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Writes the disks after each cycle of the first value of a ramp, for OVITO. Frames of a `.gsd` are
-    /// binary; others are extended XYZ.
-    Trajectory {
-        /// The plan, in TOML; `-` for standard input.
-        plan: PathBuf,
-        /// File to write. An existing file is not overwritten.
-        #[arg(long)]
-        out: PathBuf,
-        /// Index of the ramp, counted from 0.
-        #[arg(long, default_value_t = 0)]
-        ramp: usize,
-        /// Number of cycles.
-        #[arg(long, default_value_t = 100)]
-        cycles: u32,
-    },
+    /// Writes the disks after each cycle of the first value of a ramp, for OVITO, LAMMPS or ParaView, by the
+    /// ending of the file.
+    Trajectory(super::trajectory::Wishes),
+    /// Writes the disks of a file of any format to a file of another format.
+    ///
+    /// Columns are found by their names, in any order and case: x, y or pos, velo or vx, radius or diameter,
+    /// mass, density or momenta, omega, orientation or angle, id, type, kind or species, image. Notes on
+    /// standard error say what is ignored, wrapped or shrunk.
+    Convert(super::convert::Wishes),
     /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the
     /// state before one of them.
     ///

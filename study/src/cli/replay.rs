@@ -6,10 +6,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use granular_edmd::replay::{Replayed, Steps};
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, State};
+use granular_edmd::trajectory::State;
 
 use super::collision_rows::{HEADINGS, row};
-use super::source::{Place, Source, ending, tell_end};
+use super::files::Ending;
+use super::source::{Place, Source, tell_end};
 use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
 use crate::{Experiment, Run};
@@ -35,8 +36,8 @@ pub(super) struct Wishes {
     /// Number of collisions to write, the last ones; 10 if there is no `--from`.
     #[arg(long)]
     last: Option<usize>,
-    /// Number of a collision, to write the state before it instead: as a checkpoint for `--start`, or as
-    /// disks if the file ends in .xyz (with the time), .csv or .data.
+    /// Number of a collision, to write the state before it instead: as disks if the file ends in .xyz,
+    /// .lammpstrj, .csv, .data or .vtp, and otherwise as a checkpoint for `--start`.
     #[arg(long, conflicts_with_all = ["from", "disk", "last", "json"])]
     before: Option<u64>,
     /// File to write; standard output if not given. An existing file is not overwritten.
@@ -158,12 +159,9 @@ fn state_before<E: Experiment>(
 
 /// Returns the contents of a file with the present state, by the ending of its name.
 fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
-    let mut contents = Vec::new();
-    match path.map_or("csv", ending) {
-        "xyz" => ExtendedXyz.write_frame(&Frame::new(0, &run.snapshot()), &mut contents)?,
-        "csv" => State::of(&run.snapshot()).write_csv(&mut contents)?,
-        "data" => State::of(&run.snapshot()).write_lammps_data(&mut contents)?,
-        _ => contents = run.checkpoint().to_bytes()?,
-    }
-    Ok(contents)
+    let path = path.unwrap_or(Path::new("-.csv"));
+    let Some(ending) = Ending::of(path) else { return Ok(run.checkpoint().to_bytes()?) };
+    let text = ending.text(path, &State::of(&run.snapshot())).transpose()?;
+    let advice = || PlanError::Toml(format!("`convert` makes {} of a file in .xyz", path.display()));
+    text.ok_or_else(|| advice().into())
 }

@@ -7,8 +7,8 @@ use std::time::Duration;
 use granular_edmd::Simulation;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
-use granular_edmd::simulation::{Checkpoint, Limits, RunEnd, RunError};
-use granular_edmd::trajectory::{self, State};
+use granular_edmd::simulation::{Checkpoint, CheckpointError, Limits, RunEnd, RunError};
+use granular_edmd::trajectory::Reader;
 
 use super::watch::{Watch, is_stopped};
 use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
@@ -28,8 +28,8 @@ pub(super) struct Place {
     /// one ended, which only the folder of a study knows.
     #[arg(long, default_value_t = 0)]
     value: usize,
-    /// File from which the run starts instead: a checkpoint, or disks in a file that ends in .xyz (with their
-    /// time), .csv or .data (of LAMMPS).
+    /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
+    /// --shrink` makes a start from disks that overlap.
     #[arg(long)]
     pub(super) start: Option<PathBuf>,
     /// Absolute time at which the run ends; the end of the value if not given.
@@ -97,29 +97,40 @@ impl<E: Experiment> Source<E> {
 }
 
 /// Starts from a file: a checkpoint, or disks.
-fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>, ExperimentError> {
+pub(super) fn begun<E: Experiment>(
+    experiment: &E,
+    path: &Path,
+    seed: u64,
+) -> Result<Run<E>, ExperimentError> {
     let (rule, boundary) = (experiment.rule()?, experiment.boundary()?);
-    let state = match ending(path) {
-        "xyz" => trajectory::read(path, State::from_xyz)?,
-        "csv" => trajectory::read(path, State::from_csv)?,
-        "data" => trajectory::read(path, State::from_lammps_data)?,
-        _ => {
-            let run = Simulation::resume(&Checkpoint::read(path)?, rule, boundary).build()?;
+    let state = match Checkpoint::read(path) {
+        Err(error) if is_no_checkpoint(&error) => Reader::new().read(path)?,
+        checkpoint => {
+            let run = Simulation::resume(&checkpoint?, rule, boundary).build()?;
             let is_same = run.gravity() == experiment.gravity();
             return if is_same { Ok(run) } else { Err("the checkpoint has another gravity".into()) };
         }
     };
+    for note in state.notes() {
+        tell(&note);
+    }
     if state.domain().is_some_and(|domain| domain != boundary.domain()) {
         tell(&format!("{} is of another box", path.display()));
+    }
+    if state.gravity().is_some_and(|gravity| gravity != experiment.gravity()) {
+        tell(&format!("{} has another gravity; the run takes the gravity of the plan", path.display()));
     }
     let builder = Simulation::builder(rule, boundary).gravity(experiment.gravity());
     let builder = builder.start_time(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
     Ok(builder.disks(state.into_disks()).build()?)
 }
 
-/// Returns the ending of a file's name.
-pub(super) fn ending(path: &Path) -> &str {
-    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default()
+/// Returns whether a file is no checkpoint, or cannot be opened, which its reader tells better.
+fn is_no_checkpoint(error: &CheckpointError) -> bool {
+    match error {
+        CheckpointError::File { source, .. } => matches!(**source, CheckpointError::NotACheckpoint),
+        error => matches!(error, CheckpointError::Io { .. }),
+    }
 }
 
 /// Tells what the reader of a result should know, on standard error.

@@ -1,0 +1,80 @@
+//! Checks of the disks of a file among each other and against their box.
+
+use super::overlap::{self, Overlap};
+use super::settings::Settings;
+use super::{ReadError, State};
+use crate::Disk;
+use crate::boundary::Domain;
+use crate::disk::TOUCHING;
+
+/// Checks the disks of a state, whose lines these are.
+///
+/// Disks outside of periodic sides are moved into the box. If the settings say so, radii shrink until no
+/// disks overlap; otherwise none may overlap by more than the tolerance.
+pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) -> Result<(), ReadError> {
+    let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
+    if let Some(domain) = state.domain {
+        for (disk, &line) in state.disks.iter_mut().zip(lines) {
+            state.wrapped += usize::from(enter(disk, &domain, accepted, line)?);
+        }
+    }
+    let least = if settings.shrinks { TOUCHING } else { accepted };
+    let Some(found) = overlap::deepest(&state.disks, state.domain.as_ref(), least) else { return Ok(()) };
+    let Overlap { pair: [a, b], depth, share, count, is_counted } = found;
+    let is_small = share < 1.0 && settings.tolerance.is_none_or(|tolerance| share <= tolerance);
+    if !(settings.shrinks && is_small && is_counted) {
+        let [line, other] = [lines[a].max(lines[b]), lines[a].min(lines[b])];
+        return Err(ReadError::Overlap { line, other, depth, share, count });
+    }
+    for (disk, &line) in state.disks.iter_mut().zip(lines) {
+        *disk = disk
+            .with_radius(disk.radius() * (1.0 - share))
+            .map_err(|source| ReadError::Disk { line, source })?;
+    }
+    state.shrunk = share;
+    Ok(())
+}
+
+/// Checks that no id appears twice. Ids from 0 on become ids from 1 on, for the id 0 stands for none.
+pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadError> {
+    let mut order: Vec<usize> = (0..disks.len()).collect();
+    order.sort_by_key(|&index| disks[index].id());
+    if let Some(pair) = order.windows(2).find(|pair| disks[pair[0]].id() == disks[pair[1]].id()) {
+        let (first, line, id) = (lines[pair[0]], lines[pair[1]], disks[pair[0]].id());
+        return Err(ReadError::Doubled { line, first, what: format!("the disk {id}") });
+    }
+    let has_zero = order.first().is_some_and(|&index| disks[index].id() == 0);
+    if has_zero {
+        for (disk, &line) in disks.iter_mut().zip(lines) {
+            *disk = disk.with_id(disk.id() + 1).map_err(|source| ReadError::Disk { line, source })?;
+        }
+    }
+    Ok(has_zero)
+}
+
+/// Numbers of periods that a disk can have passed.
+pub(super) const IMAGES: std::ops::RangeInclusive<f64> = -2_147_483_648.0..=2_147_483_647.0;
+
+/// Moves a disk into its box by whole periods, and returns whether it was outside.
+fn enter(disk: &mut Disk, domain: &Domain, accepted: f64, line: usize) -> Result<bool, ReadError> {
+    if domain.contains(disk.position(), TOUCHING * disk.radius()) {
+        return Ok(false);
+    }
+    let place = domain.wrapped(disk.position());
+    let outside = ReadError::Outside { line, x: disk.position().x, y: disk.position().y };
+    if !domain.contains(place, accepted * disk.radius()) {
+        return Err(outside);
+    }
+    let periods = domain.periods();
+    let passed = |axis: usize| {
+        let moved = disk.position()[axis] - place[axis];
+        let passed = if periods[axis] > 0.0 { (moved / periods[axis]).round() } else { 0.0 };
+        let image = f64::from(disk.image()[axis]) + passed;
+        IMAGES.contains(&image).then_some(image as i32)
+    };
+    let (Some(right), Some(up)) = (passed(0), passed(1)) else { return Err(outside) };
+    let moved = disk.with_position(place).map_err(|source| ReadError::Disk { line, source })?;
+    let was_outside = [right, up] != disk.image();
+    *disk = moved.with_image([right, up]);
+    Ok(was_outside)
+}

@@ -1,0 +1,192 @@
+//! The formats of recordings.
+
+use std::fmt;
+use std::path::Path;
+
+use super::gsd::Indexed;
+use super::one_file::OneFile;
+use super::sink::Sink;
+use super::vtk::Series;
+use super::{ExtendedXyz, Format, LammpsDump, RecordError};
+
+/// The format of a recording, made from a value that names it.
+///
+/// | value | file | opened by |
+/// |---|---|---|
+/// | a [`Format`], such as [`ExtendedXyz`] or [`LammpsDump`] | one file, frame after frame | programs that read text |
+/// | [`Gsd`] | one binary file with an index | freud, OVITO, `gsd` |
+/// | [`Vtk`] | two files for each frame, and one for the times | ParaView, VTK |
+/// | [`ByEnding`] | one of these, by the name of the file | |
+pub struct FileFormat(Form);
+
+enum Form {
+    Frames(Box<dyn Format + Send + Sync>),
+    Gsd,
+    Vtk,
+    ByEnding,
+}
+
+/// GSD, the binary format of HOOMD-blue.
+///
+/// Readers go to any frame at once. A frame has half of the bytes of [`ExtendedXyz`], with numbers in single
+/// precision, so it is for analysis: a run cannot start from it as if it had not stopped. The name of the
+/// file must not end in `.gz`.
+///
+/// | chunk | |
+/// |---|---|
+/// | `particles/typeid`, `types` | number of the [`Kind`](crate::Kind); its name is the number |
+/// | `particles/position` | from the center of the box; of an open box, from the middle of its bottom |
+/// | `particles/velocity`, `mass`, `image` | as in [`Disk`](crate::Disk) |
+/// | `particles/diameter` | twice the radius |
+/// | `particles/orientation`, `angmom`, `moment_inertia` | rotation about the third axis |
+/// | `configuration/step`, `box` | number of the frame; width, height and depth |
+/// | `log/particles/id` | id of the disk in the run |
+/// | `log/time`, `gravity` (x, y), `center` (x, y) | in double precision; positions count from the center |
+/// | `log/domain` | left, right, bottom and top, which may be infinite |
+/// | `log/periodic` | 1 for each direction that is periodic, else 0 |
+/// | `log/walls/index`, `x`, `y`, `phase` | [moving walls](crate::observable::Snapshot::moving_walls) |
+///
+/// The format knows only boxes that are periodic in both directions, and so do its readers. Take walls into
+/// account by `log/periodic`; [`recipes`](crate::guide::recipes) has the lines for freud.
+///
+/// `gsd.hoomd.read_log` reads all of `log` if the number of disks is constant, and with `scalar_only=True`
+/// in any case.
+///
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::trajectory::{Gsd, Recorder};
+///
+/// # let folder = std::env::temp_dir().join(format!("granular-edmd-gsd-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder)?;
+/// # let path = folder.join("run.gsd");
+/// let grain = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::X)?;
+/// let mut run = Simulation::builder(Elastic, Container::closed(4.0, 4.0)?).disks([grain]).build()?;
+///
+/// // Let `path` be "run.gsd".
+/// let mut recorder = Recorder::create(&path, Gsd, SampleTimes::every(1.0)?)?;
+/// run.run_until(3.0, &mut recorder)?;
+/// assert_eq!(recorder.times(), [1.0, 2.0, 3.0]);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Gsd;
+
+/// A series of VTK's files, for ParaView.
+///
+/// A file such as `run.pvd` holds the times. A new folder beside it, here `run`, holds two files for each
+/// frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the edges of the box
+/// with the walls in it, such as the parts of a vessel, where they are at this time. Its name must end in
+/// `.pvd`.
+///
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::trajectory::{Recorder, Vtk};
+///
+/// # let folder = std::env::temp_dir().join(format!("granular-edmd-walls-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder)?;
+/// # let path = folder.join("run.pvd");
+/// let drum = Part::drum(DVec2::splat(4.0), 4.0)?.with_rotation(DVec2::splat(4.0), 1.0)?;
+/// let vessel = Vessel::around([("drum", drum)])?;
+/// let disks = initial::random(&vessel, 10, 0.5, 8.0, 1)?;
+/// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+///
+/// // Let `path` be "run.pvd".
+/// let mut recorder = Recorder::create(&path, Vtk, SampleTimes::every(1.0)?)?;
+/// run.run_until(3.0, &mut recorder)?;
+/// assert_eq!(recorder.times(), [1.0, 2.0, 3.0]);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Vtk;
+
+/// The format that the name of the file asks for, in letters of any case.
+///
+/// | ending | format |
+/// |---|---|
+/// | `.xyz`, `.extxyz` | [`ExtendedXyz`] |
+/// | `.dump`, `.lammpstrj` | [`LammpsDump`] |
+/// | `.gsd` | [`Gsd`] |
+/// | `.pvd` | [`Vtk`] |
+///
+/// With the feature `gzip`, `.gz` may follow the name of a text.
+///
+/// ```
+/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::trajectory::{ByEnding, Recorder};
+/// let error = Recorder::create("run.png", ByEnding, SampleTimes::every(1.0)?).unwrap_err();
+/// let cause = std::error::Error::source(&error).unwrap().to_string();
+/// assert_eq!(cause, "no format is known for this ending; take .xyz, .extxyz, .dump, .lammpstrj, .gsd or .pvd");
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ByEnding;
+
+impl<F: Format + Send + Sync + 'static> From<F> for FileFormat {
+    fn from(format: F) -> Self {
+        Self(Form::Frames(Box::new(format)))
+    }
+}
+
+impl From<Gsd> for FileFormat {
+    fn from(_: Gsd) -> Self {
+        Self(Form::Gsd)
+    }
+}
+
+impl From<Vtk> for FileFormat {
+    fn from(_: Vtk) -> Self {
+        Self(Form::Vtk)
+    }
+}
+
+impl From<ByEnding> for FileFormat {
+    fn from(_: ByEnding) -> Self {
+        Self(Form::ByEnding)
+    }
+}
+
+impl fmt::Debug for FileFormat {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("FileFormat").finish_non_exhaustive()
+    }
+}
+
+impl FileFormat {
+    /// Returns the format that the ending of a name asks for.
+    fn of(path: &Path) -> Result<Self, RecordError> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        match name.trim_end_matches(".gz").rsplit_once('.').map(|(_, ending)| ending) {
+            Some("xyz" | "extxyz") => Ok(ExtendedXyz.into()),
+            Some("dump" | "lammpstrj") => Ok(LammpsDump.into()),
+            Some("gsd") => Ok(Gsd.into()),
+            Some("pvd") => Ok(Vtk.into()),
+            _ => {
+                let reason =
+                    "no format is known for this ending; take .xyz, .extxyz, .dump, .lammpstrj, .gsd or .pvd";
+                Err(RecordError::unusable(path, reason))
+            }
+        }
+    }
+
+    /// Begins a file that is new, or may be there and empty.
+    pub(super) fn create(self, path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
+        match self.0 {
+            Form::Frames(format) => OneFile::create(path, format, may_exist),
+            Form::Gsd => Indexed::create(path, may_exist),
+            Form::Vtk => Series::create(path, may_exist),
+            Form::ByEnding => Self::of(path)?.create(path, may_exist),
+        }
+    }
+
+    /// Continues a file after its last whole frame.
+    pub(super) fn reopen(self, path: &Path) -> Result<Sink, RecordError> {
+        match self.0 {
+            Form::Frames(format) => OneFile::reopen(path, format),
+            Form::Gsd => Indexed::reopen(path),
+            Form::Vtk => Series::reopen(path),
+            Form::ByEnding => Self::of(path)?.reopen(path),
+        }
+    }
+}

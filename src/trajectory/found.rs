@@ -1,0 +1,40 @@
+//! Frames that were found in a file.
+
+use super::ReadError;
+use super::lines::Text;
+use super::table::Table;
+
+/// A frame that was found in a file, and is read only if it is wanted.
+pub(super) struct Found<'a> {
+    /// The step by which the file calls the frame.
+    pub(super) step: Option<u64>,
+    pub(super) read: Box<dyn FnOnce() -> Result<Table, ReadError> + 'a>,
+}
+
+impl<'a> Found<'a> {
+    /// A frame of text, and the function that reads it.
+    pub(super) fn in_text(
+        text: Text,
+        step: Option<u64>,
+        read: impl FnOnce(&Text) -> Result<Table, ReadError> + 'a,
+    ) -> Self {
+        let read = move || {
+            let mut table = read(&text)?;
+            match (text.is_torn(), table.is_own, table.lines.last()) {
+                (true, true, Some(&line)) => {
+                    return Err(ReadError::End { line, what: "a line break".to_owned() });
+                }
+                (true, ..) => {
+                    let note = "the last line has no line break: its last number may be cut";
+                    table.notes.push(note.to_owned());
+                }
+                _ => {}
+            }
+            Ok(table)
+        };
+        Self { step, read: Box::new(read) }
+    }
+}
+
+/// The frames of a file, one after another.
+pub(super) type Frames<'a> = Box<dyn Iterator<Item = Result<Found<'a>, ReadError>> + 'a>;

@@ -1,0 +1,178 @@
+//! Disks as a file has them: columns, rows, and the box, time and gravity beside them.
+
+use std::collections::HashMap;
+
+use super::ReadError;
+use super::column::{Column, Quantity};
+use super::lines::{number, whole};
+use crate::Gravity;
+use crate::boundary::Domain;
+use crate::disk::LARGEST_ID;
+
+/// A frame of a file, for all formats the same.
+///
+/// A format names the columns and pushes rows; [`disks`](super::disks) turns them into a state.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    pub(super) columns: Vec<Column>,
+    /// The line that names the columns.
+    pub(super) line: usize,
+    /// Values of the columns with a slot, row after row.
+    values: Vec<f64>,
+    /// Lines of the rows.
+    pub(super) lines: Vec<usize>,
+    /// The number of each name, by first appearance.
+    names: HashMap<String, usize>,
+    /// Types count from 1, and a density is that of a sphere.
+    pub(super) is_of_lammps: bool,
+    /// This crate wrote the file. It always writes a last line break, so a file without one is torn.
+    pub(super) is_own: bool,
+    pub(super) domain: Option<Domain>,
+    /// The box of which scaled positions are shares, if it is not the domain.
+    pub(super) extent: Option<Domain>,
+    pub(super) time: Option<f64>,
+    pub(super) gravity: Option<Gravity>,
+    /// Largest error of a position, from the precision of the file.
+    pub(super) rounding: f64,
+    /// Sentences about the file that a user should know.
+    pub(super) notes: Vec<String>,
+}
+
+impl Table {
+    /// Creates a table of these columns, of which none may appear twice.
+    pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Result<Self, ReadError> {
+        let mut columns: Vec<Column> = columns.into_iter().collect();
+        // Only LAMMPS counts types from 1; elsewhere, a type is a name.
+        if columns.iter().all(|column| column.slot != Quantity::Name.slot(0)) {
+            let types = columns.iter_mut().filter(|column| column.slot == Quantity::Type.slot(0));
+            types.for_each(|column| column.slot = Quantity::Name.slot(0));
+        }
+        Self::checked(columns, line)
+    }
+
+    /// Creates a table of columns that have one component each, with the conventions of LAMMPS.
+    pub(super) fn of_lammps<'a>(
+        names: impl IntoIterator<Item = &'a str>,
+        line: usize,
+    ) -> Result<Self, ReadError> {
+        let columns = names.into_iter().flat_map(|name| Column::of(name, 1));
+        Ok(Self { is_of_lammps: true, ..Self::checked(columns.collect(), line)? })
+    }
+
+    fn checked(columns: Vec<Column>, line: usize) -> Result<Self, ReadError> {
+        for (index, column) in columns.iter().enumerate() {
+            let is_same = |other: &Column| other.slot == column.slot && other.name == column.name;
+            if column.slot.is_some() && columns[..index].iter().any(is_same) {
+                let what = format!("the column `{}`", column.name);
+                return Err(ReadError::Doubled { line, first: line, what });
+            }
+        }
+        Ok(Self { columns, line, ..Self::default() })
+    }
+
+    /// Adds a row, with one cell for each column.
+    pub(super) fn push<'a>(
+        &mut self,
+        cells: impl IntoIterator<Item = &'a str>,
+        line: usize,
+    ) -> Result<(), ReadError> {
+        let (mut count, mut cells) = (0, cells.into_iter());
+        for column in &self.columns {
+            let Some(cell) = cells.next() else { break };
+            count += 1;
+            if let Some(slot) = column.slot {
+                self.values.push(value(column, slot, cell, line, &mut self.names)?);
+            }
+        }
+        count += cells.count();
+        if count != self.columns.len() {
+            let requirement = format!("{}, one for each column", self.columns.len());
+            return Err(ReadError::unexpected(line, "the number of values", requirement, count.to_string()));
+        }
+        self.lines.push(line);
+        Ok(())
+    }
+
+    /// Adds a row of numbers, one for each column.
+    pub(super) fn push_numbers(&mut self, numbers: &[f64], line: usize) {
+        let known = self.columns.iter().zip(numbers).filter(|(column, _)| column.slot.is_some());
+        self.values.extend(known.map(|(_, number)| number));
+        self.lines.push(line);
+    }
+
+    /// Returns the columns that have a slot, in the order of the values of a row.
+    pub(super) fn known(&self) -> impl Iterator<Item = (&Column, usize)> {
+        self.columns.iter().filter_map(|column| Some((column, column.slot?)))
+    }
+
+    /// Returns the values of a slot, with the lines of their rows.
+    pub(super) fn values(&self, slot: usize) -> impl Iterator<Item = (f64, usize)> {
+        let place = self.known().position(|(_, known)| known == slot);
+        place.into_iter().flat_map(|place| self.rows().map(move |(row, line)| (row[place], line)))
+    }
+
+    /// Returns whether a component of a quantity is among the columns.
+    pub(super) fn has(&self, quantity: Quantity, component: usize) -> bool {
+        self.known().any(|(_, slot)| Some(slot) == quantity.slot(component))
+    }
+
+    /// Returns the names of columns that no property of a disk comes from.
+    pub(super) fn ignored(&self) -> Vec<String> {
+        let is_idle = |column: &Column| {
+            let is_name = column.slot == Some(Quantity::Name as usize);
+            let is_time = self.is_of_lammps && column.name == "v_time";
+            column.slot.is_none() && !is_time
+                || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
+        };
+        let idle = self.columns.iter().filter(|column| is_idle(column));
+        let mut names: Vec<String> = idle.map(|column| column.name.clone()).collect();
+        names.dedup();
+        names
+    }
+
+    /// Returns the values of each row, in the order of the known columns, with its line.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[f64], usize)> {
+        let stride = self.known().count().max(1);
+        self.values.chunks(stride).zip(self.lines.iter().copied())
+    }
+
+    /// Returns the lines of the rows alone, to free the rest.
+    pub(super) fn into_lines(self) -> Vec<usize> {
+        self.lines
+    }
+
+    /// Returns the names of kinds in the order of their appearance.
+    pub(super) fn names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
+        names.sort_by_key(|&name| self.names[name]);
+        names
+    }
+}
+
+/// Reads a cell. A name counts by its first appearance.
+fn value(
+    column: &Column,
+    slot: usize,
+    cell: &str,
+    line: usize,
+    names: &mut HashMap<String, usize>,
+) -> Result<f64, ReadError> {
+    let what = column.name.as_str();
+    let is_of = |quantity: Quantity| (0..3).any(|component| quantity.slot(component) == Some(slot));
+    if is_of(Quantity::Name) {
+        let next = names.len();
+        return Ok(*names.entry(cell.to_owned()).or_insert(next) as f64);
+    }
+    if is_of(Quantity::Id) {
+        let id: u64 = whole(what, cell, line)?;
+        let too_large = || ReadError::unexpected(line, what, "at most 2^53", cell);
+        return if id <= LARGEST_ID { Ok(id as f64) } else { Err(too_large()) };
+    }
+    if is_of(Quantity::Kind) {
+        return whole::<u16>(what, cell, line).map(f64::from);
+    }
+    if is_of(Quantity::Image) {
+        return whole::<i32>(what, cell, line).map(f64::from);
+    }
+    number(what, cell, line)
+}

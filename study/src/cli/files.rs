@@ -1,0 +1,105 @@
+//! Files of disks that commands write, by the endings of their names.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use granular_edmd::observable::SampleTimes;
+use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump, Recorder, State};
+
+use super::{Failure, PlanError, StudyError};
+
+/// A format of files of disks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ending {
+    Csv,
+    Data,
+    Dump,
+    Gsd,
+    Pvd,
+    Vtp,
+    Xyz,
+}
+
+/// Endings of names.
+const ENDINGS: [(&str, Ending); 10] = [
+    ("xyz", Ending::Xyz),
+    ("extxyz", Ending::Xyz),
+    ("lammpstrj", Ending::Dump),
+    ("dump", Ending::Dump),
+    ("gsd", Ending::Gsd),
+    ("pvd", Ending::Pvd),
+    ("csv", Ending::Csv),
+    ("data", Ending::Data),
+    ("lmp", Ending::Data),
+    ("vtp", Ending::Vtp),
+];
+
+impl Ending {
+    /// Returns the format of a file, by the ending of its name. A trajectory as text may be compressed.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let (name, is_packed) = name.strip_suffix(".gz").map_or((name.as_str(), false), |name| (name, true));
+        let (_, found) = ENDINGS
+            .into_iter()
+            .find(|(ending, _)| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.')))?;
+        (!is_packed || matches!(found, Self::Xyz | Self::Dump)).then_some(found)
+    }
+
+    /// Returns the format of a file, or the error of an ending that is not accepted.
+    pub(super) fn need(path: &Path, accepts: impl Fn(Self) -> bool) -> Result<Self, PlanError> {
+        Self::of(path).filter(|&ending| accepts(ending)).ok_or_else(|| {
+            let accepted = ENDINGS.iter().filter(|(_, ending)| accepts(*ending));
+            let names: Vec<String> = accepted.map(|(ending, _)| format!(".{ending}")).collect();
+            PlanError::Toml(format!("{} must end in one of {}", path.display(), names.join(", ")))
+        })
+    }
+
+    /// Returns whether a file of the format can have many frames.
+    pub(super) const fn is_trajectory(self) -> bool {
+        matches!(self, Self::Xyz | Self::Dump | Self::Gsd | Self::Pvd)
+    }
+
+    /// Returns the bytes of a file with one state, if it is plain text.
+    pub(super) fn text(self, path: &Path, state: &State) -> Option<io::Result<Vec<u8>>> {
+        if path.extension().is_some_and(|ending| ending == "gz") {
+            return None;
+        }
+        let (snapshot, mut bytes) = (state.snapshot(), Vec::new());
+        let frame = Frame::new(0, &snapshot);
+        let written = match self {
+            Self::Csv => state.write_csv(&mut bytes),
+            Self::Data => state.write_lammps_data(&mut bytes),
+            Self::Vtp => state.write_vtk(&mut bytes),
+            Self::Xyz => ExtendedXyz.write_frame(&frame, &mut bytes),
+            Self::Dump => LammpsDump.write_frame(&frame, &mut bytes),
+            Self::Gsd | Self::Pvd => return None,
+        };
+        Some(written.map(|()| bytes))
+    }
+
+    /// Writes a state to a new file.
+    pub(super) fn write(self, path: &Path, state: &State) -> Result<(), Failure> {
+        if self.is_trajectory() {
+            Recorder::create(path, ByEnding, SampleTimes::every(1.0)?)?.record(&state.snapshot())?;
+            return Ok(());
+        }
+        let bytes = self.text(path, state).transpose()?.unwrap_or_default();
+        let written = fs::File::create_new(path).and_then(|mut file| file.write_all(&bytes));
+        Ok(written.map_err(StudyError::io("write", path))?)
+    }
+
+    /// Returns the names of what the state has and the format has no place for.
+    pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
+        let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
+        let keeps_time = self != Self::Csv;
+        let keeps_gravity = matches!(self, Self::Xyz | Self::Gsd);
+        let parts = [
+            (self == Self::Csv && state.domain().is_some(), "box"),
+            (!keeps_time && state.time().is_some(), "time"),
+            (!keeps_gravity && has_gravity, "gravity"),
+            (!state.kind_names().is_empty(), "names of kinds"),
+        ];
+        parts.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, name)| name).collect()
+    }
+}

@@ -1,0 +1,370 @@
+//! Small files of GSD and of LAMMPS as their programs write them, with the values that they mean, or the refusal.
+
+use std::fs;
+use std::path::PathBuf;
+
+use granular_edmd::trajectory::{Reader, State};
+
+use crate::corpus::{check, shown};
+use crate::report::report;
+
+fn path(name: &str) -> PathBuf {
+    [env!("CARGO_MANIFEST_DIR"), "tests/trajectory/files", name].iter().collect()
+}
+
+/// Checks what files say, without their paths in refusals.
+#[track_caller]
+fn check_files(reader: &Reader, cases: &[(&str, &str)]) {
+    let wrong = cases.iter().filter_map(|(name, expected)| {
+        let found = shown(reader.read(path(name)));
+        let found = found.replace(&format!("cannot use {}: ", path(name).display()), "");
+        (found != *expected).then(|| format!("{name}\n  should be {expected}\n  but is    {found}\n"))
+    });
+    let wrong: Vec<String> = wrong.collect();
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), cases.len(), wrong.join("\n"));
+}
+
+/// `files/make_gsd.py` has made these by the package `gsd`.
+#[test]
+fn files_of_gsd() {
+    let none = " | all diameters are 1, for the file has none";
+    let plain = |kind| format!("-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5{kind}; (1.5 -1) r0.5{none}");
+    check_files(
+        &Reader::new(),
+        &[
+            ("hoomd_plain.gsd", "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5"),
+            ("hoomd_shapes.gsd", "-4..4p -3..3p; (-2 1) r0.45; (0 0) r0.25 k1; (1.5 -1) r0.45"),
+            ("hoomd_spheres.gsd", "-4..4p -3..3p; (-2 1) r0.4; (0 0) r0.3 k1; (1.5 -1) r0.4"),
+            ("hoomd_ellipsoids.gsd", "refused: frame 0: the shapes must be disks, but are `ellipsoid`"),
+            ("hoomd_polygons.gsd", "refused: frame 0: the shapes must be disks, but one is \"Polygon\""),
+            (
+                "hoomd_tilted.gsd",
+                "refused: frame 0: the box must be a rectangle, but has the tilts 0.5, 0 and 0",
+            ),
+            (
+                "hoomd_3d.gsd",
+                "refused: line 2: pos must be the same for all disks, which lie in a plane, but is \"1\"",
+            ),
+            ("hoomd_plane_3d.gsd", &plain("")),
+            ("hoomd_diameters_missing.gsd", &plain("")),
+            ("names.gsd", &plain(" k1")),
+            (
+                "hoomd_overlap.gsd",
+                "refused: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
+                 distance at contact; it is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
+            ),
+            ("hoomd_empty.gsd", &format!("-4..4p -3..3p; {none}")),
+            ("hoomd_none.gsd", "refused: the file ends after line 0, where a frame should follow"),
+            (
+                "hoomd_turning.gsd",
+                &format!(
+                    "-4..4p -3..3p; (-2 1) r0.5 a0.29999998999971866 w0.5000000023134882; (0 0) r0.5 \
+                     a0.29999998999971866 w-1.0000000046269764; (1.5 -1) r0.5 a0.29999998999971866{none}"
+                ),
+            ),
+            (
+                "double.gsd",
+                "-4..4p -3..3p; (-1.899999976158142 1.100000023841858) r0.5 i(1 0); (0.10000000149011612 \
+                 0.10000000149011612) r0.25 k1 i(0 -3); (1.600000023841858 -0.8999999761581421) r0.5",
+            ),
+            (
+                "ids.gsd",
+                &format!(
+                    "0..8p 0..6p; t 2.5; g [0, -1]; (2 4) r0.5 #5; (4 3) r0.5 k1 #2; (5.5 2) r0.5 #9{none}"
+                ),
+            ),
+            ("doubled_ids.gsd", "refused: line 3: the disk 5 stands in line 1 already"),
+            ("outside.gsd", "refused: line 1: the disk at (-2, 5) is outside the box"),
+            (
+                "short.gsd",
+                "refused: frame 0: the chunk `particles/diameter` has 2 rows of 1 numbers, not 3 of 1",
+            ),
+            (
+                "flat.gsd",
+                "refused: frame 0: the chunk `particles/position` has 3 rows of 2 numbers, not 3 of 3",
+            ),
+            ("no_positions.gsd", "refused: frame 0: the chunk `particles/position` is missing"),
+            ("bad_radius.gsd", "refused: line 2 is no disk: radius must be finite and positive, but is 0"),
+            ("bad_mass.gsd", "refused: line 2 is no disk: mass must be finite and positive, but is -1"),
+            ("moving_out.gsd", "refused: line 2: velo must be 0, for disks move in a plane, but is \"1\""),
+            ("types.gsd", "refused: line 2: kind must be from 0 to 65535, but is \"70000\""),
+            (
+                "other_schema.gsd",
+                "refused: GSD must be version 1 or 2 with the schema \"hoomd\", not 2 with the schema \"other\"",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn frames_of_gsd_by_number_and_step() {
+    let first =
+        "-4..4p -3..3p; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)";
+    let second =
+        first.replace("(-2 1)", "(-1.75 1)").replace("(0 0)", "(0.25 0)").replace("(1.5 -1)", "(1.75 -1)");
+    let last = "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5";
+    let none = |what| format!("refused: there is no frame of {what}: the file has 3");
+    for (reader, expected) in [
+        (Reader::new().with_frame(0), first),
+        (Reader::new().with_frame(1), &second),
+        (Reader::new().with_frame(-2), &second),
+        (Reader::new().with_step(100), &second),
+        (Reader::new().with_frame(-1), last),
+        (Reader::new().with_step(200), last),
+        (Reader::new().with_frame(3), &none("number 3")),
+        (Reader::new().with_frame(-4), &none("number -4")),
+        (Reader::new().with_step(50), &none("step 50")),
+    ] {
+        check_files(&reader, &[("hoomd_plain.gsd", expected)]);
+    }
+    let wrapped = "-4..4p -3..3; (1 1) r0.5; (3 0) r0.5 k1; (-3.5 -1) r0.5 i(1 0) | all diameters are 1, for the file \
+                   has none | disks outside of periodic sides, wrapped: 1";
+    check_files(&Reader::new().with_frame(0), &[("outside.gsd", wrapped)]);
+    // All frames one after another, from a stream.
+    let bytes = fs::read(path("hoomd_plain.gsd")).unwrap();
+    let frames: Result<Vec<State>, _> = Reader::new().frames(bytes.as_slice()).unwrap().collect();
+    assert_eq!(frames.unwrap().iter().map(|state| state.disks().len()).collect::<Vec<_>>(), [3, 3, 2]);
+}
+
+/// Cut at any byte, or with any byte changed, a file is read or refused: no panic, and no endless search.
+#[test]
+fn damaged_gsd_is_read_or_refused() {
+    let bytes = fs::read(path("hoomd_plain.gsd")).unwrap();
+    for cut in 0..bytes.len() {
+        let error = Reader::new().read_from(&bytes[..cut]).unwrap_err();
+        assert!(!report(&error).is_empty(), "{cut}");
+    }
+    for place in 0..bytes.len() {
+        for byte in [0, 1, 0xff] {
+            let mut changed = bytes.clone();
+            changed[place] ^= byte;
+            let _ = Reader::new().read_from(changed.as_slice());
+        }
+    }
+}
+
+/// LAMMPS has made these: 22 Jul 2025, `atom_style sphere`, granular disks in the plane.
+#[test]
+fn starts_of_lammps() {
+    for (name, count, periodic, depth) in [
+        ("gas.data", 25, [true, true], 0.0),
+        ("gravity.data", 25, [true, false], 3.617_204e-6),
+        ("hybrid.data", 25, [true, true], 0.0),
+        ("labels.data", 25, [true, true], 1.087_897e-4),
+        ("prism.data", 25, [true, true], 0.0),
+        ("prism_gas.data", 25, [true, true], 0.0),
+        ("prism_walls.data", 25, [true, false], 0.0),
+        ("stiff.data", 25, [true, true], 0.0),
+        ("walls.data", 25, [false, false], 0.0),
+    ] {
+        let state = Reader::new().with_shrunk_radii().read(path(name)).unwrap();
+        let domain = state.domain().unwrap();
+        assert_eq!([domain.periodic_sides, domain.periodic_ends], periodic, "{name}");
+        assert_eq!((domain.width(), domain.height(), state.disks().len()), (8.0, 8.0, count), "{name}");
+        assert!((state.shrunk() - depth).abs() < 1e-9, "{name} {}", state.shrunk());
+        assert_eq!(Reader::new().read(path(name)).is_err(), depth > 0.0, "{name}");
+        // Each disk is as the text says, whatever the order.
+        let text = fs::read_to_string(path(name)).unwrap();
+        let (atoms, velocities) = text.split_once("Velocities").unwrap();
+        let atoms = atoms.split_once("Atoms").unwrap().1;
+        for disk in state.disks() {
+            let row = |section: &str| -> Vec<f64> {
+                let id = format!("{} ", disk.id());
+                let row = section.lines().find(|line| line.starts_with(&id)).unwrap();
+                row.split_whitespace().map(|cell| cell.parse().unwrap()).collect()
+            };
+            let (mut atom, velocity) = (row(atoms), row(velocities));
+            if name == "hybrid.data" {
+                atom[2..7].rotate_left(3);
+            }
+            assert_eq!([disk.position().x, disk.position().y], [atom[4], atom[5]], "{name}");
+            assert!((disk.radius() / (1.0 - state.shrunk()) - 0.5 * atom[2]).abs() < 1e-14);
+            assert_eq!([disk.velocity().x, disk.velocity().y], [velocity[1], velocity[2]]);
+            assert_eq!((disk.angular_velocity(), disk.kind().number()), (velocity[6], atom[1] as u16 - 1));
+            assert!(
+                (disk.mass() - 4.0 / 3.0 * std::f64::consts::PI * (0.5 * atom[2]).powi(3) * atom[3]).abs()
+                    < 1e-14
+            );
+        }
+    }
+    for name in ["deep.data", "deep_2.data"] {
+        let error = report(&Reader::new().read(path(name)).unwrap_err());
+        assert!(error.contains("overlaps the disk of line"), "{error}");
+    }
+}
+
+/// A data file with these lines in its header, with these sections.
+fn data(header: &str, sections: &str) -> String {
+    format!("title\n\n{header}\n\n{sections}")
+}
+
+const BOX: &str = "2 atoms\n0 8 xlo xhi\n0 6 ylo yhi\n-0.5 0.5 zlo zhi";
+const ATOMS: &str = "\n\n1 1 1 6 2 3 0\n2 2 0.5 6 5 3 0\n";
+
+#[test]
+fn data_of_lammps_by_sections_and_styles() {
+    let mass = "m3.141592653589793";
+    let small = "m0.39269908169872414";
+    let two = format!("0..8 0..6; (2 3) r0.5 {mass} #1; (5 3) r0.25 {small} k1 #2");
+    let two_in = |corner: &str| two.replace("0..8 0..6", corner);
+    let plain = |name: &str| data(BOX, &format!("Atoms{name}{ATOMS}"));
+    let with = |lines: &str| data(&format!("{BOX}\n{lines}"), &format!("Atoms{ATOMS}"));
+    let after = |section: &str| format!("{}\n{section}", plain(""));
+    let style = |line, found: &str| {
+        format!("refused: line {line}: the style of atoms must be `sphere`, but is {found:?}")
+    };
+    let torn = " | the last line has no line break: its last number may be cut";
+    let cases: Vec<(String, String)> = vec![
+        (plain(""), two.clone()),
+        (plain(" # sphere"), two.clone()),
+        (plain("   #sphere  "), two.clone()),
+        (plain(" # sphere id type diameter density x y z"), two.clone()),
+        (plain(" # I like comments"), style(8, "I like comments")),
+        (plain(" # body"), style(8, "body")),
+        (plain(" # full"), style(8, "full")),
+        (plain(" # hybrid sphere charge"), style(8, "hybrid sphere charge")),
+        (data(BOX, "Atoms # hybrid sphere\n\n1 1 2 3 0 1 6\n2 2 5 3 0 0.5 6 0 0 0\n"), two.clone()),
+        (data(BOX, "Atoms # hybrid\n\n1 1 2 3 0 1 6\n2 2 5 3 0 0.5 6\n"), two.clone()),
+        (
+            data(BOX, "Atoms # sphere x y z id type density diameter\n\n2 3 0 1 1 6 1\n5 3 0 2 2 6 0.5\n"),
+            two.clone(),
+        ),
+        // Other styles have 7 columns, too.
+        (with("2 bodies"), style(7, "one with `bodies`")),
+        (with("2 ellipsoids"), style(7, "one with `ellipsoids`")),
+        (with("1 lines"), style(7, "one with `lines`")),
+        (with("1 bonds"), style(7, "one with `bonds`")),
+        (with("0 bodies\n0 bonds"), two.clone()),
+        (after("Bodies\n\n1 1 12\n4\n"), style(13, "one with `Bodies`")),
+        (after("Ellipsoids\n\n1 1 1 1 1 0 0 0\n"), style(13, "one with `Ellipsoids`")),
+        (after("Masses\n\n1 1.0\n2 1.0\n"), style(13, "one with `Masses`")),
+        (after("Pair Coeffs # gran\n\n1\n2\n"), two.clone()),
+        // Boxes.
+        (with("0 0 0 xy xz yz"), two.clone()),
+        (with("1e-13 0 -1e-15 xy xz yz"), two.clone()),
+        (
+            with("0.5 0 0 xy xz yz"),
+            "refused: line 7: the box must be a rectangle, but is \"0.5 0 0 xy xz yz\"".into(),
+        ),
+        (
+            data(
+                "2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec\n-1 -2 0 abc origin",
+                &format!("Atoms # sphere{ATOMS}"),
+            ),
+            two_in("-1..7 -2..4"),
+        ),
+        (data("2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")), two.clone()),
+        (
+            data("2 atoms\n8 1 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")),
+            "refused: line 6: the box must be a rectangle, but is \"1 0 0 0 0 0 off the diagonal\"".into(),
+        ),
+        // Labels, comments, line breaks.
+        (
+            data(
+                &format!("{BOX}\n2 atom types"),
+                "Atom Type Labels\n\n1 big\n2 small # the others\n\nAtoms # sphere\n\n1 big 1 6 2 3 0\n2 small 0.5 6 5 3 0\n",
+            ),
+            two.clone(),
+        ),
+        (
+            data(BOX, "Atoms\n# id type\n\n1 1 1 6 2 3 0 # a big one\n  # a small one\n2 2 0.5 6 5 3 0\n"),
+            two.clone(),
+        ),
+        (plain("").trim_end().to_owned(), format!("{two}{torn}")),
+        (plain("").replace('\n', "\r\n").replace(' ', "\t"), two.clone()),
+        // The plane.
+        (plain("").replace("3 0\n", "3 0.25\n"), two.clone()),
+        (plain("").replace("2 3 0\n", "2 3 1e-17\n"), two.clone()),
+        (
+            plain("").replace("2 3 0\n", "2 3 0.25\n"),
+            "refused: line 11: z must be the same for all disks, which lie in a plane, but is \"0\"".into(),
+        ),
+        (
+            after("Velocities\n\n1 0 0 0 0 0 2\n2 1 0 0 0 1 0\n"),
+            "refused: line 11: wy must be 0, for disks move in a plane, but is \"1\"".into(),
+        ),
+        (
+            after("Velocities\n\n2 1 0 0 0 0 2\n1 0 -3 0 0 0 0\n"),
+            two.replace(&format!("{mass} #1"), &format!("{mass} v(0 -3) #1"))
+                .replace(&format!("{small} k1"), &format!("{small} v(1 0) w2 k1")),
+        ),
+        // Only disks of a periodic box have passed its sides.
+        (
+            plain("").replace("2 3 0\n", "2 3 0 -1 0 0\n").replace("5 3 0\n", "13.5 3 0 2 0 0\n"),
+            format!(
+                "0..8p 0..6; (2 3) r0.5 {mass} i(-1 0) #1; (5.5 3) r0.25 {small} k1 i(3 0) #2 | disks outside of \
+                 periodic sides, wrapped: 1"
+            ),
+        ),
+        (
+            plain("").replace("5 3 0\n", "13.5 3 0\n"),
+            "refused: line 11: the disk at (13.5, 3) is outside the box".into(),
+        ),
+    ];
+    let cases: Vec<(&str, &str)> = cases.iter().map(|(text, said)| (text.as_str(), said.as_str())).collect();
+    check(&Reader::new(), &cases);
+}
+
+/// Cut at any byte, a file is read whole, with a note if its last number may be cut, or is refused.
+#[test]
+fn cut_data_is_read_or_refused() {
+    let text = fs::read_to_string(path("labels.data")).unwrap();
+    for cut in 0..text.len() {
+        if let Ok(state) = Reader::new().read_from(&text.as_bytes()[..cut]) {
+            assert_eq!(state.disks().len(), 25, "{cut}");
+            let is_said = state.notes().iter().any(|note| note.contains("no line break"));
+            assert!(
+                is_said || text[..cut].ends_with('\n') || cut < text.find("Velocities").unwrap(),
+                "{cut}"
+            );
+        }
+    }
+}
+
+/// The recipes of the guide: each file has the disks of the last frame, as far as its program keeps them.
+#[test]
+#[ignore = "needs the files of other programs, which `.ci/readers` has them write"]
+fn recipes_are_read_back() {
+    let Ok(folder) = std::env::var("RECIPES") else {
+        return eprintln!("SKIPPED: RECIPES does not name the folder of the recipes");
+    };
+    let folder = PathBuf::from(folder);
+    let end = Reader::new().read(folder.join("end.csv")).unwrap();
+    let (mut read, mut missing) = (0, Vec::new());
+    // The largest error of a number, and whether angles and inertia factors are kept.
+    for (name, error, is_whole) in [
+        ("from_ovito.xyz", 4e-15, true),
+        ("from_ase.xyz", 1e-8, true),
+        ("from_pandas.csv", 0.0, true),
+        ("from_polars.csv", 0.0, true),
+        ("from_lammps.data", 1e-14, false),
+        ("from_lammps.dump", 1e-15, false),
+        ("from_gsd.gsd", 4e-6, true),
+    ] {
+        let Ok(state) = Reader::new().with_shrunk_radii().read(folder.join(name)) else {
+            missing.push(name);
+            continue;
+        };
+        assert!(state.shrunk() < 1e-6, "{name} {}", state.shrunk());
+        assert_eq!(state.disks().len(), end.disks().len(), "{name}");
+        for disk in end.disks() {
+            let back = state.disks().iter().find(|back| back.id() == disk.id()).unwrap();
+            let near = |one: f64, other: f64| assert!((one - other).abs() <= error, "{name}: {one} {other}");
+            near(back.position().x, disk.position().x);
+            near(back.position().y, disk.position().y);
+            near(back.velocity().x, disk.velocity().x);
+            near(back.velocity().y, disk.velocity().y);
+            near(back.angular_velocity(), disk.angular_velocity());
+            near(back.mass(), disk.mass());
+            assert!((back.radius() - disk.radius()).abs() < 1e-7, "OVITO keeps radii in single precision");
+            assert_eq!(back.kind(), disk.kind(), "{name}");
+            if is_whole {
+                assert!((0.5 * (back.angle() - disk.angle())).sin().abs() <= error.max(1e-15), "{name}");
+                near(back.inertia_factor(), disk.inertia_factor());
+            }
+        }
+        read += 1;
+    }
+    assert!(read > 0, "{missing:?} cannot be read");
+    println!("{read} files are read back; not there: {missing:?}");
+}
