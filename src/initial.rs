@@ -8,6 +8,8 @@
 //! | [`random`], [`placed_at_random`] | equal ones, any | random places, up to an area fraction of 0.5 |
 //! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
 //!
+//! A [`Reader`](crate::trajectory::Reader) takes disks from files of other programs.
+//!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
 //! [`with_maxwellian_velocities`] sets them in motion. To place disks around others that are placed already,
 //! put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).

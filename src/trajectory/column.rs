@@ -97,9 +97,10 @@ impl Column {
     /// Returns the columns of a name that stands for this number of components.
     pub(super) fn of(name: &str, count: usize) -> impl Iterator<Item = Self> {
         let plain = name.to_lowercase().replace([' ', '_', '-', '"'], "");
+        let name = Some(name.trim().trim_matches('"')).filter(|name| !name.is_empty());
         (0..count).map(move |component| {
             let slot = if count == 1 { single(&plain) } else { vector(&plain, component, count) };
-            Self { name: name.trim().trim_matches('"').to_owned(), slot }
+            Self { name: name.unwrap_or("(without a name)").to_owned(), slot }
         })
     }
 }

@@ -65,7 +65,7 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     if !either(&[Radius, Diameter], 0) && settings.radius.is_none() {
         return missing("radius");
     }
-    check_plane(table)?;
+    check_plane(table, settings)?;
     let kinds = kinds_of_names(table)?;
     let mut disks = Vec::with_capacity(table.lines.len());
     for (values, line) in table.rows() {
@@ -112,34 +112,35 @@ fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f6
 }
 
 /// Checks that the disks lie in one plane, move in it, and turn in it.
-fn check_plane(table: &Table) -> Result<(), ReadError> {
-    let largest = |slots: &[Option<usize>]| {
-        let values = table.rows().flat_map(|(values, _)| table.known().zip(values));
-        let wanted = values.filter(|((_, slot), _)| slots.contains(&Some(*slot)));
-        wanted.map(|(_, value)| value.abs()).fold(0.0, f64::max)
+fn check_plane(table: &Table, settings: &Settings) -> Result<(), ReadError> {
+    let largest = |quantities: &[Quantity], axes: &[usize]| {
+        let slots =
+            quantities.iter().flat_map(|quantity| axes.iter().filter_map(|&axis| quantity.slot(axis)));
+        slots.flat_map(|slot| table.values(slot)).map(|(value, _)| value.abs()).fold(0.0, f64::max)
     };
-    let places = [Position, Scaled, Unwrapped, UnwrappedScaled].map(|quantity| quantity.slot(2));
-    let size = largest(&[Radius.slot(0), Diameter.slot(0)]);
-    let in_plane = [
-        (Velocity, 2, largest(&[Velocity.slot(0), Velocity.slot(1)])),
-        (Momentum, 2, largest(&[Momentum.slot(0), Momentum.slot(1)])),
-        (AngularVelocity, 0, largest(&[AngularVelocity.slot(2)])),
-        (AngularVelocity, 1, largest(&[AngularVelocity.slot(2)])),
-        (Orientation, 0, 1.0),
-        (Orientation, 1, 1.0),
-    ];
-    let first: Vec<f64> = table.rows().next().map(|(values, _)| values.to_vec()).unwrap_or_default();
-    for (values, line) in table.rows() {
-        for (((column, slot), value), first) in table.known().zip(values).zip(&first) {
-            let of_motion = in_plane.iter().find(|(quantity, axis, _)| quantity.slot(*axis) == Some(slot));
-            let requirement = match of_motion {
-                Some((.., scale)) if value.abs() > FLAT * scale => "0, for disks move in a plane",
-                None if places.contains(&Some(slot)) && (value - first).abs() > FLAT * size.max(1e-9) => {
-                    "the same for all disks, which lie in a plane"
-                }
-                _ => continue,
-            };
-            return Err(ReadError::unexpected(line, &column.name, requirement, value.to_string()));
+    let size = largest(&[Radius, Diameter], &[0]).max(settings.radius.unwrap_or_default());
+    let turning = largest(&[AngularVelocity], &[2]);
+    for (quantity, axis, scale, is_place) in [
+        (Position, 2, size, true),
+        (Scaled, 2, 1.0, true),
+        (Unwrapped, 2, size, true),
+        (UnwrappedScaled, 2, 1.0, true),
+        (Velocity, 2, largest(&[Velocity], &[0, 1]), false),
+        (Momentum, 2, largest(&[Momentum], &[0, 1]), false),
+        (AngularVelocity, 0, turning, false),
+        (AngularVelocity, 1, turning, false),
+        (Orientation, 0, 1.0, false),
+        (Orientation, 1, 1.0, false),
+    ] {
+        let values = || quantity.slot(axis).into_iter().flat_map(|slot| table.values(slot));
+        let plane = values().next().filter(|_| is_place).map_or(0.0, |(value, _)| value);
+        if let Some((value, line)) = values().find(|(value, _)| (value - plane).abs() > FLAT * scale) {
+            let [lie, stay] =
+                ["the same for all disks, which lie in a plane", "0, for disks move in a plane"];
+            let requirement = if is_place { lie } else { stay };
+            let name = table.known().find(|(_, slot)| Some(*slot) == quantity.slot(axis));
+            let name = name.map_or("", |(column, _)| &column.name);
+            return Err(ReadError::unexpected(line, name, requirement, value.to_string()));
         }
     }
     Ok(())
@@ -159,9 +160,15 @@ impl Row<'_> {
     }
 
     /// Returns the first of two answers, if both are there and are alike, or else the one that is there.
-    fn either(&self, what: &str, one: Option<f64>, other: Option<f64>) -> Result<Option<f64>, ReadError> {
+    fn either(
+        &self,
+        what: &str,
+        one: Option<f64>,
+        other: Option<f64>,
+        scale: f64,
+    ) -> Result<Option<f64>, ReadError> {
         match (one, other) {
-            (Some(one), Some(other)) => agree(what, one, other, 0.0, self.line).map(Some),
+            (Some(one), Some(other)) => agree(what, one, other, scale, self.line).map(Some),
             _ => Ok(one.or(other)),
         }
     }
@@ -188,13 +195,13 @@ impl Row<'_> {
     /// Returns the radius and the mass.
     fn size(&self) -> Result<(f64, f64), ReadError> {
         let half = self.get(Diameter, 0).map(|diameter| 0.5 * diameter);
-        let radius = self.either("radius", self.get(Radius, 0), half)?.or(self.settings.radius);
+        let radius = self.either("radius", self.get(Radius, 0), half, 0.0)?.or(self.settings.radius);
         let radius = radius.unwrap_or_default();
         let area = PI * radius * radius;
         let by_density = self.get(Density, 0).map(|density| {
             if self.table.is_of_lammps { sphere_mass(density, radius) } else { density * area }
         });
-        let mass = self.either("mass", self.get(Mass, 0), by_density)?;
+        let mass = self.either("mass", self.get(Mass, 0), by_density, 0.0)?;
         let mass = mass.or_else(|| self.settings.density.map(|density| density * area));
         Ok((radius, mass.unwrap_or(1.0)))
     }
@@ -213,12 +220,8 @@ impl Row<'_> {
             share => Ok(share.map(|share| low + share * length)),
         };
         let scale = if is_known { length } else { 0.0 };
-        let both = |one: Option<f64>, other: Option<f64>| match (one, other) {
-            (Some(one), Some(other)) => agree(name, one, other, scale, self.line).map(Some),
-            _ => Ok(one.or(other)),
-        };
-        let here = both(self.get(Position, axis), scaled(Scaled)?)?;
-        let far = both(self.get(Unwrapped, axis), scaled(UnwrappedScaled)?)?;
+        let here = self.either(name, self.get(Position, axis), scaled(Scaled)?, scale)?;
+        let far = self.either(name, self.get(Unwrapped, axis), scaled(UnwrappedScaled)?, scale)?;
         let image = self.get(Image, axis);
         let period = self.table.domain.map_or(0.0, |domain| along(domain).2);
         let (place, image) = match (here, far) {
@@ -243,7 +246,7 @@ impl Row<'_> {
     /// Returns a component of the velocity.
     fn velocity(&self, axis: usize, mass: f64) -> Result<f64, ReadError> {
         let by_momentum = self.get(Momentum, axis).map(|momentum| momentum / mass);
-        Ok(self.either("velocity", self.get(Velocity, axis), by_momentum)?.unwrap_or_default())
+        Ok(self.either("velocity", self.get(Velocity, axis), by_momentum, 0.0)?.unwrap_or_default())
     }
 
     /// Returns the angle; an orientation alone knows it only within a turn.
@@ -253,7 +256,7 @@ impl Row<'_> {
             _ => None,
         };
         let Some(angle) = self.get(Angle, 0) else { return Ok(half.map_or(0.0, |half| 2.0 * half)) };
-        // An angle of many turns has few digits within a turn, but its sine and cosine are those of the writer.
+        // An angle of many turns has few digits within a turn, but the same sine and cosine as its writer had.
         let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);

@@ -102,9 +102,9 @@ impl Text {
     pub(super) fn lines(&self) -> Result<Lines<'_>, ReadError> {
         let text = str::from_utf8(&self.bytes).map_err(|error| {
             let before = &self.bytes[..error.valid_up_to()];
-            let lines: Vec<&[u8]> = before.split(|&byte| byte == b'\n').collect();
-            let start = before.len() - lines.last().map_or(0, |last| last.len());
-            let line = self.first + lines.len() - 1;
+            let lines = || before.rsplit(|&byte| byte == b'\n');
+            let start = before.len() - lines().next().map_or(0, <[u8]>::len);
+            let line = self.first + lines().count() - 1;
             ReadError::unexpected(line, "the text", "UTF-8", lossy(&self.bytes[start..]))
         })?;
         let text = if self.first == 1 { text.trim_start_matches(BYTE_ORDER_MARK) } else { text };

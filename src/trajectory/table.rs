@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use super::ReadError;
 use super::column::{Column, Quantity};
 use super::lines::{number, whole};
+use crate::Gravity;
 use crate::boundary::Domain;
 use crate::disk::LARGEST_ID;
-use crate::{Gravity, Kind};
 
 /// A frame of a file, for all formats the same.
 ///
 /// A format names the columns and pushes rows; [`disks`](super::disks) turns them into a state.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Table {
     pub(super) columns: Vec<Column>,
     /// The line that names the columns.
@@ -41,29 +41,13 @@ pub(super) struct Table {
 impl Table {
     /// Creates a table of these columns, of which none may appear twice.
     pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Result<Self, ReadError> {
-        let columns: Vec<Column> = columns.into_iter().collect();
-        for (index, column) in columns.iter().enumerate() {
-            let is_same = |other: &Column| other.slot == column.slot && other.name == column.name;
-            if column.slot.is_some() && columns[..index].iter().any(is_same) {
-                let what = format!("the column `{}`", column.name);
-                return Err(ReadError::Doubled { line, first: line, what });
-            }
+        let mut columns: Vec<Column> = columns.into_iter().collect();
+        // Only LAMMPS counts types from 1; elsewhere, a type is a name.
+        if columns.iter().all(|column| column.slot != Quantity::Name.slot(0)) {
+            let types = columns.iter_mut().filter(|column| column.slot == Quantity::Type.slot(0));
+            types.for_each(|column| column.slot = Quantity::Name.slot(0));
         }
-        Ok(Self {
-            columns,
-            line,
-            values: Vec::new(),
-            lines: Vec::new(),
-            names: HashMap::new(),
-            is_of_lammps: false,
-            is_own: false,
-            domain: None,
-            extent: None,
-            time: None,
-            gravity: None,
-            rounding: 0.0,
-            notes: Vec::new(),
-        })
+        Self::checked(columns, line)
     }
 
     /// Creates a table of columns that have one component each, with the conventions of LAMMPS.
@@ -72,7 +56,18 @@ impl Table {
         line: usize,
     ) -> Result<Self, ReadError> {
         let columns = names.into_iter().flat_map(|name| Column::of(name, 1));
-        Ok(Self { is_of_lammps: true, ..Self::new(columns, line)? })
+        Ok(Self { is_of_lammps: true, ..Self::checked(columns.collect(), line)? })
+    }
+
+    fn checked(columns: Vec<Column>, line: usize) -> Result<Self, ReadError> {
+        for (index, column) in columns.iter().enumerate() {
+            let is_same = |other: &Column| other.slot == column.slot && other.name == column.name;
+            if column.slot.is_some() && columns[..index].iter().any(is_same) {
+                let what = format!("the column `{}`", column.name);
+                return Err(ReadError::Doubled { line, first: line, what });
+            }
+        }
+        Ok(Self { columns, line, ..Self::default() })
     }
 
     /// Adds a row, with one cell for each column.
@@ -110,6 +105,12 @@ impl Table {
         self.columns.iter().filter_map(|column| Some((column, column.slot?)))
     }
 
+    /// Returns the values of a slot, with the lines of their rows.
+    pub(super) fn values(&self, slot: usize) -> impl Iterator<Item = (f64, usize)> {
+        let place = self.known().position(|(_, known)| known == slot);
+        place.into_iter().flat_map(|place| self.rows().map(move |(row, line)| (row[place], line)))
+    }
+
     /// Returns whether a component of a quantity is among the columns.
     pub(super) fn has(&self, quantity: Quantity, component: usize) -> bool {
         self.known().any(|(_, slot)| Some(slot) == quantity.slot(component))
@@ -123,16 +124,8 @@ impl Table {
             column.slot.is_none() && !is_time
                 || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };
-        let mut names: Vec<String> = self
-            .columns
-            .iter()
-            .filter(|column| is_idle(column))
-            .map(
-                |column| {
-                    if column.name.is_empty() { "(without a name)".to_owned() } else { column.name.clone() }
-                },
-            )
-            .collect();
+        let idle = self.columns.iter().filter(|column| is_idle(column));
+        let mut names: Vec<String> = idle.map(|column| column.name.clone()).collect();
         names.dedup();
         names
     }
@@ -148,12 +141,11 @@ impl Table {
         self.lines
     }
 
-    /// Returns the names of kinds by their numbers.
+    /// Returns the names of kinds in the order of their appearance.
     pub(super) fn names(&self) -> Vec<&str> {
-        let mut names: Vec<(&str, usize)> =
-            self.names.iter().map(|(name, &at)| (name.as_str(), at)).collect();
-        names.sort_by_key(|&(_, number)| number);
-        names.into_iter().map(|(name, _)| name).collect()
+        let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
+        names.sort_by_key(|&name| self.names[name]);
+        names
     }
 }
 
@@ -166,24 +158,20 @@ fn value(
     names: &mut HashMap<String, usize>,
 ) -> Result<f64, ReadError> {
     let what = column.name.as_str();
-    let image = Quantity::Image as usize;
-    if slot == Quantity::Name as usize {
+    let is_of = |quantity: Quantity| (0..3).any(|component| quantity.slot(component) == Some(slot));
+    if is_of(Quantity::Name) {
         let next = names.len();
-        if let Some(&number) = names.get(cell) {
-            return Ok(number as f64);
-        }
-        names.insert(cell.to_owned(), next);
-        return Ok(next as f64);
+        return Ok(*names.entry(cell.to_owned()).or_insert(next) as f64);
     }
-    if slot == Quantity::Id as usize {
+    if is_of(Quantity::Id) {
         let id: u64 = whole(what, cell, line)?;
         let too_large = || ReadError::unexpected(line, what, "at most 2^53", cell);
         return if id <= LARGEST_ID { Ok(id as f64) } else { Err(too_large()) };
     }
-    if slot == Quantity::Kind as usize {
-        return Ok(Kind::new(whole(what, cell, line)?).number().into());
+    if is_of(Quantity::Kind) {
+        return whole::<u16>(what, cell, line).map(f64::from);
     }
-    if (image..image + 3).contains(&slot) {
+    if is_of(Quantity::Image) {
         return whole::<i32>(what, cell, line).map(f64::from);
     }
     number(what, cell, line)

@@ -42,6 +42,7 @@ mod convert;
 mod diff;
 mod files;
 mod keys;
+mod plans;
 mod replay;
 mod source;
 mod template;
@@ -54,7 +55,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, ValueEnum};
+use clap::Parser;
 
 use super::errors::{PlanError, StudyError, chain};
 use super::json::Object;
@@ -62,7 +63,8 @@ use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
 
-/// Largest number of failed values that `status` prints; its JSON has all.
+/// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status` has
+/// all.
 const LISTED: usize = 8;
 
 /// The way in which a command ended, with its exit code.
@@ -95,9 +97,9 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,
 ) -> ExitCode {
     let ended = match Arguments::parse().command {
-        Command::New { file } => new(example, file.as_deref()),
-        Command::Explain { key } => explain::<E>(key.as_deref()),
-        Command::Check { plan } => check::<E>(&plan),
+        Command::New { file } => plans::new(example, file.as_deref()),
+        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
+        Command::Check { plan } => plans::check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
@@ -105,7 +107,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
-        Command::Completions { shell } => completions(&shell),
+        Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
         Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
@@ -139,20 +141,6 @@ fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     }
 }
 
-fn new<E: Experiment>(
-    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
-    file: Option<&Path>,
-) -> Result<End, Failure> {
-    let text = template::commented(&example()?)?;
-    let Some(path) = file else {
-        say(text.trim_end())?;
-        return Ok(End::Done);
-    };
-    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(StudyError::io("write", path))?;
-    Ok(End::Done)
-}
-
 /// Reads a file, or standard input for the name `-`.
 fn read(path: &Path) -> Result<String, Failure> {
     let text =
@@ -172,36 +160,6 @@ fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure>
         StudyError::Plan(source) => refused(path)(source),
         error => error,
     })?)
-}
-
-fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
-    say(&keys::explained::<E>(key)?)?;
-    Ok(End::Done)
-}
-
-fn completions(shell: &str) -> Result<End, Failure> {
-    let (mut command, mut text) = (Arguments::command(), Vec::new());
-    if shell == "man" {
-        clap_mangen::Man::new(command).render(&mut text)?;
-    } else {
-        let shell = clap_complete::Shell::from_str(shell, true).map_err(|_| {
-            format!("completions are for bash, elvish, fish, powershell, zsh and man, not {shell}")
-        })?;
-        clap_complete::generate(shell, &mut command, "granular-edmd", &mut text);
-    }
-    say(String::from_utf8(text)?.trim_end())?;
-    Ok(End::Done)
-}
-
-fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
-    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
-    let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
-    let repeats = match plan.repeats() {
-        1 => String::new(),
-        repeats => format!(", {repeats} repeats among them"),
-    };
-    say(&format!("{ramps} ramps of {values} values of {cycles} cycles{repeats}"))?;
-    Ok(End::Done)
 }
 
 fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {

@@ -234,3 +234,37 @@ fn files_that_are_no_text() {
             .starts_with("refused: line 1: the file must be extended XYZ, a dump or")
     );
 }
+
+/// Files that version 0.3.0 wrote, to the bit.
+#[test]
+fn files_of_version_0_3_0() {
+    let disks = "(0.1 0.7) r0.5 v(0.3333333333333333 -2) a100000.1 w-0.1 k7 i(-2 1) #3; \
+                 (13.9 2.2250738585072014e-308) r0.3 m0.1 v(-0.00000000000000000001 1) b1 #4";
+    let shown =
+        |disks: &str| disks.replace("2.2250738585072014e-308", &2.225_073_858_507_201_4e-308_f64.to_string());
+    let xyz = "2\nLattice=\"15.0 0.0 0.0 0.0 15.1 0.0 0.0 0.0 1.0\" Origin=\"0.0 -0.1 -0.5\" pbc=\"T F F\" \
+               Properties=id:I:1:species:S:1:pos:R:3:velo:R:3:angle:R:1:angular_velocity:R:1:radius:R:1:mass:R:1:\
+               inertia_factor:R:1:image:I:2:unwrapped:R:2 Time=0.30000000000000004 Gravity=0.3 \
+               Domain=\"0.0 15.0 -0.1 inf\"\n\
+               3 7 0.1 0.7 0.0 0.3333333333333333 -2.0 0.0 100000.1 -0.1 0.5 1.0 0.5 -2 1 -29.9 0.7\n\
+               4 0 13.9 2.2250738585072014e-308 0.0 -1e-20 1.0 0.0 0.0 0.0 0.3 0.1 1.0 0 0 13.9 2.2250738585072014e-308\n";
+    let head = "0..15p -0.1..inf; t 0.30000000000000004; ";
+    let csv = "id,kind,x,y,vx,vy,angle,angular_velocity,radius,mass,inertia_factor,image_x,image_y\n\
+               3,7,0.1,0.7,0.3333333333333333,-2.0,100000.1,-0.1,0.5,1.0,0.5,-2,1\n\
+               4,0,13.9,2.2250738585072014e-308,-1e-20,1.0,0.0,0.0,0.3,0.1,1.0,0,0\n";
+    let dump = "ITEM: UNITS\nlj\nITEM: TIME\n0.30000000000000004\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\n\
+                ITEM: BOX BOUNDS pp fs pp\n0.0 15.0\n-0.1 15.0\n-0.5 0.5\n\
+                ITEM: ATOMS id type x y z xu yu ix iy vx vy angle omegaz radius mass\n\
+                3 8 0.1 0.7 0.0 -29.9 0.7 -2 1 0.3333333333333333 -2.0 100000.1 -0.1 0.5 1.0\n\
+                4 1 13.9 2.2250738585072014e-308 0.0 13.9 2.2250738585072014e-308 0 0 -1e-20 1.0 0.0 0.0 0.3 0.1\n";
+    check(
+        &Reader::new(),
+        &[
+            (xyz, &shown(&format!("{head}g [0, -0.3]; {disks}"))),
+            (csv, &shown(disks)),
+            (dump, &shown(&format!("{head}{}", disks.replace(" b1", "")))),
+        ],
+    );
+    let torn = xyz.trim_end();
+    check(&Reader::new(), &[(torn, "refused: the file ends after line 4, where a line break should follow")]);
+}

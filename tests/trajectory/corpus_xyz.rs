@@ -89,10 +89,14 @@ fn kinds_by_names() {
           fits into u16, but is \"steel\"",
         ],
         [
-            "Properties=type:I:1:pos:R:3:radius:R:1",
-            "70000 1 1 0 0.5",
-            "refused: line 3: type must be from 0 to 65535, \
-          but is \"70000\"",
+            "Properties=type:S:1:pos:R:3:radius:R:1",
+            "A 1 1 0 0.5 / B 3 1 0 0.5",
+            "kinds 0 A, 1 B; (1 1) r0.5; (3 1) r0.5 k1",
+        ],
+        [
+            "Properties=species:S:1:type:I:1:pos:R:3:radius:R:1",
+            "A 70000 1 1 0 0.5",
+            "refused: line 3: type must be from 0 to 65535, but is \"70000\"",
         ],
     ]);
 }
@@ -153,6 +157,8 @@ fn keys_of_extended_xyz() {
         ("Time=3 t=4", "refused: line 2: the key `t` stands in line 2 already"),
         ("Gravity=\"0.5 -1\"", "g [0.5, -1]; (1 2) r0.5"),
         ("gravity=2", "g [0, -2]; (1 2) r0.5"),
+        ("Title=", "(1 2) r0.5"),
+        ("T = 300 K", "(1 2) r0.5"),
         ("energy=-3 energy=4 note=\"a \\\"word\\\" Time=9\" flag", "(1 2) r0.5"),
     ];
     let texts: Vec<String> = cases.iter().map(|(keys, _)| one(keys)).collect();

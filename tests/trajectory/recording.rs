@@ -359,10 +359,10 @@ fn compression_needs_its_feature() {
     let path = scratch.path("a.xyz.gz");
     assert!(matches!(Recorder::create(&path, ExtendedXyz, times()), Err(RecordError::Gzip { .. })));
     assert!(!path.exists());
-    fs::write(&path, "").unwrap();
+    fs::write(&path, [0x1f, 0x8b]).unwrap();
     assert!(
         report(&Reader::new().read(&path).unwrap_err())
-            .ends_with("it is compressed, which needs the feature `gzip`")
+            .ends_with("it is compressed, which needs the feature `gzip` of granular-edmd")
     );
 }
 

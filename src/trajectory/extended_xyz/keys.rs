@@ -36,9 +36,12 @@ impl<'a> Keys<'a> {
         Ok(Self { pairs, line })
     }
 
-    /// Returns the value of a key that may have several names, in any case.
+    /// Returns the value of a key that may have several names, in any case. A single letter has its case,
+    /// since a `T` is a temperature.
     fn value(&self, names: &[&str]) -> Result<Option<&'a str>, ReadError> {
-        let is_named = |name: &str| names.iter().any(|known| known.eq_ignore_ascii_case(name));
+        let is =
+            |known: &str, name: &str| known == name || known.len() > 1 && known.eq_ignore_ascii_case(name);
+        let is_named = |name: &str| names.iter().any(|known| is(known, name));
         let mut found = self.pairs.iter().filter(|(name, _)| is_named(name));
         let first = found.next();
         match found.find(|(_, value)| first.is_some_and(|(_, first)| first != value)) {
@@ -151,14 +154,14 @@ impl<'a> Keys<'a> {
 
 /// Returns the first word of a text, without its quotes or brackets, and the rest; `None` if it does not end.
 fn word(text: &str, ends: impl Fn(char) -> bool) -> Option<(&str, &str)> {
-    let close = match text.chars().next()? {
-        '"' => '"',
-        '\'' => '\'',
+    let open = text.chars().next().unwrap_or(' ');
+    let close = match open {
+        '"' | '\'' => open,
         '{' => '}',
         '[' => ']',
         _ => return Some(text.split_at(text.find(ends).unwrap_or(text.len()))),
     };
-    let (open, mut depth, mut is_escaped) = (text.chars().next()?, 0_usize, false);
+    let (mut depth, mut is_escaped) = (0_usize, false);
     for (place, letter) in text.char_indices() {
         let is_mark = !is_escaped;
         is_escaped = is_mark && letter == '\\';

@@ -65,6 +65,9 @@ pub(super) fn convert(wishes: &Wishes) -> Result<End, Failure> {
     };
     ending.write(&wishes.out, &state)?;
     state.notes().iter().for_each(|note| tell(note));
+    if state.domain().is_none() && ending != Ending::Csv {
+        tell(&format!("{} has no box, and gets the rectangle around its disks", wishes.out.display()));
+    }
     let lost = ending.lost(&state);
     if !lost.is_empty() {
         tell(&format!("{} has no place for the {} of the file", wishes.out.display(), lost.join(", ")));

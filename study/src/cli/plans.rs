@@ -1,0 +1,86 @@
+//! The commands that need no study: a new plan, its check, what its keys mean, and completions.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use clap::{CommandFactory, ValueEnum};
+
+use super::arguments::Arguments;
+use super::{End, Failure, LISTED, keys, read, refused, say, template};
+use crate::errors::StudyError;
+use crate::{Experiment, Plan, PlanError, Ramp};
+
+/// Largest number of values of a ramp that `check` prints in full.
+const MOST_VALUES: usize = 60;
+
+pub(super) fn new<E: Experiment>(
+    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
+    file: Option<&Path>,
+) -> Result<End, Failure> {
+    let text = template::commented(&example()?)?;
+    let Some(path) = file else {
+        say(text.trim_end())?;
+        return Ok(End::Done);
+    };
+    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(StudyError::io("write", path))?;
+    Ok(End::Done)
+}
+
+pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
+    say(&keys::explained::<E>(key)?)?;
+    Ok(End::Done)
+}
+
+pub(super) fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
+    let repeats = match plan.repeats() {
+        1 => String::new(),
+        repeats => format!(", {repeats} repeats among them"),
+    };
+    let (ramp, value) = (counted(ramps, "ramp"), counted(values, "value"));
+    say(&format!("{ramp} of {value} of {cycles} cycles{repeats}"))?;
+    if plan.varied().next().is_none() {
+        return Ok(End::Done);
+    }
+    (0..ramps.min(LISTED)).try_for_each(|ramp| say(&values_of(&plan, ramp)))?;
+    if ramps > LISTED {
+        say(&format!("and {} more", ramps - LISTED))?;
+    }
+    Ok(End::Done)
+}
+
+fn counted(count: usize, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Returns a line with the values of all parameters that differ in or among the ramps.
+fn values_of<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
+    let changing = plan.ramp().map(Ramp::parameter);
+    let fixed = plan.parameters(ramp, 0).into_iter().filter(|(name, _)| Some(*name) != changing);
+    let mut parts: Vec<String> = fixed.map(|(name, value)| format!("{name} = {value}")).collect();
+    if let Some(ramp) = plan.ramp() {
+        let mut values: Vec<String> = ramp.path().map(|(_, value)| value.to_string()).collect();
+        if values.len() > MOST_VALUES {
+            values.splice(LISTED..values.len() - 1, ["…".to_owned()]);
+        }
+        parts.push(format!("{} = {}", ramp.parameter(), values.join(", ")));
+    }
+    format!("  {ramp}: {}", parts.join("; "))
+}
+
+pub(super) fn completions(shell: &str) -> Result<End, Failure> {
+    let (mut command, mut text) = (Arguments::command(), Vec::new());
+    if shell == "man" {
+        clap_mangen::Man::new(command).render(&mut text)?;
+    } else {
+        let shell = clap_complete::Shell::from_str(shell, true).map_err(|_| {
+            format!("completions are for bash, elvish, fish, powershell, zsh and man, not {shell}")
+        })?;
+        clap_complete::generate(shell, &mut command, "granular-edmd", &mut text);
+    }
+    say(String::from_utf8(text)?.trim_end())?;
+    Ok(End::Done)
+}
