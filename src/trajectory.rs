@@ -6,7 +6,7 @@
 //! | format | file | opened by |
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO, ASE, chemfiles, MDAnalysis |
-//! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
+//! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, MDAnalysis, tools around LAMMPS |
 //! | [`Gsd`], as of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
 //! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!

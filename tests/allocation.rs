@@ -12,9 +12,10 @@ use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
+use granular_edmd::boundary::Domain;
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
-use granular_edmd::trajectory::Reader;
+use granular_edmd::trajectory::{Gsd, Reader, Recorder};
 
 struct Counting;
 
@@ -77,6 +78,18 @@ fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// Returns a file of GSD with a frame of disks.
+fn gsd(count: usize) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let place = |n: usize| DVec2::new((n % 200) as f64 + 0.5, (n / 200) as f64 + 0.5);
+    let disks: Vec<Disk> = (0..count).map(|n| Disk::new(place(n), 0.45)).collect::<Result<_, _>>()?;
+    let path = std::env::temp_dir().join(format!("granular-edmd-allocation-{}.gsd", std::process::id()));
+    let snapshot = Snapshot::new(1.0, &disks, Domain::new(0.0, 200.0, 0.0, 200.0), 1.0);
+    Recorder::create(&path, Gsd, SampleTimes::every(1.0)?)?.record(&snapshot)?;
+    let bytes = std::fs::read(&path)?;
+    std::fs::remove_file(&path)?;
+    Ok(bytes)
+}
+
 /// No number in a file makes the reader take memory, only its bytes do.
 #[test]
 fn a_reader_takes_ten_times_its_file_at_most() -> Result<(), Box<dyn std::error::Error>> {
@@ -91,21 +104,25 @@ fn a_reader_takes_ten_times_its_file_at_most() -> Result<(), Box<dyn std::error:
         "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp pp pp\n0 200\n0 200\n0 1\n\
          ITEM: ATOMS id type x y vx vy radius\n"
     );
-    for text in [
+    let texts = [
         rows("id,x,y,vx,vy,radius\n", |n| format!("{n},{}.125,{}.375,0.25,-1.5,0.5", n % 200, n / 200)),
         rows(&dump, |n| format!("{n} 1 {}.125 {}.375 0.25 -1.5 0.5", n % 200, n / 200)),
         rows(&format!("{count}\nProperties=species:S:1:pos:R:3:radius:R:1\n"), |n| {
             format!("name{n} {}.125 {}.375 0.0 0.5", n % 200, n / 200)
         }),
+        rows(&format!("title\n\n{count} atoms\n0 200 xlo xhi\n0 200 ylo yhi\n\nAtoms # sphere\n\n"), |n| {
+            format!("{n} 1 1.0 1.25 {}.125 {}.375 0.0", n % 200, n / 200)
+        }),
         // On one heap.
         rows("id,x,y,vx,vy,radius\n", |n| format!("{n},1.125,2.375,0.25,-1.5,0.5")),
         "18446744073709551615\nProperties=pos:R:2:radius:R:1\n1 1 0.5\n".repeat(1000),
-    ] {
+    ];
+    for text in texts.into_iter().map(String::into_bytes).chain([gsd(count)?]) {
         let before = LIVE.load(Ordering::Relaxed);
         PEAK.store(before, Ordering::Relaxed);
-        let disks = Reader::new().read_from(text.as_bytes()).map(|state| state.disks().len());
+        let disks = Reader::new().read_from(text.as_slice()).map(|state| state.disks().len());
         let (taken, most) = (PEAK.load(Ordering::Relaxed) - before, 10 * text.len() + 100_000);
-        assert!(taken < most, "{taken} bytes for {}: {disks:?}, {text:.60}", text.len());
+        assert!(taken < most, "{taken} bytes for {}: {disks:?}, {:?}", text.len(), text.first_chunk::<20>());
     }
     Ok(())
 }

@@ -106,8 +106,16 @@ fn write_frame(frame: &Frame<'_>, is_timed: bool, out: &mut dyn Write) -> io::Re
     })
 }
 
+/// Skips a frame, and returns its time, or `None` if the frame is cut short.
 fn skip_frame(input: &mut dyn BufRead, is_timed: bool) -> io::Result<Option<f64>> {
-    let Some(mut name) = whole_line(input)? else { return Ok(None) };
+    match whole_frame(input, is_timed) {
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+        time => time.map(Some),
+    }
+}
+
+fn whole_frame(input: &mut dyn BufRead, is_timed: bool) -> io::Result<f64> {
+    let mut name = line(input)?;
     if name == "ITEM: UNITS" {
         if !is_timed {
             return Err(no_frame(
@@ -115,48 +123,42 @@ fn skip_frame(input: &mut dyn BufRead, is_timed: bool) -> io::Result<Option<f64>
                 "one of `TimedLammpsDump`",
             ));
         }
-        let (Some(_), Some(next)) = (whole_line(input)?, whole_line(input)?) else { return Ok(None) };
-        name = next;
+        line(input)?;
+        name = line(input)?;
     }
     let mut time = None;
     if is_timed || name == "ITEM: TIME" {
-        let (Some(text), Some(next)) = (after("ITEM: TIME", &name, input)?, whole_line(input)?) else {
-            return Ok(None);
-        };
-        (time, name) = (Some(text), next);
+        check("ITEM: TIME", &name)?;
+        time = Some(line(input)?);
+        name = line(input)?;
     }
-    let Some(_) = after("ITEM: TIMESTEP", &name, input)? else { return Ok(None) };
-    let Some(count) = item(input, "ITEM: NUMBER OF ATOMS")? else { return Ok(None) };
+    check("ITEM: TIMESTEP", &name)?;
+    line(input)?;
+    check("ITEM: NUMBER OF ATOMS", &line(input)?)?;
+    let count = line(input)?;
     let count: usize = count.parse().map_err(|_| no_frame("a number of atoms", &count))?;
-    let Some(_) = item(input, "ITEM: BOX BOUNDS")? else { return Ok(None) };
-    if !skip_lines(input, 2)? {
-        return Ok(None);
-    }
-    let Some(columns) = whole_line(input)? else { return Ok(None) };
+    check("ITEM: BOX BOUNDS", &line(input)?)?;
+    (0..3).try_for_each(|_| line(input).map(drop))?;
+    let columns = line(input)?;
     if columns.strip_prefix(COLUMNS) != Some(if is_timed { "" } else { TIME }) {
         return Err(no_frame("the columns of this version", &columns));
     }
-    let rest = if time.is_none() && count > 0 {
-        let Some(row) = whole_line(input)? else { return Ok(None) };
-        time = row.split(' ').next_back().map(str::to_owned);
-        count - 1
-    } else {
-        count
-    };
-    let time = time.unwrap_or_default();
-    let time = time.parse().map_err(|_| no_frame("a time", &time))?;
-    Ok(skip_lines(input, rest)?.then_some(time))
+    let is_in_row = time.is_none() && count > 0;
+    let time = if is_in_row { line(input)? } else { time.unwrap_or_default() };
+    let time = time.rsplit(' ').next().unwrap_or_default();
+    let time = time.parse().map_err(|_| no_frame("a time", time))?;
+    let is_whole = skip_lines(input, count - usize::from(is_in_row))?;
+    if is_whole { Ok(time) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
 }
 
-/// Skips a line that must begin with this name, and returns the line after it.
-fn item(input: &mut dyn BufRead, name: &str) -> io::Result<Option<String>> {
-    let Some(line) = whole_line(input)? else { return Ok(None) };
-    after(name, &line, input)
+/// Returns the next line, which must be whole.
+fn line(input: &mut dyn BufRead) -> io::Result<String> {
+    whole_line(input)?.ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
 }
 
-/// Checks that a line begins with this name, and returns the line after it.
-fn after(name: &str, line: &str, input: &mut dyn BufRead) -> io::Result<Option<String>> {
-    if line.starts_with(name) { whole_line(input) } else { Err(no_frame(&format!("`{name}`"), line)) }
+/// Checks that a line begins with this name.
+fn check(name: &str, line: &str) -> io::Result<()> {
+    if line.starts_with(name) { Ok(()) } else { Err(no_frame(&format!("`{name}`"), line)) }
 }
 
 fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io::Result<()> {

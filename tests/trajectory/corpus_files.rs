@@ -277,7 +277,7 @@ fn data_of_lammps_by_sections_and_styles() {
         (plain(" # body"), style(8, "body")),
         (plain(" # full"), style(8, "full")),
         (plain(" # hybrid sphere charge"), style(8, "hybrid sphere charge")),
-        (data(BOX, "Atoms # hybrid sphere\n\n1 1 2 3 0 1 6\n2 2 5 3 0 0.5 6 0 0 0\n"), two.clone()),
+        (data(BOX, "Atoms # hybrid sphere\n\n1 1 2 3 0 1 6 0 0 0\n2 2 5 3 0 0.5 6 0 0 0\n"), two.clone()),
         (data(BOX, "Atoms # hybrid\n\n1 1 2 3 0 1 6\n2 2 5 3 0 0.5 6\n"), two.clone()),
         (
             data(BOX, "Atoms # sphere x y z id type density diameter\n\n2 3 0 1 1 6 1\n5 3 0 2 2 6 0.5\n"),

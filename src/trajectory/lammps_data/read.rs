@@ -2,7 +2,6 @@
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
-use std::iter;
 
 use super::header::Header;
 use crate::boundary::Domain;
@@ -13,9 +12,6 @@ use crate::trajectory::table::Table;
 /// Columns of an atom of the style `sphere`, and of `hybrid sphere`.
 const SPHERE: &str = "id type diameter density x y z";
 const HYBRID: &str = "id type x y z diameter density";
-
-/// Columns of the periods that an atom has passed, and of its velocity, which follow.
-const OTHERS: &str = "ix iy iz vx vy vz wx wy wz";
 
 /// Returns whether a text has lines of the header of a data file.
 pub(in crate::trajectory) fn is_data(text: &str) -> bool {
@@ -116,21 +112,40 @@ impl<'a> Sections<'a> {
 
     /// Returns the disks. Only those of a periodic box pass its sides.
     fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
-        let names: Vec<&str> = self.columns.0.split_whitespace().collect();
-        let mut table = Table::of_lammps(names.iter().copied().chain(OTHERS.split(' ')), self.line)?;
-        let kind = names.iter().position(|&name| name == "type");
+        let mut names: Vec<&str> = self.columns.0.split_whitespace().collect();
+        let (kind, size) = (names.iter().position(|&name| name == "type"), names.len());
+        let has_images = self.atoms.rows.first().is_some_and(|(row, _)| words(row).len() == size + 3);
+        names.extend(["ix", "iy", "iz"].iter().filter(|_| has_images));
+        let others = if self.velocities.is_some() { "vx vy vz wx wy wz" } else { "" };
+        let mut table = Table::of_lammps(names.iter().copied().chain(others.split_whitespace()), self.line)?;
         for &(row, line) in &self.atoms.rows {
-            let mut atom = atom(row, names.len(), line)?;
+            let mut atom = words(row);
+            if atom.len() != names.len() {
+                let columns = format!("of {size} or {} columns, as `sphere` has them", size + 3);
+                return Err(ReadError::unexpected(line, "an atom", columns, atom.join(" ")));
+            }
             if let Some(kind) = kind.and_then(|kind| atom.get_mut(kind)) {
                 *kind = self.labels.get(kind).copied().unwrap_or(kind);
             }
-            domain.periodic_sides |= atom[names.len()] != "0";
-            domain.periodic_ends |= atom[names.len() + 1] != "0";
-            let velocity = velocity(self.velocities.as_ref(), id(row, line)?)?;
-            table.push(atom.into_iter().chain(velocity), line)?;
+            if let [right, up, _] = atom[size..] {
+                domain.periodic_sides |= right != "0";
+                domain.periodic_ends |= up != "0";
+            }
+            table.push(atom.into_iter().chain(self.velocity(id(row, line)?)?), line)?;
         }
         table.domain = Some(domain);
         Ok(table)
+    }
+
+    /// Returns the velocity and the angular velocity of an atom, if the file has velocities.
+    fn velocity(&self, id: u64) -> Result<Vec<&'a str>, ReadError> {
+        let found = self.velocities.as_ref().and_then(|section| Some(section.rows[*section.of_id.get(&id)?]));
+        let Some((row, line)) = found else { return Ok(Vec::new()) };
+        let cells = words(row);
+        match cells.len() {
+            7 => Ok(cells[1..].to_vec()),
+            _ => Err(ReadError::unexpected(line, "a velocity", "of 7 columns", cells.join(" "))),
+        }
     }
 }
 
@@ -183,29 +198,5 @@ fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {
         ["hybrid", "sphere"] => Ok((HYBRID, true)),
         ["sphere", ..] if words.contains(&"diameter") => Ok((style.trim_start_matches("sphere"), true)),
         _ => Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", style)),
-    }
-}
-
-/// Returns the cells of an atom: its columns, and the periods that it has passed.
-fn atom(row: &str, columns: usize, line: usize) -> Result<Vec<&str>, ReadError> {
-    let cells = words(row);
-    match cells.len().checked_sub(columns) {
-        Some(0) => Ok(cells.into_iter().chain(iter::repeat_n("0", 3)).collect()),
-        Some(3) => Ok(cells),
-        _ => {
-            let columns = format!("of {columns} or {} columns, as `sphere` has them", columns + 3);
-            Err(ReadError::unexpected(line, "an atom", columns, cells.join(" ")))
-        }
-    }
-}
-
-/// Returns the velocity and the angular velocity of an atom, or zeros if the file has no velocities.
-fn velocity<'a>(velocities: Option<&Section<'a>>, id: u64) -> Result<Vec<&'a str>, ReadError> {
-    let found = velocities.and_then(|section| Some(section.rows[*section.of_id.get(&id)?]));
-    let Some((row, line)) = found else { return Ok(vec!["0"; 6]) };
-    let cells = words(row);
-    match cells.len() {
-        7 => Ok(cells[1..].to_vec()),
-        _ => Err(ReadError::unexpected(line, "a velocity", "of 7 columns", cells.join(" "))),
     }
 }
