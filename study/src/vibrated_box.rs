@@ -230,6 +230,9 @@ impl Experiment for VibratedBox {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
+        // Disks that fall upwards without a lid never come back, and each event takes them further.
+        let stays = self.height.is_some() || self.gravity >= 0.0;
+        accept(stays, "gravity of a box without a lid", "not negative", self.gravity)?;
         // An open box has room for any number, so a mistyped number must not take all memory.
         accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
         let disks = initial::lattice(&self.boundary()?, self.disks, RADIUS)?;

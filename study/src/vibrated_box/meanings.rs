@@ -4,7 +4,10 @@ pub(super) const MEANINGS: [(&str, &str); 38] = [
     ("disks", "Number of disks, at least 1. Their diameter and their mass are the units."),
     ("width", "Width of the box, in diameters."),
     ("height", "Height of the lid, in diameters. Without a value, the box is open."),
-    ("gravity", "Acceleration downwards, at least 0. The paper has 0.015625 and 0.002025. 0 if not given."),
+    (
+        "gravity",
+        "Acceleration downwards; below 0 only under a lid. The paper has 0.015625 and 0.002025. 0 if not given.",
+    ),
     (
         "inelasticity",
         "q = (1 - r) / 2 of the restitution r, from 0 (elastic) to 0.5: normal, and tangential unless that is given. 0 if not given.",

@@ -206,6 +206,17 @@ fn a_value_that_was_not_tried_is_refused_in_its_turn() -> Result<(), AnyError> {
 }
 
 /// No measured column has the name of a parameter, so each parameter can vary.
+/// Disks that fall upwards would never come back.
+#[test]
+fn gravity_upwards_needs_a_lid() -> Result<(), AnyError> {
+    let upwards = VibratedBox::new(10, 10.0, BASE).with_gravity(-1.0);
+    let protocol = Protocol::new(0, 1, 1)?;
+    let error = report(&Plan::new(upwards.clone(), protocol, 1).unwrap_err());
+    assert!(error.contains("gravity of a box without a lid must be not negative, but is -1"), "{error}");
+    Plan::new(upwards.with_height(20.0), protocol, 1)?;
+    Ok(())
+}
+
 #[test]
 fn every_parameter_of_the_box_can_be_swept() -> Result<(), AnyError> {
     let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
