@@ -1,4 +1,5 @@
-//! Small files of GSD and of LAMMPS as their programs write them, with the values that they mean, or the refusal.
+//! Small files of GSD and of LAMMPS as their programs write them, with the values that they mean, or the
+//! refusal.
 
 use std::fs;
 use std::path::PathBuf;
@@ -134,7 +135,7 @@ fn frames_of_gsd_by_number_and_step() {
     assert_eq!(frames.unwrap().iter().map(|state| state.disks().len()).collect::<Vec<_>>(), [3, 3, 2]);
 }
 
-/// Version 0.3 has made these. They are read; a recorder goes on in a dump with units, and refuses the others.
+/// Version 0.3 has made these. They are read; a recorder goes on in a dump with units, and refuses the rest.
 #[test]
 fn files_of_version_0_3() {
     let disks = "(2 1.875) r0.5 v(1 -0.25) a0.5 w0.5 #1; (3 2.375) r0.35 m0.49 v(0 -0.25) k3 #2";
