@@ -19,7 +19,7 @@ use crate::{Disk, Gravity};
 ///
 /// | column | |
 /// |---|---|
-/// | `species` | symbol of the element whose number is the kind, such as `X` for 0 and `H` for 1; `X` beyond 118 |
+/// | `species` | symbol of the element whose number is the kind: `X` for 0, `H` for 1; `X` beyond 118 |
 /// | `pos` | position of the center; `z` is 0 |
 /// | `kind`, `id` | number of the [`Kind`](crate::Kind); id of the disk in the run |
 /// | `velo` | velocity of the center |

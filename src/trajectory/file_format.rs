@@ -13,7 +13,7 @@ use super::{ExtendedXyz, Format, LammpsDump, RecordError};
 ///
 /// | value | file | opened by |
 /// |---|---|---|
-/// | a [`Format`], such as [`ExtendedXyz`] or [`LammpsDump`] | one file, frame after frame | programs that read text |
+/// | a [`Format`], such as [`ExtendedXyz`] or [`LammpsDump`] | one file, frame after frame | most programs |
 /// | [`Gsd`] | one binary file with an index | freud, OVITO, `gsd` |
 /// | [`Vtk`] | two files for each frame, and one for the times | ParaView, VTK |
 /// | [`ByEnding`] | one of these, by the name of the file | |
@@ -117,7 +117,7 @@ pub struct Vtk;
 /// use granular_edmd::trajectory::{ByEnding, Recorder};
 /// let error = Recorder::create("run.png", ByEnding, SampleTimes::every(1.0)?).unwrap_err();
 /// let cause = std::error::Error::source(&error).unwrap().to_string();
-/// assert_eq!(cause, "no format is known for this ending; take .xyz, .extxyz, .dump, .lammpstrj, .gsd or .pvd");
+/// assert!(cause.starts_with("no format is known for this ending; take .xyz, .extxyz, .dump,"));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]

@@ -70,8 +70,10 @@ fn write_disks(
     out.write_all(TAIL.as_bytes())
 }
 
-/// Writes the edges of the box where its walls are, and other walls, as lines. The array `periodic` is 1 for edges that are not
-/// walls, and `part` is 1 for walls that are not edges. An open box has no lid.
+/// Writes the edges of the box where its walls are, and other walls, as lines.
+///
+/// The array `periodic` is 1 for edges that are not walls, and `part` is 1 for walls that are not edges. An
+/// open box has no lid.
 fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
     let (domain, walls) = (snapshot.edges(), snapshot.wall_lines());
     let Domain { left, right, bottom, .. } = domain;

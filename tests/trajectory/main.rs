@@ -5,6 +5,7 @@
 mod report;
 
 mod corpus;
+mod corpus_data;
 mod corpus_dumps;
 mod corpus_files;
 mod corpus_xyz;

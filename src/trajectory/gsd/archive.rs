@@ -80,8 +80,9 @@ impl<R: Read + Seek> Archive<R> {
 }
 
 impl Chunk {
-    /// Returns a number of the chunk; NaN if it is not there, or its type is not known. A single column in single precision has
-    /// the digits that it shows, so that 0.35 is 0.35.
+    /// Returns a number of the chunk; NaN if it is not there, or its type is not known.
+    ///
+    /// A single column in single precision has the digits that it shows, so that 0.35 is 0.35.
     pub(super) fn number(&self, row: usize, column: usize) -> f64 {
         let (width, mut eight) = (width(self.kind) as usize, [0; 8]);
         let place = (row * self.columns + column) * width;

@@ -143,7 +143,7 @@ impl<R: Read + Seek> View<'_, R> {
             if let Some(momentum) = self.rows("particles/angmom", count, 4)? {
                 let moments = moments.clone();
                 columns.push(Values::new("omega", 3, move |row, axis| {
-                    // A quaternion of angular momentum is twice the orientation times the momentum of the body.
+                    // The angular momentum is twice the orientation times that of the body.
                     let half = turned
                         .as_ref()
                         .map_or([1.0, 0.0], |turned| [0, 3].map(|part| turned.number(row, part)));
