@@ -41,10 +41,10 @@ fn density_at(pressure: f64) -> f64 {
 fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
     for pressure in [0.07, 0.2, 0.5, 1.0, 1.8, 2.6] {
         let force = pressure * WIDTH;
-        let lid = Piston::new(MASS, 0.0, TOP - 9.0)?.with_force(force)?;
+        let lid = Piston::new(MASS, [0.0, TOP - 9.0])?.with_force(force)?;
         // Near its mean height, so that it need not lose a swing to the gas first.
         let start = DISKS as f64 / (WIDTH * density_at(pressure));
-        let lid = lid.starting_at(TOP - start, 0.0)?;
+        let lid = lid.with_start(TOP - start, 0.0)?;
         let container = Container::closed(WIDTH, TOP)?.with_periodic_sides()?.with_piston(Wall::Lid, lid)?;
         let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; DISKS];
         let disks = initial::packed_at_random(&container, disks, start, 1)?;

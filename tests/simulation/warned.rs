@@ -211,7 +211,7 @@ fn a_sink_that_waits_is_no_warning() -> Outcome {
     ];
     let mut vessels = exits.into_iter().map(with_exit).collect::<Outcome<Vec<_>>>()?;
     let lid = || -> Outcome<Container> { Ok(walls()?.with_motion(Wall::Lid, Sinusoidal::new(0.5, 1.0)?)?) };
-    vessels.extend([walls()?.with_absorbing(Wall::Lid)?, lid()?.with_absorbing(Wall::Lid)?].map(Vessel::new));
+    vessels.extend([walls()?.absorbing(Wall::Lid)?, lid()?.absorbing(Wall::Lid)?].map(Vessel::new));
     for vessel in vessels {
         let mut disks = gas(&walls()?)?;
         disks.retain(|disk| disk.position().y < 8.0);

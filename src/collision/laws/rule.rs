@@ -173,28 +173,37 @@ impl Promises {
             _ => kinds.get(usize::from(kind.number()) % kinds.len().max(1)).copied().unwrap_or(kind),
         };
         let hostile = hostile_contacts().map(move |contact| contact.with_kinds(contact.kinds().map(named)));
-        let all_kinds = self.kinds.is_none().then(contacts_of_all_kinds).into_iter().flatten();
-        hostile.chain(all_kinds).chain(random_contacts(self.seed, kinds))
+        hostile.chain(random_contacts(self.seed, kinds))
+    }
+
+    /// Returns ordinary contacts of all kinds, unless some are named.
+    fn contacts_of_kinds(&self) -> impl Iterator<Item = Contact> + use<> {
+        self.kinds.is_none().then(contacts_of_all_kinds).into_iter().flatten()
     }
 }
 
 /// Checks that `rule` keeps its promises, and that it gives the same answers when it is asked again in other
 /// orders.
 ///
-/// The contacts are all [`hostile_contacts`], an ordinary one for each kind with its like, with the default
-/// kind and with a wall, and twelve thousand at random: disks, straight, convex and hollow walls, relative
-/// spins, masses up to a ratio of 10⁶ and infinite ones, and last collisions at any time. Each is also tried with the partners exchanged and as its mirror image. The page
+/// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
+/// convex and hollow walls, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
+/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. Each kind has an
+/// ordinary contact with its like, with the default kind and with a wall. The page
 /// "Validation" tells which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken, at the simplest contact at which the same promise is still broken.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
+    let answer = |contact: &Contact| promises.check_answer(rule, contact);
+    let simplify = |contact, violation| simplest(contact, violation, |contact| answer(contact).err());
     let mut answers = Vec::new();
     for contact in promises.contacts() {
-        let impulse = promises.check_answer(rule, &contact).map_err(|violation| {
-            simplest(contact, violation, |contact| promises.check_answer(rule, contact).err())
-        })?;
+        let impulse = answer(&contact).map_err(|violation| simplify(contact, violation))?;
         answers.push((contact, impulse));
+    }
+    for contact in promises.contacts_of_kinds() {
+        let verdict = promises.check(&contact, rule.impulse(&contact));
+        verdict.map_err(|violation| simplify(contact, violation))?;
     }
     // A rule with a memory remembers other contacts in each pass.
     let count = answers.len();
@@ -224,7 +233,9 @@ where
     S: CollisionRule + ?Sized,
 {
     let differ = |contact: &Contact| bits(first.impulse(contact)) != bits(second.impulse(contact));
-    let difference = Promises::new().contacts().find(differ).map(|contact| format!("in {contact}"));
+    let promises = Promises::new();
+    let mut contacts = promises.contacts().chain(promises.contacts_of_kinds());
+    let difference = contacts.find(differ).map(|contact| format!("in {contact}"));
     check_pair("collision rule", [first.fingerprint(), second.fingerprint()], difference)
 }
 

@@ -113,7 +113,7 @@ fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>
         tell(&format!("{} is of another box", path.display()));
     }
     let builder = Simulation::builder(rule, boundary).gravity(experiment.gravity());
-    let builder = builder.start_time(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
+    let builder = builder.starting_at(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
     Ok(builder.disks(state.into_disks()).build()?)
 }
 
