@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{CollisionCounts, Snapshot};
+use granular_edmd::observable::{Collision, CollisionCounts, Partner, Snapshot, on_collision};
 use granular_edmd::simulation::Limits;
 use granular_edmd::wall::Piston;
 use granular_edmd::{Disk, Simulation, initial};
@@ -64,6 +64,35 @@ fn energy_is_kept_over_a_million_blows() -> Outcome {
     let change = energy(&run.snapshot(), &piston, height) / before - 1.0;
     println!("{blows} blows, change of the energy {change:e}");
     assert!(change.abs() < 1e-12, "{change:e}");
+    Ok(())
+}
+
+/// The momentum that a piston loses is that of its blows, and with those of the other wall, all momentum is
+/// accounted for, over three million collisions.
+#[test]
+fn momentum_is_kept_over_a_million_blows() -> Outcome {
+    let (mass, speed) = (1e12, 1e-3);
+    let piston = Piston::new(mass, [-90.0, 9.6])?.with_start(0.0, speed)?;
+    let container = Container::closed(10.0, 4.0)?.with_piston(Wall::Right, piston)?;
+    let disk = Disk::new(DVec2::new(3.0, 2.0), 0.25)?.with_mass(1.0)?;
+    let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
+    let (mut to_piston, mut from_left, mut blows) = (0.0, 0.0, 0);
+    let mut sum = on_collision(|collision: &Collision| match collision.partner {
+        Partner::Wall(1) => from_left += collision.impulse.normal(),
+        _ => {
+            to_piston += collision.impulse.normal();
+            blows += 1;
+        }
+    });
+    run.run(&Limits::until(2e4).with_least_progress(0.0)?, &mut sum)?;
+    // The piston moves to the left at first.
+    let after = run.snapshot().wall_velocity(2).ok_or("it is known")?.x;
+    let scale = mass * speed;
+    let error = (mass * (after + speed) - to_piston) / scale;
+    let carried = run.disks()[0].velocity().x;
+    let all = (carried - from_left + to_piston) / scale;
+    println!("{blows} blows; error of the momentum of the piston {error:e}, of all {all:e}");
+    assert!(blows > 1_000_000 && error.abs() < 1e-12 && all.abs() < 1e-12);
     Ok(())
 }
 
