@@ -10,7 +10,7 @@ const FEWEST_BLOCKS: u64 = 8;
 /// Blocks of a series of 50 independent samples look like those of 120 or more in one case of a thousand.
 /// With half of this number, every tenth series of 30 would be called converged, with an error too small by a
 /// third.
-const FEWEST_INDEPENDENT: f64 = 120.0;
+pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Excess of a trusted error over that of its blocks, times the number of independent samples.
 ///

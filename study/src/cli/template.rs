@@ -8,7 +8,10 @@ use crate::{Column, Experiment, Plan, PlanError};
 /// Explanations of lines of a plan, by the beginning of the line.
 const NOTES: [(&str, &str); 6] = [
     ("seed", "Seed of all random numbers: the same plan gives the same bytes."),
-    ("repeats", "Times that each point is done, with different seeds."),
+    (
+        "repeats",
+        "Times that each point is done, with different seeds. Eight give a mean an error that can be trusted; fewer do\n# if all together have 120 independent samples: see not_converged in points.csv.",
+    ),
     ("[experiment]", "The system: each of its parameters can be ramped or swept."),
     (
         "[protocol]",
@@ -23,7 +26,7 @@ const NOTES: [(&str, &str); 6] = [
 
 /// Examples of sections that a plan may have, for a plan that lacks them.
 const EXAMPLES: [(&str, &str); 3] = [
-    ("repeats", "repeats = 3   (before [experiment])"),
+    ("repeats", "repeats = 8   (before [experiment])"),
     ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),
     ("[[sweep]]", "[[sweep]]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]"),
 ];
