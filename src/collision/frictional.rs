@@ -40,11 +40,22 @@ pub struct Frictional {
     friction: Friction,
 }
 
-impl Frictional {
-    pub(super) const fn of(normal_inelasticity: f64, friction: Friction) -> Self {
-        Self { normal_inelasticity, friction }
+impl Smooth {
+    /// Returns the rule with the same normal impulse and this friction.
+    ///
+    /// ```
+    /// use granular_edmd::collision::{Friction, Frictional, Smooth};
+    /// let friction = Friction::from_inelasticity(0.2, 0.3)?;
+    /// let rule = Smooth::from_inelasticity(0.1)?.with_friction(friction);
+    /// assert_eq!(rule, Frictional::from_inelasticity(0.1, 0.2, 0.3)?);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub const fn with_friction(self, friction: Friction) -> Frictional {
+        Frictional { normal_inelasticity: self.normal_inelasticity(), friction }
     }
+}
 
+impl Frictional {
     /// Creates a rule from the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`, and one coefficient
     /// of friction, κ = κ_s = κ_d.
     ///

@@ -1,6 +1,6 @@
 //! Inelastic disks without any tangential force.
 
-use super::{CollisionRule, Contact, Friction, Frictional, Impulse, KnownRule, inelasticity};
+use super::{CollisionRule, Contact, Impulse, KnownRule, inelasticity};
 use crate::{Fingerprint, ParameterError};
 
 /// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential one.
@@ -36,19 +36,6 @@ impl Smooth {
     /// If it is out of range.
     pub fn from_restitution(normal: f64) -> Result<Self, ParameterError> {
         Ok(Self { normal_inelasticity: inelasticity::of_normal_restitution(normal)? })
-    }
-
-    /// Returns the rule with the same normal impulse and this friction.
-    ///
-    /// ```
-    /// use granular_edmd::collision::{Friction, Frictional, Smooth};
-    /// let friction = Friction::from_inelasticity(0.2, 0.3)?;
-    /// let rule = Smooth::from_inelasticity(0.1)?.with_friction(friction);
-    /// assert_eq!(rule, Frictional::from_inelasticity(0.1, 0.2, 0.3)?);
-    /// # Ok::<(), granular_edmd::ParameterError>(())
-    /// ```
-    pub const fn with_friction(self, friction: Friction) -> Frictional {
-        Frictional::of(self.normal_inelasticity, friction)
     }
 
     /// Returns the normal inelasticity q_n.

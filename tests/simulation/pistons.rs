@@ -77,9 +77,10 @@ fn momentum_is_kept_over_a_million_blows() -> Outcome {
     let disk = Disk::new(DVec2::new(3.0, 2.0), 0.25)?.with_mass(1.0)?;
     let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
     let (mut to_piston, mut from_left, mut blows) = (0.0, 0.0, 0);
-    let mut sum = on_collision(|collision: &Collision| match collision.partner {
-        Partner::Wall(1) => from_left += collision.impulse.normal(),
-        _ => {
+    let mut sum = on_collision(|collision: &Collision| {
+        if collision.partner == Partner::Wall(1) {
+            from_left += collision.impulse.normal();
+        } else {
             to_piston += collision.impulse.normal();
             blows += 1;
         }
