@@ -280,9 +280,7 @@ def read_by_python():
     with open(folder / "series.csv") as table:
         rows = list(csv.reader(table))
     same("headings", len(rows[0]), len(rows[1]))
-    lines = [json.loads(line) for line in (folder / "series.jsonl").read_text().splitlines()]
-    for row, line, frame in zip(rows[1:], lines, frames, strict=True):
-        same("row of the series", [float(cell) for cell in row], [line[name] for name in rows[0]])
+    for row, frame in zip(rows[1:], frames, strict=True):
         masses = column(frame, "mass")
         height = float(row[rows[0].index("center_y [length]")])
         mean = masses @ column(frame, "position")[:, 1] / masses.sum()

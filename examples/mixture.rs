@@ -7,6 +7,8 @@
 //! It takes two seconds. You learn kinds of disks, rules by pairs of kinds, and observables of one kind. In a
 //! driven granular gas, the kinds do not have the same temperature.
 
+use granular_edmd::collision::RulesByKind;
+use granular_edmd::observable::{BetweenKinds, EnergyChange, OfKind, Temperatures};
 use granular_edmd::prelude::*;
 
 const GLASS: Kind = Kind::new(0);

@@ -7,7 +7,11 @@
 //! It takes less than a second. You learn which questions a boundary answers (where it is, when a disk
 //! touches it, how its surface moves), and that you can build it from the bricks of the library's vessels.
 
-use granular_edmd::boundary::{Overlap, Probe, laws};
+use granular_edmd::Flight;
+use granular_edmd::boundary::{
+    Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch, laws,
+};
+use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
 use std::borrow::Cow;
 

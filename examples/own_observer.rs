@@ -8,6 +8,7 @@
 //! changes a run.
 
 use anyhow::Context;
+use granular_edmd::observable::Partner;
 use granular_edmd::prelude::*;
 
 /// Sums up the momentum that the base receives, from one sampling time to the next.

@@ -7,6 +7,7 @@
 //! It takes less than a second. You learn what a rule is (a function from a contact to an impulse), and how
 //! to check it. A gas of such grains cools more slowly than one of constant restitution.
 
+use granular_edmd::Fingerprint;
 use granular_edmd::collision::laws::{self, Promises};
 use granular_edmd::prelude::*;
 

@@ -8,7 +8,7 @@
 //! acceleration), and how to check it.
 
 use granular_edmd::prelude::*;
-use granular_edmd::wall::laws;
+use granular_edmd::wall::{AccelerationBounds, WallState, laws};
 
 /// A base that hops: half of the time it flies on a parabola of height `height`, then it rests.
 #[derive(Debug, Clone, Copy)]

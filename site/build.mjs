@@ -20,6 +20,7 @@ const DOCS = {
   rest: 'What to do with matter at rest, and what it costs.', performance: 'How fast it is, and how to measure it.',
   'performance-details': 'What parts cost, where the time goes, and what was tried.',
   clusters: 'Studies on many processes and machines.', stability: 'What a new version may change.', architecture: 'Why the library is built as it is.',
+  history: 'What changed before version 0.4.0.',
 };
 const NAVIGATION = [['index.html', 'granular-edmd'], ['rolls/index.html', 'Try it'], [`${API}/guide/index.html`, 'Guide'], ['docs/index.html', 'Docs'],
   ['gallery/index.html', 'Gallery'], ['docs/notebook/index.html', 'Python'], [`${API}/index.html`, 'API'], ['CHANGELOG.html', 'Changes']];

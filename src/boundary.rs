@@ -22,10 +22,10 @@
 //!
 //! Parts are added, replaced and removed by name, also between runs; this is how a gate opens. With the
 //! feature `serde`, bricks, parts, vessels and containers can be written to files, and reading them repeats
-//! their checks. A rule or a motion of your own cannot be written.
+//! their checks. A rule or a custom motion cannot be written.
 //!
-//! [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
-//! [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
+//! [`Obstacles`] puts fixed round obstacles into any boundary. A custom geometry implements [`Boundary`];
+//! [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
 
 mod area;
 mod brick;
@@ -111,14 +111,14 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
 ///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`. A search
 ///    that cannot come to an end says how far the way is free, which is later than the flight begins.
-/// 4. If the disk already touches a wall, even if only by rounding, that touch is found at once while the
+/// 4. If the disk already touches a wall, even if only by rounding, that touch is found immediately while the
 ///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives the unit normal that points from the wall to the disk, the gradient of
-///    the gap, to $`10^{-8}`$. The velocity is that of the wall's material at the touch, whatever the time
-///    origin: along the normal, it is the speed at which the wall moves by `overlap`, to $`10^{-8}`$ of the
-///    speeds; two disks that touch the same point of a wall find the same velocity there. The radius is that
-///    of the surface at the touch: infinite if it is straight, negative if it is hollow, never zero. At a tip
-///    or a corner it may be any other.
+///    the gap, to $`10^{-8}`$. The velocity is the velocity of the wall's material at the touch, whatever the
+///    time origin: along the normal, it is the speed at which the wall moves by `overlap`, to $`10^{-8}`$ of
+///    the speeds; two disks that touch the same point of a wall find the same velocity there. The radius is
+///    the surface's radius of curvature at the touch: infinite if it is straight, negative if it is hollow,
+///    never zero. At a tip or a corner it may be any other.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the positive depth to which the
 ///    disk reaches into a wall, and names the wall in which it is deepest, or one that is as deep. It agrees
 ///    with `first_touch` for disks of each kind: at a touch, a disk that is larger by $`10^{-9}`$ of the size
@@ -155,14 +155,14 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests 1 to 12, except for points of walls, and
-/// [`laws::check_fingerprints`] tests 13; `docs/validation.md` tells which planted faults they find. The
-/// engine notices many faults, too. At each collision with a wall, a disk enlarged by 1e-9 of its radius must
-/// overlap a wall, and it must be no deeper in one than 1e-6 of its radius. So an early or late touch is an
-/// error of the run. So is a disk that has left the domain, or that overlaps a wall at the end of a search
-/// that found no touch. A missed touch with a thin wall that disks meet from both sides stays unseen. A touch
-/// with a wall that the disk is leaving comes again at once, until the run fails for lack of progress. A
-/// velocity or a normal that is not finite is an error of the run.
+/// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
+/// `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
+/// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, and it must be no deeper
+/// in one than 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a
+/// disk that has left the domain, and a disk that overlaps a wall at the end of a search that found no touch.
+/// A missed touch with a thin wall that disks meet from both sides stays unseen. A touch with a wall that the
+/// disk is leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal
+/// that is not finite is an error of the run.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -196,7 +196,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///         let start = flight.time();
 ///         let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
 ///         let free = self.radius - flight.radius();
-///         // The square of `free` less that of the distance from the middle, as a polynomial of the time.
+///         // The square of `free` less the squared distance from the middle, as a polynomial of the time.
 ///         let gap = [
 ///             (free - r.length()) * (free + r.length()),
 ///             -2.0 * r.dot(v),
@@ -258,7 +258,7 @@ pub trait Boundary {
     /// Sets the absolute time from which all times are measured.
     fn set_time_origin(&mut self, origin: f64);
 
-    /// Tells whether a disk with its center in `region` can touch a wall at any time.
+    /// Returns whether a disk with its center in `region` can touch a wall at any time.
     ///
     /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach
     /// to infinity beyond it.
@@ -266,12 +266,12 @@ pub trait Boundary {
 
     /// Returns the first touch of this flight, not later than `until`.
     ///
-    /// If the disk already touches a wall, that touch is found at once while the disk approaches the wall,
-    /// and never while the disk leaves it.
+    /// If the disk already touches a wall, that touch is found immediately while the disk approaches the
+    /// wall, and never while the disk leaves it.
     ///
     /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up
-    /// to which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time. So a
-    /// run can look at its limits between two parts of a long search.
+    /// to which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time, so a
+    /// run can check its limits between two parts of a long search.
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
@@ -292,7 +292,8 @@ pub trait Boundary {
         Vec::new()
     }
 
-    /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, if there is one.
+    /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, or `None` if no wall
+    /// has one.
     ///
     /// Rounding alone would decide whether such a disk gets into the hollow, and in which direction the wall
     /// then pushes it. The engine refuses such disks.
@@ -332,7 +333,7 @@ pub trait Boundary {
     /// Returns whether a disk with its center in `region` may touch this wall at any time up to `until`.
     ///
     /// The engine asks after a wall has [reacted](Self::react), in order to find the disks whose flights may
-    /// now end otherwise. A narrow answer saves predictions; the default is that of
+    /// now end otherwise. A narrow answer saves predictions; by default, it is the answer of
     /// [`may_touch`](Self::may_touch).
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
         let _ = (wall, until);

@@ -21,7 +21,7 @@
 //! | [`KnownRule`] | any of the above, as one type that files can hold | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
-//! # A rule of your own
+//! # Custom rules
 //! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
 //! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to the first order, here written as
 //! $`1/(1 + C v^{1/5})`$, which stays positive:
@@ -99,17 +99,17 @@ use crate::forward::forward;
 /// wall. The engine guarantees about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed and the relative spin are finite, of either sign or zero;
-/// - the masses are finite and positive, the tangential one not above the normal one; those of disks are
-///   between $`10^{-30}`$ and $`10^{30}`$, and so are their radii;
+/// - the masses are finite and positive, the tangential one not above the normal one; masses and radii of
+///   disks are between $`10^{-30}`$ and $`10^{30}`$;
 /// - the radius of a wall is infinite if it is straight, negative if it is hollow, and never zero;
-/// - partner 2 is the wall, if there is one. Of two disks, either may be partner 1.
+/// - in a collision with a wall, partner 2 is the wall. Of two disks, either may be partner 1.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
 ///    the contact. Otherwise, a run would depend on earlier calls, and a resumed run would differ.
 /// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and the contact.
-/// 3. The surfaces no longer close after the collision. Otherwise, they collide again at once, until the run
-///    ends as stalled.
+/// 3. The surfaces no longer close after the collision. Otherwise, they collide again immediately, until the
+///    run ends as stalled.
 /// 4. The collision gains no energy, of the relative motion of the surfaces and of the relative spin, unless
 ///    the rule is meant to drive. Otherwise, the system heats up unnoticed.
 /// 5. The partners exchanged give the same physics: the same normal and tangential impulse, and the opposite
@@ -120,7 +120,7 @@ use crate::forward::forward;
 ///
 /// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
 /// [`laws::check`] tests it. The promises that it takes say which of 4 to 6 a rule does not give, and which
-/// others it gives: friction and rolling friction within their limits. `docs/validation.md` tells which
+/// others it gives: friction and rolling friction within their limits. `docs/validation.md` says which
 /// planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",
@@ -141,7 +141,7 @@ pub trait CollisionRule {
 
     /// Returns the rule as data, if it is a rule of this crate, or a remedy or a table of such rules.
     ///
-    /// Files of walls hold their rules in this form. A rule of your own has none.
+    /// Files of walls hold their rules in this form. A custom rule has none.
     fn known(&self) -> Option<KnownRule> {
         None
     }

@@ -267,8 +267,8 @@ pub(crate) fn scale(name: &'static str, value: f64) -> Result<f64, ParameterErro
     accept(SCALE.contains(&value), name, "in [1e-30, 1e30]", value)
 }
 
-/// Checks that the engine can number this many disks. An open container has room for any number, and a
-/// mistyped number must not fill the memory.
+/// Checks that the engine can number `count` disks. An open container has room for any number, and a mistyped
+/// number must not fill the memory.
 pub(crate) fn countable(count: usize) -> Result<(), ParameterError> {
     accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(drop)
 }

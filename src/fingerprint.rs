@@ -8,9 +8,9 @@ use crate::violation::require;
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
-/// others. A part of your own makes its fingerprint from its name and from all numbers on which its answers
-/// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be told apart.
-/// The checks of fingerprints, such as
+/// others. A custom part makes its fingerprint from its name and from all numbers on which its answers
+/// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be
+/// distinguished. The checks of fingerprints, such as
 /// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare two parts
 /// with their answers: parts that differ in a number must differ, and equal parts agree. The hash is FNV-1a
 /// with 64 bits, over bytes in a fixed order, so it is the same on every platform.

@@ -2,8 +2,9 @@
 
 /// Implements a trait for pointers to its implementers. Each call goes to the part behind the pointer.
 ///
-/// The list has all methods of the trait, first those of `&self`, then `mut` and those of `&mut self`. A
-/// provided method that is missing here would silently answer for the pointer and not for the part.
+/// The list has all methods of the trait, first the methods of `&self`, then `mut` and the methods of
+/// `&mut self`. A provided method that is missing here would silently answer for the pointer and not for the
+/// part.
 macro_rules! forward {
     ($trait:ident for [$($pointer:ty),+] $methods:tt) => {
         $(crate::forward::forward!(@ $trait, $pointer, $methods);)+

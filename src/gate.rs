@@ -1,4 +1,4 @@
-//! The gate for values from files: they pass the same checks as those of a constructor.
+//! The gate for values from files: they pass the same checks as a constructor's arguments.
 
 /// Implements `Deserialize`: reads exactly these fields, then evaluates the expression. Its error is a
 /// `ParameterError` unless another type is named.
@@ -39,7 +39,7 @@ pub(crate) use from_file;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Empty {}
 
-/// Lets files hold a type without fields as [`Empty`].
+/// Implements reading and writing of a type without fields as [`Empty`].
 macro_rules! without_fields {
     ($($name:ident),+) => {
         $(#[cfg(feature = "serde")]

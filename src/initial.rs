@@ -13,8 +13,8 @@
 //! put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
 //! The functions place no disk into a wall: at time 0,
-//! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. So they work in a
-//! boundary of any shape, even if it leaves only some of its interior free.
+//! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in
+//! a boundary of any shape, even if it leaves only some of its interior free.
 
 mod lattice;
 mod packed;
@@ -47,7 +47,7 @@ pub enum PlacementError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// There is no room for so many disks.
+    /// There is no room for all disks.
     #[error("there is room for {placed} of {count} disks of radius {} in {interior}", Readable(*.radius))]
     NoRoom {
         /// Number of disks wanted.
@@ -74,9 +74,9 @@ pub enum PlacementError {
     /// The disks jam before they are packed.
     #[error("the disks jam at the area fraction {reached:.4}: they would need {wanted:.4}")]
     Jammed {
-        /// Area of all disks over that of the room, at the time when they jammed.
+        /// Area fraction of the disks in the room when they jammed.
         reached: f64,
-        /// Area of all disks over that of the room, if the disks had their full radii.
+        /// Area fraction that the disks would have at their full radii.
         wanted: f64,
     },
     /// The engine, which moves the disks while they are packed, refuses them or the boundary.

@@ -1,14 +1,14 @@
 //! Vector instructions that only some processors of an architecture have.
 //!
 //! A build for any x86-64 processor can rely only on instructions for two numbers at a time, but nearly all
-//! of these processors can take four. So the hot code is compiled for each level, and [`Instructions`] names
-//! the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses a
-//! product and a sum into one instruction. So the bits do not depend on the level.
+//! of these processors can take four. The hot code is therefore compiled for each level, and [`Instructions`]
+//! names the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses
+//! a product and a sum into one instruction; the bits do not depend on the level.
 //!
-//! What the compiler does not find by itself is written in vector instructions: the tournament of the
-//! scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions (`simulation/prediction/vector.rs`).
-//! Each such function has a plain one of the same name beside it, which runs where there are no such
-//! instructions. Builds for other architectures have the plain functions only.
+//! Two parts for which the compiler finds no good vector instructions are written out in them: the tournament
+//! of the scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions
+//! (`simulation/prediction/vector.rs`). Each such function has a plain one of the same name beside it, which
+//! runs where there are no such instructions. Builds for other architectures have the plain functions only.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod load;
@@ -125,7 +125,7 @@ fn has(level: Level) -> bool {
 /// parameter, the number of the copy, makes the copies different functions. The compiler then inlines the
 /// functions that a copy calls as if this copy were their only caller. A function of vector instructions, or
 /// a closure that calls one, can take the place of a copy. [`Instructions::run`] would be slower here, since
-/// so many captures would go through memory.
+/// its many captures would go through memory.
 #[cfg(target_arch = "x86_64")]
 macro_rules! compiled_for_each {
     (

@@ -3,12 +3,14 @@
 //!
 //! The disks are inelastic, rotate and have friction (normal and tangential restitution, static and dynamic
 //! friction). They move under gravity in a box whose base vibrates or is a thermal wall. The engine computes
-//! one collision after the other. The system is that of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction
-//! and convection in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005), called “the
-//! paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, for studies beyond it.
+//! one collision after the other. The system was studied by D. Risso, R. Soto, S. Godoy and P. Cordero,
+//! *Friction and convection in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005),
+//! called “the paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, for
+//! studies beyond it.
 //!
 //! ```
 //! use granular_edmd::prelude::*;
+//! use granular_edmd::observable::EnergyChange;
 //!
 //! // A box smaller than the paper's: width 20, height 50,
 //! // over a base of amplitude 0.1 and angular frequency 10.
@@ -67,7 +69,7 @@
 //! | `serde` | parameters that serialize through their validating constructors, checkpoints |
 //! | `rayon` | Monte Carlo on all cores, with the same bits as on one |
 //! | `gzip` | trajectories in files that end in `.gz` |
-//! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
+//! | `proptest` | random contacts and disks for property tests of custom rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -6,9 +6,9 @@
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!
-//! An [`Accumulator`] adds up snapshots, whoever gives them: a [`Sampled`] around it in a run, or a program
-//! with snapshots of its own. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`]
-//! have a clock of their own, since the sampling interval is part of what they measure.
+//! An [`Accumulator`] adds up snapshots, from a [`Sampled`] around it in a run or from your program.
+//! [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have their own clocks,
+//! since the sampling interval is part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|
@@ -47,7 +47,7 @@
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
-//! # An observer of your own
+//! # Custom observers
 //! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`]
 //! is a clock. In a plain test, [`laws::check`]
 //! checks the contract of an observer.
@@ -83,14 +83,13 @@
 //! ```
 //!
 //! # Tables
-//! Every measure is a [`Table`]: [`write_csv`](Table::write_csv) and
-//! [`write_json_lines`](Table::write_json_lines) write its results with names, units and errors. A [`Series`]
-//! is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
+//! Every measure is a [`Table`]: [`write_csv`](Table::write_csv) writes its results with names, units and
+//! errors. A [`Series`] is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Errors
-//! These errors do not assume that samples are independent. They come from blocks of consecutive samples
-//! or collisions, as [`block_average`](crate::statistics::block_average) takes them, and an
-//! [`Estimate`](crate::statistics::Estimate) tells how many independent samples there were. [`Fields`],
+//! These errors do not assume that samples are independent. They come from blocks of consecutive samples or
+//! collisions, as [`block_average`](crate::statistics::block_average) takes them, and an
+//! [`Estimate`](crate::statistics::Estimate) says how many independent samples there were. [`Fields`],
 //! [`HeightProfile`] and [`CollisionCounts`] have no errors: repeat the run with other seeds, or keep a
 //! [`Series`] of the number that you need.
 //!

@@ -10,7 +10,7 @@
 pub(crate) fn prefetch<T>(slice: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(element) = slice.get(index) {
-        // SAFETY: a prefetch reads and writes nothing that the program can see, and the address is that of a
+        // SAFETY: a prefetch reads and writes nothing that the program can see, and the address belongs to a
         // live element. SSE is part of every x86-64 processor.
         unsafe {
             use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

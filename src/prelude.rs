@@ -1,31 +1,19 @@
-//! The names that most programs need, in one line: `use granular_edmd::prelude::*;`.
+//! The names of a run of the paper's system and of the traits for custom parts, in one line:
+//! `use granular_edmd::prelude::*;`.
 //!
-//! The prelude has everything that a run needs, and all types for a rule, a wall motion, a boundary, a
-//! scheduler, an observable or an observer of your own.
+//! All other names come from their modules, which say where a reader finds them.
 
-pub use crate::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Obstacles, Part, Region, Response, Surface, Thermal,
-    Touch, Vessel, Wall,
-};
+pub use crate::boundary::{Boundary, Container, Part, Region, Vessel, Wall};
 pub use crate::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
-    LeastRebound, Regime, Rough, RulesByKind, Smooth, SpeedDependent,
+    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, LeastRebound, Smooth,
 };
 pub use crate::glam::DVec2;
-pub use crate::initial::{self, Radii};
+pub use crate::initial;
 pub use crate::observable::{
-    Arrivals, BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Grid,
-    Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Sampled, Series, Snapshot, Table,
-    Tabular, Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
+    CenterOfMass, Collision, Energies, Fields, Observable, Observer, OrderParameters, SampleTimes, Sampled,
+    Series, Snapshot, Table, on_sample,
 };
-pub use crate::scheduler::EventScheduler;
-pub use crate::simulation::{
-    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, Inlet, Limits, RunEnd, RunError,
-    Simulation,
-};
+pub use crate::simulation::{Limits, Simulation};
 pub use crate::statistics::Estimate;
-pub use crate::trajectory::{ExtendedXyz, LammpsDump, Recorder};
-pub use crate::wall::{
-    AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
-};
-pub use crate::{Disk, Fingerprint, Flight, Gravity, Kind, ParameterError};
+pub use crate::wall::{BiParabolic, Sinusoidal, WallMotion};
+pub use crate::{Disk, Gravity, Kind, ParameterError};

@@ -7,6 +7,7 @@
 //!
 //! ```
 //! use granular_edmd::prelude::*;
+//! use granular_edmd::observable::on_collision;
 //! use granular_edmd::replay::Replay;
 //!
 //! let container = Container::closed(12.0, 12.0)?;
@@ -83,7 +84,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Runs on until the absolute time `end`.
     ///
     /// # Errors
-    /// The same as for [`Simulation::run_until`]. What happened up to the error can be played back.
+    /// The same as for [`Simulation::run_until`]. The run can be played back up to the error.
     pub fn run_until(&mut self, end: f64) -> Result<(), RunError> {
         if !end.is_finite() {
             return self.present.run_until(end, &mut ()).map(drop);
@@ -151,7 +152,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// If the parts of the run do not answer as they did the first time.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
         let start = &self.states[0];
-        // Disks that touch at the start collide at once.
+        // Disks that touch at the start collide immediately.
         let run = if from < start.time() { Some(start.clone()) } else { self.at(from)? };
         run.filter(|run| run.time() <= to).map_or(Ok(Vec::new()), |run| self.played(run, to))
     }
@@ -199,9 +200,9 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Compares two runs, state by state and collision by collision.
     ///
     /// A bisection finds the last state that is the same in both, and the collisions are compared from there
-    /// on, disk by disk. So two runs that differ in a rounding have the same partners for a while, although
-    /// their times differ. A run that ended with an error is compared up to there. The result is `None` if
-    /// the two keep no states of the same times.
+    /// on, disk by disk. Two runs that differ in a rounding therefore have the same partners for a while,
+    /// although their times differ. A run that ended with an error is compared up to there. The result is
+    /// `None` if the two keep no states of the same times.
     ///
     /// # Errors
     /// If the parts of a run do not answer as they did the first time.

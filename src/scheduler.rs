@@ -6,7 +6,7 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | that of whichever of the next two is faster | default |
+//! | [`BySize`] | as the faster of the next two | default |
 //! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to some ten thousand disks |
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |
@@ -61,14 +61,13 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///   slow.
 ///
 /// # Schedulers that break the contract
-/// The engine compares each answer with the event that it keeps: a disk
-/// that does not exist, or a time other than the last one set for it, ends the run with an error. If a
-/// scheduler loses a `set` and never names an event that is due, the engine notices when the epoch ends, or
-/// at the end of a run with at least as many events as disks, and ends the run with an error. To look at all
-/// disks more often would cost time, so the engine does not notice a lost event in shorter runs and in single
-/// steps within an epoch, nor two events in the wrong order that have both been named by then.
-/// [`laws::check`] finds such faults if they show within its scripts of up to fifty thousand operations;
-/// `docs/validation.md` tells which planted faults it finds.
+/// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
+/// than the last one set for it, ends the run with an error. If a scheduler loses a `set` and never names an
+/// event that is due, the engine notices when the epoch ends, or at the end of a run with at least as many
+/// events as disks, and ends the run with an error. Checking all disks more often would cost time, so the
+/// engine does not notice a lost event in shorter runs and in single steps within an epoch, nor swapped
+/// events once both were named. [`laws::check`] finds such faults if they show within its scripts of up to
+/// fifty thousand operations; `docs/validation.md` says which planted faults it finds.
 ///
 /// # Why the answer is a pair and not an `Option`
 /// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]

@@ -188,7 +188,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.len()
     }
 
-    /// Tells whether there are no disks.
+    /// Returns whether there are no disks.
     pub fn is_empty(&self) -> bool {
         self.bodies.len() == 0
     }
@@ -198,7 +198,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         (disk < self.len()).then(|| self.bodies.disk(disk, self.clock.now))
     }
 
-    /// Returns the index of the disk with this [id](Disk::id), if there is one.
+    /// Returns the index of the disk with this [id](Disk::id), or `None` if it is not in the run.
     ///
     /// This looks at all disks.
     pub fn index_of(&self, id: u64) -> Option<usize> {
@@ -302,8 +302,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets other walls from now on.
     ///
-    /// Moving walls are where their motions are at the present time. A wall that is thereby elsewhere at once
-    /// is a [`Warning`].
+    /// Moving walls are where their motions are at the present time. A wall that is thereby suddenly
+    /// elsewhere is a [`Warning`].
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation

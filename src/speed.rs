@@ -1,11 +1,12 @@
 //! The speed of runs, and the cost of their parts.
 //!
 //! A [`Meter`] is started before a run and makes a [`RunReport`] after it. [`dilute`], [`dense`], [`gas`],
-//! [`mixture`] and [`vessel`] are standard states, in which a part of your own is measured beside the
-//! built-in one: [`Simulation::with_rule`](crate::Simulation::with_rule),
+//! [`mixture`] and [`vessel`] are standard states, in which a custom part is measured beside the built-in
+//! one: [`Simulation::with_rule`](crate::Simulation::with_rule),
 //! [`with_boundary`](crate::Simulation::with_boundary) and
-//! [`with_scheduler`](crate::Simulation::with_scheduler) put it in, and a [`Comparison`] tells a difference
-//! from noise. In criterion, a [`stretch`] is one run alone, without its partner in turn.
+//! [`with_scheduler`](crate::Simulation::with_scheduler) put it in, and a [`Comparison`] distinguishes a
+//! difference from noise. In criterion, a [`stretch`] is one run alone, without a partner that alternates
+//! with it.
 //!
 //! Times are those on the processor ([`Stopwatch`]). Measure builds with `--release` only.
 //!

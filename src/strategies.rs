@@ -5,7 +5,7 @@
 //! ranges, and values over many decades, in mixtures that a run of the simulation might take days to meet.
 //! The crate's own tests use the same strategies.
 //!
-//! The example checks a rule of your own against momentum conservation and the laws of friction:
+//! The example checks a custom rule against momentum conservation and the laws of friction:
 //! ```
 //! use granular_edmd::collision::{Contact, Friction, collide, from_fn, laws};
 //! use granular_edmd::strategies;

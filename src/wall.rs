@@ -40,7 +40,7 @@
 //!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
 //! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
-//! [`laws`] for a check of your own motion.
+//! [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
 mod delayed;
@@ -241,7 +241,7 @@ pub trait WallMotion {
         None
     }
 
-    /// Tells whether the displacement jumps where a piece ends, as that of a [`Sawtooth`] does.
+    /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`].
     ///
     /// Unless given, the answer comes from a look at the first period, or at the first thousand pieces if
     /// they are over earlier.

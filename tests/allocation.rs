@@ -9,6 +9,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
 
 struct Counting;

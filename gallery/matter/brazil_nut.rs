@@ -22,6 +22,7 @@ use clap::Parser;
 use granular_edmd::Kind;
 use granular_edmd::boundary::Obstacles;
 use granular_edmd::glam::DVec2;
+use granular_edmd::observable::OfKind;
 use granular_edmd::prelude::*;
 use kuva::prelude::{Layout, Plot};
 

@@ -15,8 +15,8 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::boundary::Region;
-use granular_edmd::observable::FieldCell;
+use granular_edmd::boundary::{Obstacles, Region};
+use granular_edmd::observable::{FieldCell, Grid};
 use granular_edmd::prelude::*;
 
 use gallery::command_line::{self, Failure, positive};

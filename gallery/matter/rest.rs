@@ -18,8 +18,9 @@ use std::time::Instant;
 use clap::Parser;
 use granular_edmd::boundary::Obstacles;
 use granular_edmd::collision::TangentialResponse::{Reversing, Unchanged};
+use granular_edmd::collision::{ElasticBelow, SpeedDependent};
 use granular_edmd::prelude::*;
-use granular_edmd::simulation::Counters;
+use granular_edmd::simulation::{BoxedRule, Counters, RunEnd, RunError};
 use kuva::prelude::Layout;
 
 use gallery::command_line::{self, Failure, positive};

@@ -21,7 +21,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::Kind;
 use granular_edmd::glam::DVec2;
+use granular_edmd::observable::Arrivals;
 use granular_edmd::prelude::*;
+use granular_edmd::simulation::Inlet;
 use kuva::prelude::{LinePlot, Plot};
 
 use gallery::command_line::{self, Failure, positive};

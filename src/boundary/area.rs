@@ -60,12 +60,16 @@ impl Curve {
     fn crossings(&self, height: f64) -> impl Iterator<Item = f64> + use<> {
         let none = [f64::NAN; 2];
         let places = match *self {
+            // Half-open, so that a line through the common end of two sides crosses one of them, and not
+            // both.
             Self::Line(from, to) if (from.y > height) != (to.y > height) => {
                 [from.x + (to.x - from.x) * ((height - from.y) / (to.y - from.y)), f64::NAN]
             }
             Self::Line(..) => none,
             Self::Circle(center, radius) => {
                 let above = (height - center.y).abs();
+                // As a product, the square loses no digits near the top. Beyond the circle it is negative,
+                // and its root NaN.
                 let half = ((radius - above) * (radius + above)).sqrt();
                 [center.x - half, center.x + half]
             }
@@ -135,6 +139,7 @@ impl Field<'_> {
         }
         let top = self.curves.iter().map(|curve| curve.bounds().max.y).fold(region.min.y, f64::max);
         if region.max.y.is_infinite() {
+            // Above all curves, a line is free everywhere or nowhere, and so are all lines over it.
             if self.length(top + 1.0, &self.curves) > 0.0 {
                 return f64::INFINITY;
             }
@@ -148,6 +153,8 @@ impl Field<'_> {
     fn heights(&self) -> Vec<f64> {
         let Region { min, max, .. } = self.region;
         let mut heights = vec![min.y, max.y];
+        // The sides of the region count as curves: where a curve leaves the region, the free length has a
+        // kink.
         let edges = [min.x, max.x].map(|x| Curve::Line(DVec2::new(x, min.y), DVec2::new(x, max.y)));
         let mut curves: Vec<(Region, Curve)> =
             self.curves.iter().chain(&edges).map(|curve| (curve.bounds(), *curve)).collect();

@@ -130,12 +130,12 @@ impl Brick {
         }
     }
 
-    /// Tells whether the brick is a whole circle about this point.
+    /// Returns whether the brick is a whole circle about this point.
     pub(super) fn is_circle_about(&self, place: DVec2) -> bool {
         matches!(self.shape, Shape::Arc(arc) if arc.sector.is_none() && arc.center == place)
     }
 
-    /// Tells whether a direction leads to the only free side of the brick, or along the brick. If the brick
+    /// Returns whether a direction leads to the only free side of the brick, or along the brick. If the brick
     /// jumps the other way, it hits no disk.
     pub(super) fn faces(&self, direction: DVec2) -> bool {
         match (self.shape, self.free) {
@@ -212,7 +212,7 @@ impl Brick {
         Nearest { distance, normal, is_free: self.free.has(side), weight }
     }
 
-    /// Tells whether a point of the brick may be within `reach` of a region.
+    /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         match self.shape {
             Shape::Segment(segment) => segment.is_near(region, reach),

@@ -18,9 +18,9 @@ pub(super) enum Conduct {
     Shared,
     Rule(OwnRule),
     Thermal(Thermal),
-    /// Takes out disks at their first touch.
+    /// Removes disks at their first touch.
     Absorbing,
-    /// Takes out disks when their centers arrive.
+    /// Removes disks when their centers arrive.
     AbsorbingCenters,
 }
 

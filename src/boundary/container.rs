@@ -232,7 +232,7 @@ impl Container {
         self.planes.iter().position(|plane| plane.wall == wall)
     }
 
-    /// Takes away those of the walls that exist.
+    /// Removes the walls that exist among these.
     fn without(mut self, walls: [Wall; 2]) -> Result<Self, WallError> {
         for wall in walls {
             let Some(index) = self.index(wall) else { continue };
@@ -384,7 +384,7 @@ crate::gate::from_file! {
         if !has(Wall::Floor) {
             container = container.with_periodic_ends()?;
         }
-        // The walls must be those of the container as it is now, in their order.
+        // The walls in the file must be the container's present walls, in their order.
         if !walls.iter().map(|plane| plane.wall).eq(container.planes.iter().map(|plane| plane.wall)) {
             return Err("no container has just these walls in this order".into());
         }

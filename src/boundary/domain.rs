@@ -89,7 +89,7 @@ impl Domain {
 
     /// Returns the displacements of those periodic images of another rectangle that come near this one.
     ///
-    /// An engine's domain is longer than four diameters of a disk where it is periodic. So a quarter of a
+    /// An engine's domain is longer than four diameters of a disk where it is periodic, so a quarter of a
     /// period is more than the radius by which a disk inside reaches beyond the domain.
     pub(crate) fn images_of(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = DVec2> + use<> {
         let periods = self.periods();
@@ -98,7 +98,7 @@ impl Domain {
         columns.flat_map(move |x| rows.clone().map(move |y| DVec2::new(x, y) * periods))
     }
 
-    /// Tells whether a place is in the rectangle, or beyond it by no more than `slack`.
+    /// Returns whether a place is in the rectangle, or beyond it by no more than `slack`.
     #[inline]
     pub(crate) fn contains(&self, place: DVec2, slack: f64) -> bool {
         place.x >= self.left - slack
@@ -219,7 +219,7 @@ impl Region {
         Self { min, max }
     }
 
-    /// Tells whether a place is in the rectangle. The right and the upper edge belong to its neighbors.
+    /// Returns whether a place is in the rectangle. The right and the upper edge belong to its neighbors.
     pub(crate) fn contains(&self, place: DVec2) -> bool {
         place.cmpge(self.min).all() && place.cmplt(self.max).all()
     }

@@ -49,10 +49,10 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
-///   closed up to rounding. The disk approaches the wall there, and would touch it again at once if it did
-///   not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
+///   closed up to rounding. The disk approaches the wall there, and would touch it again immediately if it
+///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along it is the
-///   rate at which the wall moves there, and the radius of the surface that of the curvature.
+///   rate at which the wall moves there, and the radius of the surface is its radius of curvature.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, also for those that extend to
 ///   infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
@@ -66,7 +66,7 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///
 /// # Errors
 /// The first violation that the check finds, with the flight on which it was found. The page "Validation"
-/// tells which planted faults the check finds.
+/// says which planted faults the check finds.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall, laws};

@@ -177,7 +177,7 @@ impl Part {
         self
     }
 
-    /// Tells whether the part is a line for centers, which disks may overlap.
+    /// Returns whether the part is a line for centers, which disks may overlap.
     pub(super) fn takes_centers(&self) -> bool {
         matches!(self.conduct, Conduct::AbsorbingCenters)
     }
@@ -188,8 +188,8 @@ impl Part {
         self.kinds.is_empty() || self.kinds.contains(&kind)
     }
 
-    /// Returns whether the part treats disks otherwise than a plain wall, so that it replaces the stretch of
-    /// a wall in which it lies.
+    /// Returns whether the part treats disks differently from a plain wall, so that it replaces the section
+    /// of a wall in which it lies.
     pub(super) fn is_patch(&self) -> bool {
         let is_plain = matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL;
         !is_plain || self.surface_speed != 0.0
@@ -211,7 +211,7 @@ impl Part {
 
     /// Returns the phase of the motion at a time origin.
     ///
-    /// Both remainders are exact. Their difference has the rounding of a phase, not that of a late time.
+    /// Both remainders are exact. Their difference has the rounding of a phase, not of a late time.
     pub(super) fn phase(&self, origin: f64) -> Phase {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
@@ -270,12 +270,11 @@ impl Sighted {
         Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
     }
 
-    /// Tells whether this brick decides the side of a place rather than another one: it is nearer, or equally
-    /// near and seen less edge-on.
+    /// Returns whether this brick decides the side of a place rather than another one: it is nearer, or
+    /// equally near and seen less edge-on.
     ///
     /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
-    /// whose extension beyond its ends is farther from the place decides: the place sees it less from its
-    /// end.
+    /// that is seen more broadside decides: the extension beyond its ends is farther from the place.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

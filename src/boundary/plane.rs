@@ -80,7 +80,7 @@ impl Plane {
         Self { wall, normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0, slide: None }
     }
 
-    /// Tells whether nothing was set for the wall.
+    /// Returns whether nothing was set for the wall.
     pub(super) fn is_plain(&self) -> bool {
         let is_still = self.motion.reach() == (0.0, 0.0) && self.slide.is_none();
         is_still && matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL
@@ -95,7 +95,8 @@ impl Plane {
         self.motion = motion;
     }
 
-    /// Lets a wall slide that does not do so yet: a belt in a shaken box would be one of both otherwise.
+    /// Sets the slide of the wall; an error if it has one, which would be lost: a belt in a box that is
+    /// shaken sideways.
     pub(super) fn set_slide(&mut self, slide: Slide) -> Result<(), WallError> {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
@@ -132,7 +133,7 @@ impl Plane {
         region.least_along(self.normal) - self.place - radius <= highest
     }
 
-    /// Tells whether a disk with its center in `region` can touch the wall at any time.
+    /// Returns whether a disk with its center in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
         region.least_along(self.normal) - self.place - radius <= self.highest
     }
@@ -173,7 +174,7 @@ impl Plane {
         self.normal * (self.place + self.motion.state(time + self.phase).displacement)
     }
 
-    /// Tells whether a disk is so near that it may overlap the wall at some phase of the motion.
+    /// Returns whether a disk is so near that it may overlap the wall at some phase of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
         position.dot(self.normal) - self.place - radius <= self.highest

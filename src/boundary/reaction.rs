@@ -26,7 +26,7 @@ impl Impact {
         Self { wall, impulse, couple: 0.0, point, time }
     }
 
-    /// Returns the same blow with a couple (an angular impulse besides that of the impulse at its point).
+    /// Returns the same blow with a couple (an angular impulse in addition to the impulse at its point).
     #[must_use]
     #[inline]
     pub const fn with_couple(self, couple: f64) -> Self {

@@ -25,7 +25,7 @@ pub(crate) struct Squares {
 impl Squares {
     /// Makes empty squares for disks of these radii.
     ///
-    /// Their side is the root of the mean square of the diameters. So there are a few entries for each disk,
+    /// Their side is the root of the mean square of the diameters, so there are a few entries for each disk,
     /// and a few disks in each square, for any mix of radii.
     pub(crate) fn new(domain: &Domain, radii: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = radii.len().max(1) as f64;
@@ -62,7 +62,7 @@ impl Squares {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
 
-    /// Tells whether a disk of this radius at this place overlaps none of those placed.
+    /// Returns whether a disk of this radius at this place overlaps none of those placed.
     pub(crate) fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
         self.near(site, radius).all(|other| {
             let contact = radius + placed[other].radius();
@@ -84,7 +84,7 @@ impl Hasher for Mixer {
     }
 
     fn write_i64(&mut self, number: i64) {
-        // The factor is that of Fibonacci hashing, 2⁶⁴ over the golden ratio.
+        // The factor comes from Fibonacci hashing: 2⁶⁴ over the golden ratio.
         self.0 = (self.0.rotate_left(32) ^ number as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     }
 

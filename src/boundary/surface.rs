@@ -115,8 +115,8 @@ pub enum Response<'a> {
     Thermal(Thermal),
     /// The wall takes the disk out of the run.
     ///
-    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin. So
-    /// the wall receives all of the momentum.
+    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin: the
+    /// wall receives all of the momentum.
     Absorbing,
 }
 
@@ -170,7 +170,7 @@ impl Thermal {
         self.temperature
     }
 
-    /// Tells whether tangential and angular velocity stay as they are.
+    /// Returns whether tangential and angular velocity stay as they are.
     pub const fn slip(&self) -> bool {
         self.slip
     }

@@ -21,7 +21,7 @@ impl Touch {
 }
 
 impl FirstTouch<Touch> {
-    /// Returns the time up to which there is no touch: that of the touch, if there is one.
+    /// Returns the time up to which there is no touch: the time of the touch if one was found.
     #[inline]
     pub fn time(&self) -> f64 {
         match self {
@@ -32,8 +32,8 @@ impl FirstTouch<Touch> {
 
     /// Returns the earlier one of two answers about the same flight.
     ///
-    /// Of touches at the same time, that of the wall with the smaller index counts. A boundary that puts
-    /// walls into another one, as [`Obstacles`](super::Obstacles) does, combines the answers in this way.
+    /// Of touches at the same time, the wall with the smaller index counts. A boundary that puts walls into
+    /// another one, as [`Obstacles`](super::Obstacles) does, combines the answers in this way.
     #[inline]
     pub fn or(self, other: Self) -> Self {
         let is_first = match (&self, &other) {

@@ -21,7 +21,7 @@ use index::Index;
 const MOST_WALLS: usize = 1 << 16;
 
 /// Largest numbers of periods that a part may extend over, in one direction and in all. Each brick has an
-/// image for each of them, and may come into a good part of as many cells.
+/// image for each of them, and may overlap a large part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in
@@ -30,8 +30,8 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
-/// A disk must be free of the container's walls and of each part. So two blocks make a hopper, and a polygon
-/// can have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
+/// A disk must be free of the container's walls and of each part: two blocks make a hopper, and a polygon can
+/// have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
 /// repeated: a part that reaches beyond one side comes in again at the other, however far it reaches. They
 /// are added, replaced and removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
@@ -78,7 +78,7 @@ pub struct Vessel {
     index: Index,
     /// The parts that move and that disks may not overlap.
     moving: Vec<u32>,
-    /// True if a part treats disks otherwise than a plain wall.
+    /// True if a part treats disks differently from a plain wall.
     has_patches: bool,
     /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,
@@ -189,7 +189,7 @@ impl Vessel {
 
     /// Puts a part into the vessel.
     ///
-    /// Its walls come after those of all other parts.
+    /// Its walls come after the walls of all other parts.
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
@@ -261,7 +261,7 @@ impl Vessel {
         Ok(())
     }
 
-    /// Returns the part of this name, if there is one.
+    /// Returns the part of this name, or `None` if the vessel has no such part.
     pub fn part(&self, name: &str) -> Option<&Part> {
         self.parts.iter().find(|placed| placed.name == name).map(|placed| &placed.part)
     }
@@ -271,7 +271,7 @@ impl Vessel {
         self.parts.iter().map(|placed| placed.name.as_str())
     }
 
-    /// Returns the indices of the walls of a part, if there is one of this name.
+    /// Returns the indices of the walls of a part, or `None` if the vessel has no part of this name.
     pub fn walls(&self, name: &str) -> Option<Range<usize>> {
         let placed = self.parts.iter().find(|placed| placed.name == name)?;
         Some(placed.first..placed.first + placed.part.all_bricks().count())

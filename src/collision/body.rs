@@ -100,7 +100,7 @@ pub(crate) struct Outcome {
     pub(crate) impulse: Impulse,
 }
 
-/// Lets two bodies collide under `rule`. The `normal` points from the second to the first.
+/// Collides two bodies under `rule`. The `normal` points from the second to the first.
 #[inline(always)]
 pub(crate) fn collide_bodies<R: CollisionRule + ?Sized>(
     rule: &R,

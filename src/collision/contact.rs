@@ -18,12 +18,12 @@ use crate::Kind;
 /// $`k = R_1/I_1 - R_2/I_2`$; a tangential impulse changes the relative spin by $`-k\Delta_t`$.
 ///
 /// # Order of the partners
-/// Partner 2 is the wall, if there is one. Of two disks, either may be partner 1, so a rule must give the
-/// same physics for the partners in either order, and for the mirror image of the contact:
+/// In a collision with a wall, partner 2 is the wall. Of two disks, either may be partner 1, so a rule must
+/// give the same physics for the partners in either order, and for the mirror image of the contact:
 /// [`laws::check`](super::laws::check) tests both.
 ///
-/// A wall is a partner of infinite mass. The radius of a straight one is infinite, that of a hollow one
-/// negative.
+/// A wall is a partner of infinite mass. A straight wall has an infinite radius, a hollow one a negative
+/// radius.
 ///
 /// ```
 /// use granular_edmd::collision::Contact;
@@ -126,7 +126,7 @@ impl Contact {
         self.kinds
     }
 
-    /// Tells whether one partner is of the first kind and the other of the second.
+    /// Returns whether one partner is of the first kind and the other of the second.
     #[inline]
     pub fn is_between(&self, first: Kind, second: Kind) -> bool {
         self.kinds == [first, second] || self.kinds == [second, first]

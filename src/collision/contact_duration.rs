@@ -68,7 +68,7 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
         }
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such models could not be told apart.
+    /// Returns `None` if the rule inside has no fingerprint: two such models could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration).text(response))

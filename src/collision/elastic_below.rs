@@ -73,7 +73,7 @@ impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
         self.rule.impulse(contact).parting_at_least(self.speed, contact)
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
+    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed).text(response))

@@ -33,7 +33,7 @@ pub struct WallEncounter {
     pub impulse: Impulse,
 }
 
-/// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does.
+/// Collides two disks under `rule` (paper, Eq. (2)), as a simulation does.
 ///
 /// The function is useful in tests of rules.
 ///
@@ -71,7 +71,7 @@ pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk)
     }
 }
 
-/// Lets a disk collide under `rule` with a wall that moves at `wall_velocity`, as a simulation does.
+/// Collides a disk under `rule` with a wall that moves at `wall_velocity`, as a simulation does.
 ///
 /// The unit vector `normal` points from the wall to the disk. If the disk leaves the wall, the closing speed
 /// is zero. The wall is straight and has the kind [`Kind::WALL`].

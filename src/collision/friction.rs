@@ -13,8 +13,8 @@ use crate::{Fingerprint, ParameterError};
 /// \end{cases}
 /// ```
 ///
-/// The equations are the paper's Eqs. (4), (5). A rule of your own can compute the normal impulse and leave
-/// the rest to this type:
+/// The equations are the paper's Eqs. (4), (5). A custom rule can compute the normal impulse and leave the
+/// rest to this type:
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, Regime};

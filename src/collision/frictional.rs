@@ -80,7 +80,7 @@ impl Frictional {
     /// Returns the same rule with a smaller coefficient of dynamic friction κ_d.
     ///
     /// # Errors
-    /// If it is negative or not finite, or exceeds that of static friction, because sliding could then gain
+    /// If it is negative or not finite, or exceeds the static coefficient, because sliding could then gain
     /// energy.
     pub fn with_dynamic_friction(self, dynamic_friction: f64) -> Result<Self, ParameterError> {
         Ok(Self { friction: self.friction.with_dynamic_friction(dynamic_friction)?, ..self })

@@ -13,7 +13,7 @@ pub enum Regime {
     Unspecified,
     /// The surfaces held: the tangential impulse stayed below the limit of static friction.
     Sticking,
-    /// The surfaces slid: the tangential impulse is that of dynamic friction.
+    /// The surfaces slid: dynamic friction sets the tangential impulse.
     Sliding,
     /// A contact-duration model replaced the rule.
     ContactDuration,

@@ -32,7 +32,7 @@ macro_rules! known {
     };
 }
 
-// Remedies and tables hold known rules in turn, so they nest in any order.
+// Remedies and tables hold known rules themselves, so they nest in any order.
 known! {
     Elastic(Elastic),
     Smooth(Smooth),

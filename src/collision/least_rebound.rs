@@ -11,7 +11,7 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 ///
 /// A grain at rest then bounces at $`v_c`$, as if the ground trembled. Each collision transfers at least the
-/// momentum $`\mu v_c`$. So a contact that carries the mean force $`F`$ has at most $`F/\mu v_c`$ collisions
+/// momentum $`\mu v_c`$, so a contact that carries the mean force $`F`$ has at most $`F/\mu v_c`$ collisions
 /// in a unit of time, however much the rule loses. The cost of matter at rest is therefore known beforehand,
 /// and friction stays as it is.
 ///
@@ -67,7 +67,7 @@ impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
         if raised.normal() > impulse.normal() { raised.with_regime(Regime::LeastRebound) } else { raised }
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
+    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed))
     }

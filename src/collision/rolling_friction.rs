@@ -73,7 +73,7 @@ impl<R: CollisionRule> CollisionRule for RollingFriction<R> {
         impulse.with_couple(impulse.couple() + couple)
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such rules could not be told apart.
+    /// Returns `None` if the rule inside has no fingerprint: two such rules could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("RollingFriction").part(self.rule.fingerprint()?).number(self.coefficient))
     }

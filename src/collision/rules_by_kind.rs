@@ -88,7 +88,7 @@ impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
         self.rule_of(contact).impulse(contact)
     }
 
-    /// Returns `None` if one of the rules has no fingerprint: two such tables could not be told apart.
+    /// Returns `None` if one of the rules has no fingerprint: two such tables could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let table = Fingerprint::of("RulesByKind").part(self.otherwise.fingerprint()?);
         self.pairs.iter().try_fold(table, |table, PairRule { kinds, rule }| {

@@ -22,7 +22,7 @@ pub enum TangentialResponse {
 }
 
 impl TangentialResponse {
-    /// Returns the impulse of an elastic contact, in place of that of `rule`.
+    /// Returns the impulse of an elastic contact, in place of the impulse of `rule`.
     pub(super) fn elastic<R: CollisionRule>(self, rule: &R, contact: &Contact, regime: Regime) -> Impulse {
         let tangential = match self {
             Self::Frictionless => 0.0,

@@ -90,7 +90,7 @@ fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
     PlacementError::NoRoom { count, placed, radius: radii.get(placed).copied().unwrap_or(radius), interior }
 }
 
-/// Lets the disks move and grow by turns until all have their radii, or jam in a room of this area.
+/// Moves and grows the disks alternately until all have their radii, or jam in a room of this area.
 fn grown<'a, B: Boundary + ?Sized>(
     room: &Enclosure<B>,
     disks: &'a [Disk],

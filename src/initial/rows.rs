@@ -89,7 +89,7 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
         None
     }
 
-    /// Begins a new column if the present column is full, and a new row if the present row is full. Tells
+    /// Begins a new column if the present column is full, and a new row if the present row is full. Returns
     /// whether the disk fits below the lid.
     fn make_room(&mut self, radius: f64, size: f64) -> bool {
         if self.column.y + size > self.height {

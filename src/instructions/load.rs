@@ -1,7 +1,7 @@
 //! Reads of numbers that the compiler neither splits nor merges.
 //!
-//! A processor that reads what it has just written waits, unless a single write covers all that is read. So
-//! it matters how many numbers a read takes, and in hot code these functions say it.
+//! A processor that reads what it has just written waits, unless a single write covers all that is read. It
+//! therefore matters how many numbers a read takes, and in hot code these functions say it.
 
 use std::arch::x86_64::{__m128d, __m256d, __m512d, _mm_loadu_pd, _mm256_loadu_pd, _mm512_loadu_pd};
 
@@ -36,6 +36,6 @@ pub(crate) fn eight(numbers: &[f64; 8]) -> __m512d {
 #[allow(unsafe_code)]
 #[inline(always)]
 pub(crate) fn one(number: &u32) -> u32 {
-    // SAFETY: the number is borrowed, so nobody changes it meanwhile.
+    // SAFETY: the number is borrowed, so nothing changes it during the read.
     unsafe { std::ptr::from_ref(number).read_volatile() }
 }

@@ -27,7 +27,7 @@ impl CollisionAverage {
 
     /// Returns the mean energy change ⟨dE⟩, negative when energy is lost.
     ///
-    /// Its error is that of independent collisions, from the scatter within each stratum.
+    /// Its error is the standard error of independent collisions, from the scatter within each stratum.
     pub const fn energy_change(&self) -> Estimate {
         self.energy_change
     }

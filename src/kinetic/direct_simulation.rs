@@ -100,7 +100,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         self.collisions
     }
 
-    /// Lets the disks collide until this time.
+    /// Runs collisions until this time.
     ///
     /// # Errors
     /// If the time is not finite or has passed, or the rule makes a disk faster than 1e60 or its velocity
@@ -119,7 +119,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
                 let pairs = self.density * (self.disks.len() - 1) as f64 * PI;
                 self.time -= libm::log(uniform(&mut self.generator)) / (pairs * self.largest_rate());
                 if self.time >= end {
-                    // The waits have no memory, so that of the next run begins anew.
+                    // Waiting times have no memory, so the next run draws a new one.
                     self.time = end;
                     return Ok(());
                 }
@@ -139,6 +139,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         let [one, other] = [first, second].map(|disk| self.disks[disk]);
         let contact = one.radius() + other.radius();
         let closing = (other.velocity() - one.velocity()).dot(normal);
+        // A pair that recedes has a negative rate, and is always refused.
         if uniform(&mut self.generator) * self.largest_rate() >= contact * closing {
             return Ok(());
         }

@@ -15,9 +15,9 @@ use crate::collision::Frictional;
 /// \kappa = \frac{(1-q_t)\,w}{\lambda(1-q_n)}\,\frac{s}{\sqrt{1-s^2}},
 /// ```
 ///
-/// which exists for $`q_t < 1/3`$. The notation is that of [`mean_energy_change`](super::mean_energy_change);
-/// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at $`\kappa = 0.2627`$, the
-/// paper's $`\kappa\approx0.3`$.
+/// which exists for $`q_t < 1/3`$. The notation is the one of
+/// [`mean_energy_change`](super::mean_energy_change); the derivation is in `docs/physics-kinetic.md`. Elastic
+/// disks lose most at $`\kappa = 0.2627`$, the paper's $`\kappa\approx0.3`$.
 ///
 /// The result is `None` if the loss has no maximum at a finite friction. If sticking itself loses much
 /// ($`q_t\ge1/3`$ for $`\rho=1`$), the loss grows with friction all the way to rough disks. There is no
@@ -50,8 +50,8 @@ fn friction_ratio(rule: &Frictional) -> f64 {
 /// friction.
 ///
 /// The function is $`-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})`$ with $`H = \rho^2(1-q_t)`$, $`G = \rho - q_t - H`$.
-/// It starts negative: the loss grows with friction. For $`G<0`$ it stays negative. Otherwise it rises, and
-/// its one root, if there is one, is the only minimum of $`\langle dE\rangle`$.
+/// It starts negative: the loss grows with friction. For $`G<0`$ it stays negative. Otherwise it rises, so it
+/// has at most one root, which is the only minimum of $`\langle dE\rangle`$.
 struct Slope {
     ratio: f64,
     quadratic: f64,

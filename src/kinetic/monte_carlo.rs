@@ -31,7 +31,7 @@ const FIRST_ROUND: u64 = 16;
 ///   most that a collision can lose, is proportional to $`R^2`$.
 ///
 /// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a
-/// speed scale, like the paper's, the only remaining scatter is that of the angle within a stratum.
+/// speed scale, like the paper's, the only remaining scatter comes from the angle within a stratum.
 ///
 /// Collisions come in chunks of 4096. Each chunk has its own stream from one generator, and chunks are added
 /// in order. The result therefore has the same bits on any number of threads, with and without the feature

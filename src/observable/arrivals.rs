@@ -15,6 +15,7 @@ use crate::statistics::{Estimate, block_average};
 ///
 /// ```
 /// use granular_edmd::prelude::*;
+/// use granular_edmd::observable::Arrivals;
 ///
 /// let exit = Part::polyline([(-1.0, 1.0), (5.0, 1.0)].map(DVec2::from))?.absorbing_centers();
 /// let vessel = Vessel::new(Container::open(4.0)?).with("exit", exit)?;

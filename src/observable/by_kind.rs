@@ -60,8 +60,7 @@ impl<T: Observable> Observable for OfKind<T> {
     }
 }
 
-/// The columns are those of the observable inside, with the kind at the end of their names:
-/// `center_y_of_kind_1`.
+/// The observable inside gives the columns, with the kind at the end of their names: `center_y_of_kind_1`.
 impl<T: Tabular> Tabular for OfKind<T> {
     fn headings(&self) -> Vec<Heading> {
         let of_kind = |heading: &Heading| format!("{}_of_kind_{}", heading.name(), self.kind.number());

@@ -107,7 +107,7 @@ impl Collision {
 
     /// Returns the position of the partner: the center of a disk, or the point where a wall is touched.
     ///
-    /// At periodic sides, the disk may touch an image of the partner. The position is then that of the image.
+    /// At periodic sides, the disk may touch an image of the partner. The image's position is then returned.
     pub fn partner_position(&self) -> DVec2 {
         self.position - self.normal * self.distance
     }

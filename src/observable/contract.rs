@@ -80,7 +80,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///
 /// # What an observer guarantees
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is wanted.
-/// 2. After a sample, `next_sample` names a later time than that of the sample.
+/// 2. After a sample, `next_sample` names a later time than the sample's.
 /// 3. After `on_start`, `next_sample` names no time before the start, except by rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
 ///    these calls, and would notice another change too late.
@@ -89,7 +89,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
 /// breaks another, it gets samples at times that it did not mean. [`SampleTimes`](super::SampleTimes) keeps
-/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` tells which planted
+/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` says which planted
 /// faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",

@@ -12,7 +12,7 @@ use crate::statistics::BlockedMean;
 /// each wall.
 ///
 /// Collisions of one run are correlated, since the gas heats and cools. [`BlockedMean::estimate`] gives a
-/// mean whose error accounts for that. At a moving or thermal wall, the energy change is that of the disk,
+/// mean whose error accounts for that. At a moving or thermal wall, the energy change is the disk's,
 /// including the work of the wall.
 ///
 /// A run ends with an error if it is of another system than the run before, or goes back in time: clear the

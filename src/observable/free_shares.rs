@@ -34,7 +34,7 @@ impl FreeShares {
     }
 }
 
-/// Checks that the free area of a region is known, or else that of each part of it.
+/// Checks that the free area is known for a region, or else for each part of it.
 ///
 /// # Errors
 /// If not. The error names what to take instead.

@@ -135,7 +135,7 @@ pub(super) fn inside(region: Region, domain: &Domain) -> Result<Region, Paramete
     Ok(region)
 }
 
-/// Reads a region from a file, if there is one, and checks it with [`checked_region`].
+/// Reads a region from a file that may have none, and checks it with [`checked_region`].
 #[cfg(feature = "serde")]
 pub(super) fn region_from_file<'de, D: serde::Deserializer<'de>>(
     file: D,

@@ -21,7 +21,7 @@ pub struct DenseLayer {
     pub height: f64,
     /// Packing fraction in the bin.
     pub packing_fraction: f64,
-    /// Least packing fraction of the bins below, or that of the bin itself if there are none.
+    /// Least packing fraction of the bins below, or of the bin itself if it is the lowest.
     pub least_below: f64,
 }
 
@@ -64,7 +64,7 @@ impl DenseLayer {
 /// ```
 ///
 /// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor,
-/// it is that of [`Boundary::area`](crate::boundary::Boundary::area). A bin without free area has the packing
+/// [`Boundary::area`](crate::boundary::Boundary::area) gives it. A bin without free area has the packing
 /// fraction 0. A run ends with an error if the boundary does not know its area.
 ///
 /// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins smaller than a

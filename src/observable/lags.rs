@@ -82,7 +82,7 @@ impl<V> Lags<V> {
         }
     }
 
-    /// Returns the sample taken this many intervals before the latest one.
+    /// Returns the sample taken `lag` intervals before the latest one.
     pub(super) fn before(&self, lag: usize) -> Option<&V> {
         self.past.get(lag)
     }

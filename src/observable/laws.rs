@@ -31,9 +31,9 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
 /// samples each, at the times that the observer asks for. The first run starts at time 0 and is cut twice:
 /// between two samples, and after a sample; the runs that continue it must ask for the sample that was next.
-/// Then come runs that start later and off the beat, at a late time, and before 0; the last one has ten
-/// thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it has
-/// collected in the check, so make a new one for a measurement. The page "Validation" tells which planted
+/// Then come runs that start later and between two sampling times, at a late time, and before 0; the last one
+/// has ten thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it
+/// has collected in the check, so make a new one for a measurement. The page "Validation" says which planted
 /// faults the check finds.
 ///
 /// # Errors
@@ -123,7 +123,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(End { now: self.now, next: self.wanted, goes_on })
     }
 
-    /// Lets disks collide until the next sample, or a few times if no sample is wanted.
+    /// Runs collisions until the next sample, or a few times if no sample is wanted.
     fn collide(&mut self) -> Result<bool, Violation> {
         let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
         for _ in 0..3 {
@@ -138,7 +138,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(true)
     }
 
-    /// Takes the sample that is wanted, if there is one.
+    /// Takes the sample that is due, or none if the clock names no time.
     fn sample(&mut self) -> Result<bool, Violation> {
         if !self.wanted.is_finite() {
             return Ok(true);
@@ -186,7 +186,7 @@ fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
         .with_angular_velocity(turn - 2.0)
 }
 
-/// Returns a collision, with each partner in turn.
+/// Returns a collision, with a different partner each time.
 fn collision(time: f64, number: usize) -> Collision {
     use Regime::{ContactDuration, ElasticBelow, Sliding, Sticking, Unspecified};
     const REGIMES: [Regime; 5] = [Sticking, Sliding, ContactDuration, ElasticBelow, Unspecified];

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A mark that nothing else in this process has, or none.
+/// A mark that nothing else in this process has; 0 until it is given.
 ///
 /// It goes into no file, and measurements that differ in marks alone are equal.
 #[derive(Debug, Clone, Copy, Default)]

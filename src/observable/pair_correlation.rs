@@ -37,8 +37,8 @@ const ROUNDING: f64 = 1e-9;
 /// that distance from all walls. Where the density varies, under gravity
 /// for example, choose a thin layer.
 ///
-/// The errors are those of the numbers of pairs, from blocks of samples. The numbers of disks in the region
-/// are taken as exact, which is nearly true if the region holds many disks. If it holds only a few, take the
+/// The errors come from the numbers of pairs in blocks of samples. The numbers of disks in the region are
+/// taken as exact, which is nearly true if the region holds many disks. If it holds only a few, take the
 /// error from the scatter of several runs. The cost of a sample is proportional to the number of disks.
 ///
 /// A run ends with an error if the range is more than half of a period, if no finite region is left between
@@ -78,8 +78,8 @@ pub struct PairCorrelation {
 }
 
 impl PairCorrelation {
-    /// Creates the correlation function of all disks, up to the distance `range` of their centers, in this
-    /// many bins.
+    /// Creates the correlation function of all disks, up to the distance `range` of their centers, in `bins`
+    /// bins.
     ///
     /// # Errors
     /// If the range is not finite and positive, or the number of bins is not in `1..=2^20`.

@@ -3,35 +3,35 @@
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
 
-/// Relative rounding of the start time of a run, and of a beat. Each is the sum of an offset and an origin,
-/// rounded a few times.
+/// Relative rounding of the start time of a run, and of a sampling time. Each is the sum of an offset and an
+/// origin, rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Rounding of the same relative to the interval. The origin may be far larger than the time, as before time
 /// 0, and the time has its rounding.
 const PART: f64 = 1e-9;
 
-/// Smallest ratio of the interval to the time. Rounding then moves a beat by a sixteenth of the interval at
-/// most.
+/// Smallest ratio of the interval to the time. Rounding then moves a sampling time by a sixteenth of the
+/// interval at most.
 const COARSEST: f64 = 16.0 * f64::EPSILON;
 
 /// A clock for observers, with equally spaced times of samples.
 ///
-/// The beats of the clock are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
+/// The sampling times are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
 /// first time ([`Self::starting_at`]). They are multiples, not sums, so the thousandth is as exact as the
 /// first.
 ///
 /// # When a run starts
-/// An observer passes the start of each run to [`Self::start_at`]. Beats before the start are left out, and
-/// so is a beat on the start, within rounding. A run of $`n`$ intervals therefore gives $`n`$ samples, the
-/// first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
+/// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
+/// out, and so is one at the start, within rounding. A run of $`n`$ intervals therefore gives $`n`$ samples,
+/// the first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
 /// after a run to settle. There are two exceptions:
 /// - A run that starts exactly at the first time of `starting_at` takes a sample there.
-/// - A clock that has run before continues. If the next run starts on the upcoming beat, within rounding, it
-///   takes the sample there, since the previous run ended just before it. A run in pieces thus has the same
-///   samples as a run in one piece.
+/// - A clock that has run before continues. If the next run starts at the upcoming sampling time, within
+///   rounding, it takes the sample there, since the previous run ended just before it. A run in pieces thus
+///   has the same samples as a run in one piece.
 ///
-/// If a run starts before the last beat, it counts as another run, and the clock begins anew.
+/// If a run starts before the last sampling time, it counts as another run, and the clock begins anew.
 ///
 /// To sample at a fixed phase of a vibrating base, take a whole number of its periods as the interval, and a
 /// time of that phase as the first time. Compute the end of a run as a multiple, too
@@ -55,18 +55,18 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SampleTimes {
     interval: f64,
-    /// The first beat.
+    /// The first sampling time.
     ///
-    /// Without one, beats are counted from time 0 in both directions.
+    /// Without it, sampling times are counted from time 0 in both directions.
     first: Option<f64>,
-    /// Number of the upcoming beat.
+    /// Number of the upcoming sampling time.
     beat: i64,
     /// True once a run has started.
     started: bool,
 }
 
 impl SampleTimes {
-    /// Creates a clock that beats after each interval.
+    /// Creates a clock with a sampling time after each interval.
     ///
     /// # Errors
     /// If the interval is not finite and positive.
@@ -75,7 +75,7 @@ impl SampleTimes {
         Ok(Self { interval, first: None, beat: 1, started: false })
     }
 
-    /// Returns the same clock with its first beat at this absolute time.
+    /// Returns the same clock with its first sampling time at this absolute time.
     ///
     /// # Errors
     /// If the time is not finite.
@@ -84,12 +84,12 @@ impl SampleTimes {
         Ok(Self { first, beat: 0, started: false, ..self })
     }
 
-    /// Returns the interval between two beats.
+    /// Returns the interval between two sampling times.
     pub const fn interval(&self) -> f64 {
         self.interval
     }
 
-    /// Returns the upcoming beat.
+    /// Returns the upcoming sampling time.
     ///
     /// It is NaN where times are too coarse for the interval, which ends a run with an error: samples would
     /// be unevenly spaced there, or missing.
@@ -98,12 +98,12 @@ impl SampleTimes {
         if self.interval < COARSEST * beat.abs() { f64::NAN } else { beat }
     }
 
-    /// Advances to the first beat after this absolute time.
+    /// Advances to the first sampling time after this absolute time.
     ///
     /// Call this with the time of each sample.
     pub fn advance_past(&mut self, time: f64) {
-        // Each further attempt skips twice as many beats, so that the clock passes the time soon even where
-        // rounding swallows single intervals.
+        // Each further attempt skips twice the number of sampling times, so that the clock passes the time
+        // soon even where rounding swallows single intervals.
         let mut more = 1_i64;
         while self.beat < i64::MAX && self.time_of(self.beat) <= time {
             let skipped = ((time - self.time_of(self.beat)) / self.interval).floor().max(0.0);
@@ -128,10 +128,10 @@ impl SampleTimes {
         self.started = true;
     }
 
-    /// Goes to the first beat of a run that has no sample yet.
+    /// Goes to the first sampling time of a run that has no sample yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
-            // The cast saturates. Rounding of a large quotient may miss the beat by one, which `rounding`
+            // The cast saturates. Rounding of a large quotient may miss the number by one, which `rounding`
             // allows for.
             self.beat = (time / self.interval).floor() as i64;
             return self.advance_past(time + rounding);

@@ -7,8 +7,8 @@ use crate::ParameterError;
 
 /// A measure that adds up snapshots, whenever it is given one.
 ///
-/// In a run, [`Sampled`] gives it the snapshots at set times. A program that has snapshots of its own, such
-/// as the samples of a study, calls [`add`](Self::add).
+/// In a run, [`Sampled`] gives it the snapshots at set times. A program that takes snapshots itself, such as
+/// the samples of a study, calls [`add`](Self::add).
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container};

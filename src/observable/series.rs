@@ -8,9 +8,9 @@ use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
 ///
-/// The times increase. A run that starts before the last sample, or that is of another system, ends at once
-/// with an error: clear the series for it, or take another one. The same happens if the checkpoint from which
-/// a run was resumed is older than the series.
+/// The times increase. A run that starts before the last sample, or that is of another system, ends
+/// immediately with an error: clear the series for it, or take another one. The same happens if the
+/// checkpoint from which a run was resumed is older than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
 /// can. JSON knows no NaN, so a series with values that are not defined cannot be read back from it; from a

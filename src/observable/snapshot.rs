@@ -155,7 +155,7 @@ impl<'a> Snapshot<'a> {
     /// Returns the share of a region that matter can fill; `None` if it is not known. A snapshot without
     /// walls knows of nothing that is not free.
     pub(crate) fn free_share(&self, region: &Region) -> Option<f64> {
-        /// Share from which on all is free, but for rounding.
+        /// Share from which on all is free, up to rounding.
         const WHOLE: f64 = 1.0 - 1e-12;
         let Some(Walls { boundary, time }) = self.walls else { return Some(1.0) };
         let Some(area) = boundary.area(region, 0.0, time) else {

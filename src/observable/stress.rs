@@ -49,7 +49,7 @@ pub struct StressTensor {
 /// walls leave free for matter in the region, or in the whole domain, at the time of the sample
 /// ([`Boundary::area`](crate::boundary::Boundary::area)). A run ends with an error if it is infinite, or if
 /// the boundary does not know it. Where a driving changes the number of disks or their velocities, the
-/// kinetic part is that of the samples, and the collisional part that of the collisions between them.
+/// kinetic part comes from the samples, and the collisional part from the collisions between them.
 ///
 /// Inside an [`OfKind`](super::OfKind), the kinetic part counts the disks of the kind, and the collisional
 /// part counts all collisions in which such a disk takes part.
@@ -60,7 +60,7 @@ pub struct StressTensor {
 /// use granular_edmd::observable::{SampleTimes, Stress, Temperatures};
 /// use granular_edmd::{Simulation, initial};
 ///
-/// // A gas of packing fraction 0.1 in a periodic box, whose pressure is 1.236 times that of an ideal gas.
+/// // A gas of packing fraction 0.1 in a periodic box, whose pressure is 1.236 times an ideal gas's.
 /// let container = Container::periodic(40.0, 40.0)?;
 /// let disks = initial::random(&container, 204, 0.5, 40.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;

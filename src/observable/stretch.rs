@@ -4,9 +4,9 @@ use super::SampleTimes;
 
 /// The stretch of time since the latest sample.
 ///
-/// A stretch counts if it is a whole interval of the clock. If a run begins off the beat, its first stretch
-/// is shorter and does not count. A run that begins where the previous run ended continues the stretch of
-/// that run.
+/// A stretch counts if it is a whole interval of the clock. If a run begins between two sampling times, its
+/// first stretch is shorter and does not count. A run that begins where the previous run ended continues the
+/// stretch of that run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct Stretch {

@@ -20,7 +20,7 @@ pub(super) const ENERGY: &str = "energy";
 /// number. A `Sampled` measure is written like the measure within.
 ///
 /// # Contract
-/// Each row has as many numbers as there are headings, in their order.
+/// Each row has one number for each heading, in their order.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -84,38 +84,6 @@ pub trait Table {
         }
         out.flush()
     }
-
-    /// Writes the table as JSON lines: an object for each row, with the headings of
-    /// [`write_csv`](Self::write_csv) as keys.
-    ///
-    /// Numbers read back to the same bits. A number that is not finite is `null`.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::Domain;
-    /// use granular_edmd::observable::{CenterOfMass, Observer, SampleTimes, Series, Snapshot, Table};
-    ///
-    /// let mut series = Series::new(CenterOfMass, SampleTimes::every(0.5)?);
-    /// series.on_sample(&Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0));
-    /// let mut lines = Vec::new();
-    /// series.write_json_lines(&mut lines)?;
-    /// let line = "{\"time [time]\":0.5,\"center_x [length]\":null,\"center_y [length]\":null}\n";
-    /// assert_eq!(String::from_utf8(lines)?, line);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// The same as for [`write_csv`](Self::write_csv).
-    fn write_json_lines(&self, mut out: impl Write) -> io::Result<()>
-    where
-        Self: Sized,
-    {
-        let labels = labels(self)?;
-        for row in self.rows() {
-            let members: Vec<String> = labels.iter().zip(complete(&row, &labels)?).map(member).collect();
-            writeln!(out, "{{{}}}", members.join(","))?;
-        }
-        out.flush()
-    }
 }
 
 impl<Q: Tabular> Table for Series<Q> {
@@ -142,7 +110,7 @@ impl Table for Histogram {
     }
 }
 
-/// Returns the headings of numbers without errors, and after them those of numbers with errors.
+/// Returns the headings of numbers without errors, and after them the headings of numbers with errors.
 pub(super) fn headings(exact: &[(&str, &str)], estimated: &[(&str, &str)]) -> Vec<Heading> {
     let exact = exact.iter().map(|&heading| heading.into());
     let estimated = estimated.iter().flat_map(|&(name, unit)| {
@@ -170,7 +138,7 @@ pub(super) fn histogram_headings<const COUNT: usize>(names: [(&str, &str); COUNT
     names.into_iter().flat_map(columns).collect()
 }
 
-/// Returns the rows of histograms side by side, with as many bins each.
+/// Returns the rows of histograms side by side, all with the same number of bins.
 pub(super) fn histogram_rows<const COUNT: usize>(
     histograms: [&Histogram; COUNT],
 ) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
@@ -204,10 +172,6 @@ fn complete<'a>(row: &'a [f64], labels: &[String]) -> io::Result<&'a [f64]> {
 fn label(heading: &Heading) -> String {
     let (name, unit) = (heading.name(), heading.unit());
     if unit == "1" { name.to_owned() } else { format!("{name} [{unit}]") }
-}
-
-fn member((label, number): (&String, &f64)) -> String {
-    if number.is_finite() { format!("\"{label}\":{number:?}") } else { format!("\"{label}\":null") }
 }
 
 /// Checks that all names differ, and that names and units need no quotes.

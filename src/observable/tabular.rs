@@ -44,8 +44,8 @@ impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
 /// tabular.
 ///
 /// # Contract
-/// `add_numbers` adds as many numbers as there are headings, in their order. Names consist of ASCII letters,
-/// digits and underscores.
+/// `add_numbers` adds one number for each heading, in their order. Names consist of ASCII letters, digits and
+/// underscores.
 ///
 /// ```
 /// use granular_edmd::observable::{Heading, Observable, Snapshot, Tabular};

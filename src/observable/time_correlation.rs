@@ -10,7 +10,7 @@ use crate::statistics::Estimate;
 
 /// A value that can be correlated with another one of the same type.
 ///
-/// Implement it for the value of an observable of your own. Return NaN if two values have no product.
+/// Implement it for the value of a custom observable. Return NaN if two values have no product.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -63,12 +63,12 @@ impl Observable for Velocities {
 /// C(t) = \langle A(0)\cdot A(t)\rangle
 /// ```
 ///
-/// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
+/// Every sample is a time origin, and the lags are whole numbers of intervals. The product is defined by
 /// [`InnerProduct`]: the dot product of vectors, and the mean over the disks for values of disks. No mean is
 /// subtracted. For fluctuations, subtract the mean in the observable if it is known, or else its square from
 /// the correlation. After a gap in time, or if disks were put elsewhere between two runs, the observer begins
-/// with new origins. Pairs without a product, such
-/// as samples that have no disk in common, are left out. The errors come from blocks of origins.
+/// with new origins. Pairs without a product, such as samples that have no disk in common, are left out. The
+/// errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
 ///

@@ -22,7 +22,7 @@ type Moments = [DVec2; MOMENTS];
 /// An observer of the viscosities and the thermal conductivity of an elastic gas in a periodic box
 /// (Helfand 1960; Alder, Gass and Wainwright 1970).
 ///
-/// The moments are those of momentum and energy, with the collisional parts: in a collision, the momentum
+/// The moments belong to momentum and energy, with the collisional parts: in a collision, the momentum
 /// $`\vec\Delta`$ and the energy $`\Delta e`$ go over the vector $`\vec r`$ between the centers at once.
 ///
 /// ```math
@@ -41,19 +41,22 @@ type Moments = [DVec2; MOMENTS];
 /// ```
 ///
 /// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
-/// $`W`$. Energy is that of translation and rotation, so smooth and perfectly rough disks are possible.
+/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible.
 /// Velocities are those about the center of mass. All integrals are exact; samples only set the lags.
 ///
 /// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
-/// One observer measures one gas, in one run or in runs that continue each other. A run ends with an error if
-/// it does not continue the previous one, if the domain is not periodic in both directions or another one, if
-/// there is gravity, if a disk meets a wall, if a collision of disks changes the energy by more than 1e-6 of
-/// theirs, or if disks change otherwise than by collisions, be it by an inlet, by a driving, or between two
-/// runs. The first stretch, as long as the longest lag, only finds the pressure. The errors come from blocks
-/// of origins.
+/// One observer measures one gas, in one run or in runs that continue each other. The first interval, as long
+/// as the longest lag, only finds the pressure. The errors come from blocks of origins.
+///
+/// A run ends with an error if
+/// - it does not continue the previous run;
+/// - the domain is not periodic in both directions, or is another one than before;
+/// - there is gravity, or a disk meets a wall;
+/// - a collision of disks changes the energy by more than 1e-6 of their energy;
+/// - disks change by anything but collisions: an inlet, a driving, or a change between two runs.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -83,7 +86,7 @@ pub struct TransportCoefficients {
     moments: Moments,
     /// Growth of the moments between two collisions.
     rates: Moments,
-    /// Time and moment of compression at the start of the stretch that finds the pressure.
+    /// Time and moment of compression at the start of the interval that finds the pressure.
     origin: Option<(f64, f64)>,
     /// Growth of the moment of compression by the pressure.
     drift: Option<f64>,
@@ -120,7 +123,7 @@ impl Mover {
         }
     }
 
-    /// Tells whether two motions are the same but for this rounding of speeds.
+    /// Returns whether two motions are the same up to this rounding of speeds.
     fn is_like(&self, other: &Self, rounding: f64) -> bool {
         let spin = (self.radius * (self.angular_velocity - other.angular_velocity)).abs();
         (self.mass, self.moment_of_inertia, self.radius)
@@ -196,8 +199,8 @@ impl TransportCoefficients {
 
     /// Returns the bulk viscosity ζ.
     pub fn bulk_viscosity(&self) -> Estimate {
-        // The pressure of the first stretch is not quite that of the run. The difference makes the mean
-        // square of the moment grow by its own square, which is not viscosity.
+        // The pressure of the first interval is not quite the pressure of the run. The difference makes the
+        // mean square of the moment grow by its own square, which is not viscosity.
         let interval = self.stretch.sample_times.interval();
         let (longest, half) = (self.lags[1].longest(), self.lags[1].longest() / 2);
         let excess = self.excess.mean() / (longest as f64 * interval);
@@ -235,8 +238,8 @@ impl TransportCoefficients {
         self.time = time;
     }
 
-    /// Replaces the kept motions by those of a snapshot, which are the same but for rounding if only
-    /// collisions have changed them. Otherwise the kept ones stay, so that further runs are refused, too.
+    /// Keeps the motions of this snapshot if only collisions have changed them, which leaves them the same up
+    /// to rounding. Otherwise keeps the old ones, so that further runs are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
@@ -258,7 +261,7 @@ impl TransportCoefficients {
         self.movers = movers;
     }
 
-    /// Tells whether the pressure is known. The stretch that finds it is as long as the longest lag.
+    /// Returns whether the pressure is known. The interval that finds it is as long as the longest lag.
     fn knows_pressure(&mut self) -> bool {
         let compression = self.moments[1].x;
         let (start, at_start) = *self.origin.get_or_insert((self.time, compression));

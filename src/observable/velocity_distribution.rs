@@ -21,9 +21,9 @@ use crate::{Disk, ParameterError};
 /// ```
 ///
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
-/// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
-/// All cumulants of a Maxwellian gas are therefore 0, for any number of disks. Errors come from blocks of
-/// samples. A sample is left out if its disks all move alike, but for rounding.
+/// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas with the same
+/// number of disks. All cumulants of a Maxwellian gas are therefore 0, for any number of disks. Errors come
+/// from blocks of samples. A sample is left out if its disks all move alike, up to rounding.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity.
@@ -175,7 +175,7 @@ fn about(
     (peculiar, freedom)
 }
 
-/// Returns a moment of some numbers, divided by its mean for as many normal numbers with the same sum of
+/// Returns a moment of some numbers, divided by its mean for normal numbers of the same count and sum of
 /// squares.
 ///
 /// `moment` is the sum of the numbers to the power `order`, and `squares` the sum of their squares. Each

@@ -16,14 +16,14 @@ use crate::statistics::{BlockedMean, Estimate};
 /// ```
 ///
 /// in units of energy per area, for a wall of length $`L`$ over a time $`t`$. $`\Delta_n`$ and $`\Delta_t`$
-/// are the normal and tangential [impulses](crate::collision::Impulse) on the disks. So $`p`$ is positive
+/// are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so $`p`$ is positive
 /// where disks push the wall, and $`\tau`$ where they drag it along the tangent, which is the normal turned
 /// counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
 /// errors come from blocks of these values. A disk comes back to a wall that it has hit, so the values of
 /// short intervals are anticorrelated, and their errors up to three times too large: take intervals of many
 /// collisions.
 ///
-/// A run ends with an error if an index is not that of a wall.
+/// A run ends with an error if an index names no wall.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};

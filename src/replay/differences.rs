@@ -24,7 +24,7 @@ pub struct Differences {
     pub apart: Option<TooFarApart>,
 }
 
-/// A collision of a disk, and the one of as many before that it has in the other run.
+/// The n-th collision of a disk in one run, and its n-th collision in the other.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct OtherPartner {
@@ -50,7 +50,7 @@ pub struct TooFarApart {
 type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
 
 impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
-    /// Compares the partners of each disk, in turn a collision of one run and of the other. The errors of
+    /// Compares the partners of each disk, alternately a collision of one run and of the other. The errors of
     /// runs that `failed` are their ends.
     pub(super) fn other_partners(
         pair: Pair<'_, R, B, S>,

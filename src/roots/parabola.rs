@@ -3,11 +3,11 @@
 /// Returns the first time at which the gap `f(t) = value + rate·t + ½·acceleration·t²` is closed and closes
 /// further.
 ///
-/// The time $`t \ge 0`$ is counted from the moment at which value and rate are given. The result is infinite
+/// The time $`t \ge 0`$ is counted from the time at which value and rate are given. The result is infinite
 /// only if it overflows.
 /// - An open gap counts at the first zero through which it falls; there may be none. Rounding decides whether
 ///   a gap counts that closes for an instant and opens again, as at a double root.
-/// - A gap that is closed and closes further counts at once, at time 0.
+/// - A gap that is closed and closes further counts immediately, at time 0.
 /// - A gap that is closed but rises counts when it closes next. If it never rises to zero, it counts when it
 ///   is back at its first value.
 ///

@@ -14,9 +14,9 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 /// Returns the first time, not later than `end`, at which the gap `c₀ + c₁t + c₂t² + c₃t³ + c₄t⁴` is closed
 /// and closes further.
 ///
-/// The meaning is that of [`first_descent`], which handles polynomials of degree two and less:
+/// It means the same as [`first_descent`], which handles polynomials of degree two and less:
 /// - An open gap counts at the first zero through which it falls.
-/// - A gap that is closed and closes further counts at once, at time 0.
+/// - A gap that is closed and closes further counts immediately, at time 0.
 /// - A gap that is closed but rises counts when it closes next. If it has not opened by then, it counts when
 ///   it falls back to its first value.
 ///
@@ -76,7 +76,7 @@ fn search(gap: &Coefficients, end: f64) -> Option<f64> {
     })
 }
 
-/// Tells whether the gap falls from the start: the sign of its lowest power decides.
+/// Returns whether the gap falls from the start: the sign of its lowest power decides.
 fn falls_from_the_start(gap: &Coefficients) -> bool {
     gap[1..].iter().find(|&&c| c != 0.0).is_some_and(|&c| c < 0.0)
 }

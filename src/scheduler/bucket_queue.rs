@@ -10,8 +10,8 @@ use super::entry::Entry;
 use crate::prefetch::prefetch;
 use piles::Piles;
 
-/// Number of events that are due within the time of one bucket. With so many events in each, there are few
-/// buckets, and the last entries of all of them stay in the caches.
+/// Number of events that are due within the time of one bucket. At this number, there are few buckets, and
+/// the last entries of all of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
 /// Number of events per disk in a page. They share the cost of dealing out the disk to the next page.
@@ -75,7 +75,7 @@ struct Page {
 }
 
 impl Page {
-    /// Returns the bucket of a time. The numbers of buckets go on beyond those of the page.
+    /// Returns the bucket of a time. The numbers of buckets go on beyond the page.
     #[inline]
     fn bucket(self, due: f64) -> usize {
         // The cast saturates: times before the page belong to its first bucket, and infinite times to the

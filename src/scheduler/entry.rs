@@ -25,8 +25,8 @@ impl Entry {
     #[inline]
     pub(super) fn new(disk: usize, due: f64) -> Self {
         // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow
-        // with the float, and those of a negative one with its magnitude. For a negative float, all bits are
-        // flipped; for a positive one, only the sign.
+        // with the float, and the bits of a negative one with its magnitude. For a negative float, all bits
+        // are flipped; for a positive one, only the sign.
         let bits = (due + 0.0).to_bits();
         Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
     }

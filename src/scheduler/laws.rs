@@ -20,7 +20,7 @@ const PART: &str = "scheduler";
 /// advance, go back, or are before the last answer; ties and times that differ by their last bits, both
 /// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
 /// many and no disks. Each question is asked twice. Now and then the scripts ask for
-/// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" tells
+/// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" says
 /// which planted faults the check finds. The scripts never change within a version.
 ///
 /// # Errors

@@ -30,7 +30,7 @@ impl EventScheduler for LinearScan {
     fn earliest(&self) -> (usize, f64) {
         let mut first = NOTHING_DUE;
         for (disk, &due) in self.due.iter().enumerate() {
-            // An infinite time is not before that of `NOTHING_DUE`, but its disk exists.
+            // An infinite time is not before the time of `NOTHING_DUE`, but its disk exists.
             if due < first.1 || first.0 == usize::MAX {
                 first = (disk, due);
             }

@@ -40,7 +40,7 @@ pub(super) const SPARE_DISKS: usize = 64;
 /// The disks in the cells of a grid.
 ///
 /// A ring of ghost cells surrounds the grid. Beyond walls, ghosts are empty; at periodic sides and ends, they
-/// mirror the cells of the opposite side. Where disks differ in size, the grid is that of the smallest class,
+/// mirror the cells of the opposite side. Where disks differ in size, the grid belongs to the smallest class,
 /// and each larger class has a layer above it.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
@@ -69,6 +69,8 @@ impl Cells {
         let largest =
             classes.last().map_or_else(|| SizeClass::of_nobody(&domain).largest, |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
+        // Also where layers are used: this layout says whether the domain has room for the largest disk at
+        // all.
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // All disks share the cells of the largest if periodic sides or ends are too close for layers.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
@@ -127,13 +129,13 @@ impl Cells {
         Layouts { smallest: self.grid.layout, larger, classes: self.classes.clone() }
     }
 
-    /// Tells whether a disk of this diameter is of one of the classes for which the cells were made.
+    /// Returns whether a disk of this diameter is of one of the classes for which the cells were made.
     pub(super) fn suit(&self, diameter: f64) -> bool {
         let class = self.classes.get(usize::from(class_of(&self.classes, diameter)));
         class.is_some_and(|class| self.layers.is_none() || diameter >= class.smallest)
     }
 
-    /// Tells whether there are far more or far fewer disks than when the cells were made.
+    /// Returns whether there are far more or far fewer disks than when the cells were made.
     pub(super) fn are_outgrown(&self) -> bool {
         let (before, now) = (count(&self.classes), self.places.len());
         now > 2 * before + SPARE_DISKS || before > 2 * now + SPARE_DISKS
@@ -153,6 +155,7 @@ impl Cells {
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
         self.change(disk, Contents::remove);
+        // The last disk is found by its old number for the last time, and is written anew under the free one.
         if disk != last {
             self.change(last, Contents::remove);
         }
@@ -177,7 +180,7 @@ impl Cells {
         }
     }
 
-    /// Tells whether a disk is of a larger class than the smallest.
+    /// Returns whether a disk is of a larger class than the smallest.
     #[inline]
     pub(super) fn is_large(&self, disk: usize) -> bool {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
@@ -318,6 +321,8 @@ impl Cells {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
+        // Where two images cannot be told apart, a disk seen from the last cell may be met at another image
+        // now, so all are taken again.
         layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
     }
 

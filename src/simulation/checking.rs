@@ -1,10 +1,10 @@
-//! Checks of what the engine is told: collisions happen where surfaces touch, no event is lost, and no disk
-//! leaves the domain.
+//! Checks of the answers that the engine gets: collisions happen where surfaces touch, no event is lost, and
+//! no disk leaves the domain.
 //!
 //! All parts may be code of the user's. None of them can make the engine panic, but a wall that is not where
-//! it says, or a scheduler that forgets, would let a run end as if nothing had happened. So the engine looks
-//! where a look costs next to nothing: at each wall collision, at each new largest overlap, at the ends of
-//! searches for a wall, and at all disks whenever the epoch moves or a run ends.
+//! it says, or a scheduler that forgets, would let a run end as if nothing had happened. The engine therefore
+//! checks where a check costs next to nothing: at each wall collision, at each new largest overlap, at the
+//! ends of searches for a wall, and at all disks whenever the epoch moves or a run ends.
 
 use glam::DVec2;
 

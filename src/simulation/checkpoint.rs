@@ -138,7 +138,7 @@ pub enum CheckpointError {
     /// The contents are not a possible state.
     #[error("the checkpoint is inconsistent: {0}")]
     Inconsistent(String),
-    /// The boundary has another domain than that of the run that was saved.
+    /// The boundary has another domain than the saved run.
     #[error("the checkpoint is of a run in the domain {saved}; the boundary's is {given}")]
     Domain {
         /// The domain of the run that was saved.
@@ -170,12 +170,12 @@ impl Checkpoint {
         self.0.trajectories.len()
     }
 
-    /// Returns the fingerprint of the rule of the run, if it has one.
+    /// Returns the fingerprint of the run's rule, or `None` if the rule gives none.
     pub const fn rule(&self) -> Option<Fingerprint> {
         self.0.rule
     }
 
-    /// Returns the fingerprint of the boundary of the run, if it has one.
+    /// Returns the fingerprint of the run's boundary, or `None` if the boundary gives none.
     pub const fn boundary(&self) -> Option<Fingerprint> {
         self.0.boundary
     }

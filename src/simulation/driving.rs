@@ -40,7 +40,7 @@ use crate::{Disk, ParameterError};
 ///    that is cut into pieces has the same kicks.
 /// 5. If it promises so, the total momentum stays, up to rounding.
 ///
-/// [`laws::check`] tests all of this; `docs/validation.md` tells which planted faults it finds. The engine
+/// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults it finds. The engine
 /// refuses disks that overlap, a change of their number, and a clock that stands still.
 ///
 /// ```
@@ -88,7 +88,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// depend on how a run is cut into pieces.
     ///
     /// # Errors
-    /// The same as for [`Self::run`], and those of kicks: [`RunError::Driving`].
+    /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].
     pub fn run_driven<D: Driving + ?Sized, O: Observer + ?Sized>(
         &mut self,
         limits: &Limits<'_>,

@@ -79,7 +79,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Makes new cells for the present disks, and for one of a `further` diameter, and predicts all events
-    /// anew. Tells whether the domain has room for such cells; if not, everything stays as it was.
+    /// anew. Returns whether the domain has room for such cells; if not, everything stays as it was.
     pub(super) fn renew_cells(&mut self, size: CellSize, further: Option<f64>) -> bool {
         let (bodies, now) = (&self.bodies, self.clock.now);
         let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.radius(disk)));

@@ -53,7 +53,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.look_ahead();
         if forecast.is_collision() {
             let partner = forecast.partner as usize;
-            // The partner may be gone.
+            // An equal count means that the partner is still on the flight of the prediction. It may also be
+            // gone.
             let collisions = self.bodies.forecast(partner).map(|partner| partner.collisions);
             if collisions == Some(forecast.partner_collisions) {
                 return self.collide(disk, partner, observer).map(Some);
@@ -111,6 +112,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         observer.on_collision(&collision);
         self.find_next_of_both([disk, partner], counts);
+        // The scheduler hears of both disks after both predictions: one at a time, a run is 2 to 4 % slower.
         for disk in [disk, partner] {
             self.schedule(disk);
         }
@@ -131,6 +133,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let (normal, velocity) = (surface.normal, surface.velocity);
             return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }
+        // By rounding, the disk may already leave the wall in the engine's arithmetic. The rule then gets no
+        // closing speed and may change nothing, and the boundary would find the same touch again.
         let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (mut collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
@@ -140,6 +144,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         let is_plain = matches!(surface.response, Response::Shared | Response::Rule(_));
         self.ledger.has_source |= !is_plain || surface.velocity != DVec2::ZERO;
+        // Before the touch is checked: a sink for centers takes disks that lie deep in its wall.
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
         }
@@ -150,6 +155,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.wall_collisions += 1;
         self.count_regime(&collision);
         self.kick(disk, &kick);
+        // The wall reacts before the disk's next flight is searched, which must see the wall as it moves from
+        // now on.
         let reaction = self.boundary.react(&impact_of(&collision, wall, self.clock.now));
         self.find_next(disk);
         if parts {
@@ -180,7 +187,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Takes a disk out of the run that has come to a sink.
+    /// Removes a disk that has come to a sink from the run.
     #[cold]
     #[inline(never)]
     fn absorb<O: Observer + ?Sized>(
@@ -218,7 +225,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Tells whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
+    /// Returns whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
         // The answer is no for a velocity that is not a number. Spins need no test: an impulse that makes the
@@ -271,7 +278,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.forecast_mut(disk).count_collision();
     }
 
-    /// Takes a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an
+    /// Moves a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an
     /// earlier partner.
     #[inline(always)]
     fn cross(&mut self, disk: usize, exit: Exit) {
@@ -299,7 +306,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk);
     }
 
-    /// Takes a disk of a larger class to its next cell.
+    /// Moves a disk of a larger class to its next cell.
     #[inline(never)]
     fn cross_large(&mut self, disk: usize, exit: Exit) {
         self.counters.cell_crossings += 1;

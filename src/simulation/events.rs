@@ -61,7 +61,7 @@ pub struct Counters {
     /// Collisions whose surfaces parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound).
     pub least_rebound_collisions: u64,
-    /// Energy that those of them put in which gained energy.
+    /// Energy that the collisions which gained energy put in.
     pub energy_of_rebounds: f64,
     /// Passages of a disk from one neighbor cell to another.
     pub cell_crossings: u64,
@@ -80,7 +80,7 @@ pub struct Counters {
     pub removals: u64,
     /// Disks that inlets let in.
     pub insertions: u64,
-    /// Walls that were elsewhere at once when the boundary was set between runs.
+    /// Walls that were suddenly elsewhere when the boundary was set between runs.
     pub wall_jumps: u64,
     /// Farthest way of such a wall.
     pub farthest_jump: f64,
@@ -91,7 +91,7 @@ pub struct Counters {
 impl Counters {
     /// Returns the counts since `earlier`.
     ///
-    /// The largest overlaps, the longest contact and the farthest jump are those of the whole run.
+    /// The largest overlaps, the longest contact and the farthest jump cover the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {

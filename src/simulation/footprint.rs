@@ -13,7 +13,7 @@ use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 #[non_exhaustive]
 pub struct Footprint {
     /// Bytes of memory for each disk: its motion, its next event, its share of the cells. A scheduler takes
-    /// some 8 to 24 more.
+    /// about 8 to 24 more.
     pub bytes_per_disk: f64,
     /// Number of neighbor cells of the smallest disks.
     pub cells: usize,

@@ -30,8 +30,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.end_flight(disk);
     }
 
-    /// Finds another partner for a disk whose partner has collided meanwhile. The end of the disk's own
-    /// flight in its cell stays.
+    /// Finds another partner for a disk whose partner has collided since. The end of the disk's own flight in
+    /// its cell stays.
     #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
@@ -89,7 +89,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
         let nobody = earliest.partner as usize >= self.bodies.len();
+        // The disk stands in for nobody, since the count of some disk is read in any case.
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
+        // A known collision keeps the count of its own prediction. With the partner's present count, a
+        // prediction that the partner's last collision has outdated would count as valid.
         let counted = self.forecast(disk).partner_collisions;
         let collisions = select_unpredictable(earliest == known, counted, self.forecast(partner).collisions);
         self.forecast_mut(disk).set_collision(earliest, collisions);
@@ -103,7 +106,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Enlarges the buffer for neighbors to the size that the cells need.
     ///
-    /// The need grows when a cell gets crowded. So this method is called wherever disks enter cells.
+    /// The need grows when a cell gets crowded, so this method is called wherever disks enter cells.
     #[inline]
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
@@ -139,6 +142,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (time, exit) = match self.boundary.first_touch(&flight, until) {
             FirstTouch::At(Touch { time, wall }) => {
                 self.forecast_mut(disk).wall = wall as u16;
+                // A prediction cannot return an error. An impossible touch is due immediately, and is
+                // reported when its turn comes.
                 let is_possible = time >= now && time <= until && wall < self.wall_count;
                 if is_possible { (time, Exit::Wall) } else { (now, Exit::Impossible) }
             }

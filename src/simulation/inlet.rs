@@ -22,6 +22,7 @@ use crate::{Disk, Kind, ParameterError};
 ///
 /// ```
 /// use granular_edmd::prelude::*;
+/// use granular_edmd::simulation::Inlet;
 ///
 /// // A shower of four grains for each unit of time, onto a floor that takes them out.
 /// let container = Container::open(10.0)?.absorbing(Wall::Floor)?;
@@ -67,8 +68,8 @@ impl Inlet {
     ///
     /// Its center is in the rectangle between the two places, the lower left and the upper right corner. The
     /// copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models have
-    /// no meaning. So a distribution is a list of as many disks as it takes, with radii of
-    /// [`Radii`](crate::initial::Radii), for example.
+    /// no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws, for
+    /// example.
     ///
     /// # Errors
     /// If there are no models, or the places are not finite or not in this order.
@@ -155,7 +156,7 @@ impl Inlet {
         if let Source::TakenOut { velocity, .. } = self.source { Some(velocity) } else { None }
     }
 
-    /// Tells whether the inlet puts back what sinks take out.
+    /// Returns whether the inlet puts back what sinks take out.
     pub(super) fn takes_back(&self) -> bool {
         matches!(self.source, Source::TakenOut { .. })
     }

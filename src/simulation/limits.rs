@@ -8,15 +8,15 @@ use super::{Counters, RunEnd};
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two looks at the wall clock and at the flag of another thread. They are so many
-/// that the looks cost next to nothing, and few enough that a limit is noticed at once, even if each event
-/// takes all the steps that a search for a moving wall may take.
+/// Number of events between two looks at the wall clock and at the flag of another thread. They are many
+/// enough that the looks cost next to nothing, and few enough that a limit is noticed immediately, even if
+/// each event takes all the steps that a search for a moving wall may take.
 const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
 /// flag that another thread sets.
 ///
-/// [`Simulation::run`](crate::Simulation::run) tells which of them ended the run. In each case, the next run
+/// [`Simulation::run`](crate::Simulation::run) says which of them ended the run. In each case, the next run
 /// continues with the bits that the run would have had without the limit. Observers end runs by their
 /// [verdict](crate::observable::Observer::verdict).
 ///
@@ -48,7 +48,8 @@ impl<'a> Limits<'a> {
         Self { end, most_collisions: u64::MAX, wall_clock: None, interrupt: None, least_progress: None }
     }
 
-    /// Returns the same limits, with at most this many collisions in the run, with disks or walls.
+    /// Returns the same limits, with at most `most_collisions` collisions in the run, of disks with disks or
+    /// walls.
     pub fn with_most_collisions(self, most_collisions: u64) -> Self {
         Self { most_collisions, ..self }
     }
@@ -151,7 +152,7 @@ impl<'a> Watch<'a> {
 
     /// Returns the number of events after which the limits must be looked at again.
     ///
-    /// This many events have at most as many collisions as are left, so the run ends exactly at the last one.
+    /// No more events than collisions left: the run then ends exactly at the last one.
     pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {
         let is_timed = self.deadline.is_some() || self.limits.interrupt.is_some();
         let most = if is_timed { EVENTS_BETWEEN_LOOKS } else { u64::MAX };

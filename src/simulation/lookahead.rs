@@ -5,8 +5,8 @@ use super::state::Bodies;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Number of disks that come into sight between the steps of a request. After this many disks, the cells that
-/// a disk's event needs are requested. After as many more, the disk's neighbors in those cells are requested.
+/// Number of disks that come into sight between two steps of a request: first the disk is requested, then the
+/// cells that its event needs, then its neighbors in those cells.
 const LATER: usize = 12;
 
 /// The disks that last came into sight. For each, the disk itself is requested from memory first, then the
@@ -50,8 +50,7 @@ impl Lookahead {
         self.disks = [0; 2 * LATER];
     }
 
-    /// Notes a disk. Returns the disk that was named [`LATER`] disks before, and the one that was named twice
-    /// as many before.
+    /// Notes a disk. Returns the disks that were named [`LATER`] and 2·[`LATER`] calls ago.
     #[inline]
     fn note(&mut self, disk: usize) -> (usize, usize) {
         let there = self.next % (2 * LATER);

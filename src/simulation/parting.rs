@@ -23,8 +23,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// approach.
     ///
     /// Velocities are rounded relative to themselves, not to their difference. A rule that takes all of the
-    /// closing speed leaves some 1e-17 of it, of either sign. Disks that touch and still approach collide at
-    /// once, again and again. Therefore, the speed at which the disks part is raised in steps of its
+    /// closing speed leaves about 1e-17 of it, of either sign. Disks that touch and still approach collide
+    /// immediately, again and again. Therefore, the speed at which the disks part is raised in steps of its
     /// rounding, until the prediction sees them part.
     #[cold]
     #[inline(never)]
@@ -61,8 +61,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if exit != Exit::Wall || exit_due > now || usize::from(next) != wall {
                 return;
             }
-            // The speed relative to the wall is a difference of speeds, so its rounding error is that of
-            // these speeds.
+            // The speed relative to the wall is a difference of speeds, so it has the rounding error of these
+            // speeds.
             let fallen = self.bodies.fall(now).1.length();
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
             let before = self.bodies.velocity(disk, now);

@@ -1,6 +1,6 @@
 //! Predictions of the time at which two disks collide.
 //!
-//! `exits.rs` has those of the time at which a disk leaves its cell, and `vector.rs` the same arithmetic in
+//! `exits.rs` computes the time at which a disk leaves its cell, and `vector.rs` the same arithmetic in
 //! vector instructions.
 
 mod exits;
@@ -42,9 +42,9 @@ impl Pairs {
     /// is as exact as the positions are.
     ///
     /// The method is stable event detection (Bannerman et al. 2014). A pair that touches or overlaps by
-    /// rounding collides at once while it approaches, and never while it recedes. If an overlap of 1e-16 were
-    /// a reason to wait for the other root, the disks would pass through each other. If it were a collision
-    /// in any case, a pair that has just collided would collide forever.
+    /// rounding collides immediately while it approaches, and never while it recedes. If an overlap of 1e-16
+    /// were a reason to wait for the other root, the disks would pass through each other. If it were a
+    /// collision in any case, a pair that has just collided would collide forever.
     #[inline]
     fn wait(&self) -> [f64; LANES] {
         let mut wait = [0.0; LANES];
@@ -111,8 +111,8 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Tells whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic would
-/// round differently, and a pair that seems to part here could be predicted to collide.
+/// Returns whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic
+/// would round differently, and a pair that seems to part here could be predicted to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, periods: DVec2, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());
@@ -126,8 +126,8 @@ compiled_for_each! {
     /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known`
     /// if that is earlier.
     ///
-    /// The candidates may include the disk itself, which never meets itself. So the room behind the
-    /// candidates is filled with the disk.
+    /// The candidates may include the disk itself, which never meets itself: the room behind the candidates
+    /// is filled with it.
     #[inline(never)]
     pub(super) earliest_collision(
         bodies: &Bodies, periods: DVec2, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
@@ -173,6 +173,8 @@ fn search<const COPY: u8>(
     candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
     let candidates = &candidates[..count.next_multiple_of(LANES)];
     let image = |x: f64, y: f64| (nearest_image(x, periods.x), nearest_image(y, periods.y));
+    // The choice is made outside the loop over pairs, so each of the four loops tests neither sizes nor
+    // periods.
     match (bodies.common_diameter(), periods == DVec2::ZERO) {
         (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x, y| (x, y)),
         (Some(diameter), false) => scan(bodies, disk, candidates, now, known, |_| diameter, image),

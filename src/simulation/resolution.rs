@@ -17,8 +17,8 @@ use crate::random::{normal, rayleigh};
 const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
-/// The normal comes from a difference of positions, so its rounding error is that of 1, times the ratio of
-/// the vessel's size to the disks'.
+/// The normal comes from a difference of positions, so its rounding error is ε times the ratio of the
+/// vessel's size to the disks'.
 const GRAZING: f64 = 1e-6;
 
 /// The change of a disk's motion in a collision.
@@ -40,7 +40,7 @@ impl Kick {
         Self { change, after: *after }
     }
 
-    /// Tells whether the kick leads to a motion within the engine's bounds.
+    /// Returns whether the kick leads to a motion within the engine's bounds.
     pub(super) fn is_possible(&self) -> bool {
         let velocity = self.after.velocity.abs();
         velocity.x <= LARGEST && velocity.y <= LARGEST && self.may_spin()
@@ -73,11 +73,13 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
         separation.y = nearest_image(separation.y, periods.y);
     }
     let distance = separation.length();
+    // Two centers in one place have no direction between them, and a NaN would spread to both disks.
     let normal = if distance > 0.0 { separation / distance } else { DVec2::Y };
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
     let outcome = collide_bodies(rule, normal, since, (&first, &material), (&second, &other));
+    // The pair was resolved in the free-fall frame, where gravity drops out. Observers see the container's.
     let (fallen, gained) = bodies.fall(offset);
     let collision = Collision {
         time: clock.time(),
@@ -118,6 +120,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
     let (leaving, contact, impulse) = match surface.response {
+        // These walls decide the motion, and the impulse follows. The contact is the same under any rule.
         Response::Thermal(_) | Response::Absorbing => {
             let leaving = match surface.response {
                 Response::Thermal(thermal) => emitted(&thermal, &arriving, surface, mass, inertia, generator),
@@ -151,19 +154,20 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         energy_change: kinetic_energy(&leaving, mass, inertia) - kinetic_energy(&arriving, mass, inertia),
     };
     let mut kick = Kick::between(&arriving, &leaving);
+    // The wall was met in the container's frame, and disks keep their velocities in the free-fall frame.
     kick.after.velocity = bodies.particles[disk].trajectory.velocity + kick.change.velocity;
     (collision, kick)
 }
 
-/// Tells whether two disks part so fast after a collision that rounding cannot make them approach. Nearly all
-/// do.
+/// Returns whether two disks part so fast after a collision that rounding cannot make them approach. Nearly
+/// all do.
 #[inline]
 pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     let velocity = (kicks[0].after.velocity - kicks[1].after.velocity).abs();
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Tells whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
+/// Returns whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
 /// radius is neither zero nor NaN, and its masses are positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
@@ -201,6 +205,8 @@ fn emitted(
     generator: &mut Xoshiro256PlusPlus,
 ) -> Body {
     let speed = (thermal.temperature() / mass).sqrt();
+    // Weighted by the flux, since fast disks cross a plane more often. With half a Gaussian, an elastic gas
+    // would settle below the wall's temperature.
     let outward = surface.normal * (speed * rayleigh(generator));
     let along = surface.normal.perp();
     if thermal.slip() {

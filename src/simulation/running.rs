@@ -48,7 +48,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Errors
     /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
     /// scheduler or observer gives an impossible answer, times become too coarse, or an observer fails. The
-    /// simulation then keeps the state of that moment.
+    /// simulation then keeps the state of that time.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
         limits: &Limits<'_>,
@@ -93,7 +93,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let is_due = ended.is_ok() && is_long;
         let ended = if is_due { self.check_all(self.clock.now).and(ended) } else { ended };
         observer.on_end(&self.snapshot());
-        // A verdict to stop comes too late now. A failure, such as that of a last write, must still be
+        // A verdict to stop comes too late now. A failure, of a last write for example, must still be
         // reported.
         let last = self.verdict_of(observer);
         ended.and_then(|end| last.map(|_| end))
@@ -169,6 +169,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                     return Ok(RunEnd::Observer);
                 }
             }
+            // Before a sample at the same time, which then sees the new disks.
             if opening <= stop {
                 self.open_inlets(opening, observer)?;
                 continue;
@@ -207,6 +208,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
+        // The difference is rounded, and must not take the run back behind its last event.
         self.clock.now = self.clock.now.max(stop - self.clock.origin);
         Ok(Reached::Time)
     }

@@ -2,8 +2,8 @@
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
 //! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
-//! of date: their count of collisions is not that of the disk which has this index now. They are made anew
-//! when they come up, like those with a partner that has collided meanwhile.
+//! of date: their collision count does not match the disk that has this index now. They are made anew when
+//! they come up, as for any partner that has collided since.
 
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
@@ -46,7 +46,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         &self.inlets
     }
 
-    /// Takes all inlets away, and returns them with the disks that wait.
+    /// Removes all inlets, and returns them with the disks that wait.
     pub fn remove_inlets(&mut self) -> Vec<Inlet> {
         std::mem::take(&mut self.inlets)
     }
@@ -119,13 +119,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Takes a disk out. The last one gets its index.
+    /// Removes a disk. The last one gets its index.
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.len() - 1;
         self.cells.take_out(disk);
         self.bodies.swap_remove(disk);
+        // The lookahead holds indices, of which the last one no longer exists.
         self.lookahead.forget();
         self.make_room();
+        // The scheduler cannot remove a disk. One that is never due is the same to it.
         self.scheduler.set(last, f64::INFINITY);
         if disk != last {
             self.schedule(disk);
@@ -135,11 +137,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Puts a disk in where there is room for it, into cells that suit it.
     fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
-        // The place of a disk at an epoch long ago would lack digits, and so would that of a fast one.
+        // The place of a disk at an epoch long ago would lack digits, and so would the place of a fast disk.
         if self.clock.now > self.clock.epoch_length {
             self.move_epoch(self.clock.now)?;
         }
         let velocity = disk.velocity() - self.bodies.fall(self.clock.now).1;
+        // The length of an epoch is measured in the typical diameter, which no disk has defined yet.
         if self.is_empty() {
             self.bodies.typical_diameter = 2.0 * disk.radius();
         }
@@ -160,7 +163,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Makes new cells if these do not suit disks of this diameter. Tells whether the domain has room for
+    /// Makes new cells if these do not suit disks of this diameter. Returns whether the domain has room for
     /// such disks.
     fn make_cells_suit(&mut self, diameter: f64) -> bool {
         self.cells.suit(diameter) || self.renew_cells(self.cells.grid().cell_size(), Some(diameter))

@@ -41,7 +41,7 @@ const JUMP: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A wall was elsewhere at once when the boundary was set between two runs, and hit no disk. A motion
+    /// A wall was suddenly elsewhere when the boundary was set between two runs, and hit no disk. A motion
     /// that begins at another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
     WallJumped {
         /// The wall that jumped farthest.
@@ -77,7 +77,7 @@ pub enum Warning {
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
     /// them aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small
-    /// velocities at the start mend it, such as those of
+    /// velocities at the start mend it, for example by
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.

@@ -1,4 +1,4 @@
-//! Two runs in turn, and what their times say about each other.
+//! Two runs in alternation, and what their times say about each other.
 
 use std::fmt;
 
@@ -17,9 +17,9 @@ const ROUNDS: usize = 201;
 /// are heads with a probability of 0.0018.
 const OUTSIDE: usize = 78;
 
-/// Runs a copy of the simulation for this many collisions, with disks or walls, and returns the report.
+/// Runs a copy of the simulation for `collisions` collisions, with disks or walls, and returns the report.
 ///
-/// Equal calls do the same work, from the same state. So take a fixed number of collisions also in a bench of
+/// Equal calls do the same work, from the same state. Take a fixed number of collisions also in a bench of
 /// criterion: in longer stretches, a rule with other physics leaves the state. An iteration is a stretch.
 ///
 /// ```no_run
@@ -37,7 +37,7 @@ const OUTSIDE: usize = 78;
 /// # }
 /// ```
 ///
-/// Criterion does not run two benches in turn: a difference of some percent is for a [`Comparison`].
+/// Criterion does not alternate two benches: a difference of some percent is for a [`Comparison`].
 ///
 /// # Errors
 /// The same as for [`Simulation::run`].
@@ -53,9 +53,9 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
     Ok(meter.report(&run))
 }
 
-/// The time of a collision in one run over that in another, from stretches in turn.
+/// The time of a collision in one run over that in another, from alternating stretches.
 ///
-/// Stretches of the two runs follow each other in pairs, and each ratio is that of a pair, so what slows both
+/// Stretches of the two runs follow each other in pairs, and each pair gives a ratio, so what slows both
 /// cancels. Stretches of one run do the same work each time, from the same state. A rule with other physics
 /// leads to other states, in which a collision may take more events. The numbers of events stand beside the
 /// times: if they agree, the ratio is the cost of the rule itself. The cost in its own state, too, comes from
@@ -135,8 +135,8 @@ impl Comparison {
         self.ratio
     }
 
-    /// Returns the interval in which the median of infinitely many such ratios lies with a probability of
-    /// 99.8 %, whatever their distribution, if they are independent.
+    /// Returns the 99.8 % confidence interval of the median ratio, whatever the distribution of the ratios,
+    /// if they are independent.
     ///
     /// It knows this pair of trajectories only. A rule with other physics takes another one, which alone
     /// makes up to 2 % in a dilute gas: compare from several states, with `run_until` between them, and take
@@ -155,7 +155,7 @@ impl Comparison {
         self.events
     }
 
-    /// Tells whether 1 is outside the [interval](Self::interval), and on which side.
+    /// Returns whether 1 is outside the [interval](Self::interval), and on which side.
     pub fn finding(&self) -> Finding {
         match self.interval {
             _ if !self.nanoseconds.iter().all(|time| time.high.is_finite()) => Finding::Unknown,

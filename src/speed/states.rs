@@ -41,7 +41,7 @@ const COLLISIONS: u64 = 100;
 /// Most events are passages between cells.
 ///
 /// # Errors
-/// If the state cannot be made, which does not happen.
+/// The errors of the builder, which do not occur for these fixed numbers.
 #[inline]
 pub fn dilute() -> Result<PaperBox, StateError> {
     paper_box(0.0, 0.03)
@@ -53,7 +53,7 @@ pub fn dilute() -> Result<PaperBox, StateError> {
 /// Most events are collisions.
 ///
 /// # Errors
-/// If the state cannot be made, which does not happen.
+/// The errors of the builder, which do not occur for these fixed numbers.
 #[inline]
 pub fn dense() -> Result<PaperBox, StateError> {
     paper_box(0.05, 0.1)
@@ -78,7 +78,7 @@ pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
 /// periodic on all sides.
 ///
 /// # Errors
-/// If the state cannot be made, which does not happen.
+/// The errors of the builder, which do not occur for these fixed numbers.
 #[inline]
 pub fn mixture() -> Result<Simulation<Elastic>, StateError> {
     let large = DISKS / 101;
@@ -93,7 +93,7 @@ pub fn mixture() -> Result<Simulation<Elastic>, StateError> {
 /// Returns an elastic gas in a square vessel with 36 round pegs, at the area fraction 0.4.
 ///
 /// # Errors
-/// If the state cannot be made, which does not happen.
+/// The errors of the builder, which do not occur for these fixed numbers.
 #[inline]
 pub fn vessel() -> Result<Simulation<Elastic, Vessel>, StateError> {
     let side = side(DISKS as f64, 0.4);
@@ -118,7 +118,7 @@ fn paper_box(inelasticity: f64, friction: f64) -> Result<PaperBox, StateError> {
     Ok(run)
 }
 
-/// Returns the side of a square in which this many disks of diameter 1 have this area fraction.
+/// Returns the side of a square in which `disks` disks of diameter 1 have this area fraction.
 fn side(disks: f64, area_fraction: f64) -> f64 {
     (0.25 * PI * disks / area_fraction).sqrt()
 }

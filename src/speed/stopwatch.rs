@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 /// A stopwatch for the time on processors, which starts when it is made.
 ///
 /// On Linux, time in which other programs have the processor does not count, and readings are good to some
-/// microseconds. Elsewhere, the seconds are those of the wall clock.
+/// microseconds. Elsewhere, the wall clock counts the seconds.
 ///
 /// ```
 /// use granular_edmd::speed::Stopwatch;

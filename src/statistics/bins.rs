@@ -39,7 +39,7 @@ impl Bins {
         Ok(self)
     }
 
-    /// Checks that there are as many entries as bins.
+    /// Checks that there is one entry for each bin.
     #[cfg(feature = "serde")]
     pub(crate) fn check_count(&self, count: usize) -> Result<(), ParameterError> {
         accept(count == self.count, "number of values", "that of the bins", count as f64).map(|_| ())
@@ -77,7 +77,7 @@ impl Bins {
         }
     }
 
-    /// Returns the bin of a number, if there is one.
+    /// Returns the bin of a number, or `None` outside all bins.
     pub(crate) fn find(&self, value: f64) -> Option<usize> {
         let bin = self.at_or_above(value);
         (value >= self.low && bin < self.count).then_some(bin)

@@ -7,8 +7,8 @@ use super::{Estimate, RunningMean};
 ///
 /// The type keeps the scatter of blocks of 1, 2, 4, … numbers. Its memory grows with the logarithm of their
 /// count, and each number costs constant time on average. [`Self::estimate`] takes the error from the
-/// smallest blocks that are long enough. The result has the same bits as that of
-/// [`block_average`](super::block_average) for a series in memory.
+/// smallest blocks that are long enough. The result has the same bits as
+/// [`block_average`](super::block_average) gives for a series in memory.
 ///
 /// ```
 /// use granular_edmd::statistics::{BlockedMean, block_average};
@@ -44,7 +44,7 @@ impl BlockedMean {
         Self(Vec::with_capacity(u64::BITS as usize))
     }
 
-    /// Takes one more number.
+    /// Adds a number.
     #[inline]
     pub fn push(&mut self, value: f64) {
         let mut block = value;

@@ -16,8 +16,7 @@ const LARGEST: f64 = 1e100;
 /// \epsilon_B^2 = \frac{1}{n_B(n_B-1)}\sum_i (x_i^{(B)}-\bar x)^2,
 /// ```
 ///
-/// grows with the block size $`B`$ until blocks are independent. The error is that of the smallest blocks for
-/// which
+/// grows with the block size $`B`$ until blocks are independent. The smallest blocks give the error for which
 /// 1. $`B^3 > 2n(\epsilon_B/\epsilon_1)^4`$: shorter blocks leave a bias that is larger than the scatter of
 ///    $`\epsilon_B`$ itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
 /// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
@@ -34,9 +33,8 @@ const LARGEST: f64 = 1e100;
 /// because errors that are small by chance pass this test more often than others. If an error is not
 /// converged, it is the largest that was found.
 ///
-/// Of 4000 Gaussian series of $`n`$ samples and one correlation time, of which $`\tau`$ are worth one, and of
-/// series with two times (of 70 % and 30 % of the variance, the second one 30 times longer and measured by
-/// $`n/\tau_2`$):
+/// Tried on 4000 Gaussian series of $`n`$ samples with one correlation time ($`\tau`$ samples are worth one),
+/// and on series with two times (70 % and 30 % of the variance, the second time $`\tau_2`$ 30 times longer):
 ///
 /// | $`n/\tau`$ or $`n/\tau_2`$ | 30 | 50 | 75 | 100 | 150 | 300 | 1000 |
 /// |---|---|---|---|---|---|---|---|

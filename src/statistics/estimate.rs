@@ -43,7 +43,7 @@ pub struct Estimate {
 enum Basis {
     /// The samples were taken as independent.
     Independent,
-    /// The error is that of blocks that were long enough.
+    /// The error comes from blocks that were long enough.
     Blocks,
     /// No block was long enough; this is the largest error found.
     ShortBlocks,
@@ -115,7 +115,7 @@ impl Estimate {
         self.samples as f64 / self.correlated_samples.max(1.0)
     }
 
-    /// Tells whether the error can be trusted.
+    /// Returns whether the error can be trusted.
     ///
     /// If it cannot, it is only a lower bound: the series is too short for its correlations
     /// ([`block_average`](super::block_average) has the numbers), all samples are equal, or there are fewer
@@ -124,7 +124,7 @@ impl Estimate {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }
 
-    /// Tells whether the error takes the samples as independent.
+    /// Returns whether the error takes the samples as independent.
     pub const fn assumes_independence(&self) -> bool {
         matches!(self.basis, Basis::Independent)
     }

@@ -6,8 +6,8 @@ use crate::ParameterError;
 /// A histogram of numbers that come one by one.
 ///
 /// The numbers may be correlated: the errors come from the scatter between blocks of numbers that came after
-/// each other, by the method of [`BlockedMean`]. The smallest blocks have as many numbers as there are bins,
-/// and at least 64.
+/// each other, by the method of [`BlockedMean`]. The smallest blocks have one number for each bin, and at
+/// least 64.
 ///
 /// ```
 /// use granular_edmd::statistics::Histogram;
@@ -46,7 +46,7 @@ pub struct HistogramBin {
     pub count: u64,
     /// Density: the fraction of all numbers that are in the bin, over its width; NaN without numbers.
     ///
-    /// Before there are two blocks, its error is that of independent numbers, √(p(1 − p)/n)/w for the share p
+    /// Before there are two blocks, its error assumes independent numbers: √(p(1 − p)/n)/w for the share p
     /// and the width w. It is then called a lower bound.
     pub density: Estimate,
 }
@@ -62,7 +62,7 @@ impl Histogram {
         Ok(Self { bins, before: counts.clone(), counts, below: 0, above: 0, count: 0, shares })
     }
 
-    /// Takes one more number.
+    /// Adds a number.
     ///
     /// NaN is left out.
     #[inline]

@@ -14,7 +14,7 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Takes one more number, with a weight above zero.
+    /// Adds a number, with a weight above zero.
     #[inline]
     pub(crate) fn push(&mut self, value: f64, weight: f64) {
         self.weight += weight;

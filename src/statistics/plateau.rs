@@ -7,12 +7,12 @@ const FEWEST_BLOCKS: u64 = 8;
 
 /// Smallest number of independent samples of an error that can be trusted.
 ///
-/// Blocks of a series of 50 independent samples look like those of 120 or more in one case of a thousand.
-/// With half of this number, every tenth series of 30 would be called converged, with an error too small by a
+/// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. With
+/// half of this number, every tenth series of 30 would be called converged, with an error too small by a
 /// third.
 pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
-/// Excess of a trusted error over that of its blocks, times the number of independent samples.
+/// Excess of a trusted error over its blocks' error, times the number of independent samples.
 ///
 /// A series is called converged if its error is small, and some errors are small by chance: the errors that
 /// are trusted are too small on average, the more so the fewer samples they have. With this excess, two
@@ -33,7 +33,7 @@ impl BlockError {
     /// Returns the error from two or more blocks that are taken as independent.
     pub(super) fn of(blocks: &RunningMean) -> Self {
         let count = blocks.count();
-        // The uncertainty is that of a standard deviation of normal numbers.
+        // The uncertainty of a standard deviation of normal numbers.
         let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();
         Self { error: blocks.standard_error(), uncertainty, blocks: count }
     }
@@ -62,15 +62,15 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)>
         is_long_enough(size, samples, growth(levels[at].error)) && is_flat(at) && is_the_last_rise(at)
     };
     let error = (1..known).find(is_plateau).map(|at| levels[at].error)?;
-    // The largest error, not that of the plateau: what counts here is how long the correlation may be.
+    // The largest error, not the plateau's: here it matters how long the correlation may be.
     let largest = levels.iter().map(|level| level.error).fold(levels[0].error, f64::max);
     let growth = growth(largest);
     let independent = samples as f64 / (growth * growth);
     (independent >= FEWEST_INDEPENDENT).then(|| (error, error * (1.0 + EXCESS / independent)))
 }
 
-/// Tells whether blocks of this size are long enough for a series with one correlation time. The error of
-/// these blocks is `growth` times that of independent samples.
+/// Returns whether blocks of this size are long enough for a series with one correlation time. The error of
+/// these blocks is `growth` times the error of independent samples.
 fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
     let squared = growth * growth;
     // Products of powers of two are exact, and the cube of 2^63 is far from overflow.

@@ -4,7 +4,7 @@ use super::{Estimate, Moments};
 
 /// The mean, variance and standard error of numbers that come one by one (Welford 1962).
 ///
-/// The standard error is that of independent numbers. It is too small for correlated numbers, such as the
+/// The standard error assumes independent numbers. It is too small for correlated numbers, such as the
 /// samples or collisions of one run; see [`BlockedMean`](super::BlockedMean).
 ///
 /// ```
@@ -19,7 +19,7 @@ use super::{Estimate, Moments};
 pub struct RunningMean(Moments);
 
 impl RunningMean {
-    /// Takes one more number.
+    /// Adds a number.
     #[inline]
     pub fn push(&mut self, value: f64) {
         self.0.push(value, 1.0);

@@ -11,8 +11,8 @@ use super::{AccelerationBounds, WallMotion, WallState};
 /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
 /// ```
 ///
-/// so amplitude and period are those of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and the
-/// acceleration is $`\mp 8A/H^2`$. Every contact is the root of a parabola, which is exact and needs no
+/// so it has the amplitude and the period of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and
+/// the acceleration is $`\mp 8A/H^2`$. Every contact is the root of a parabola, which is exact and needs no
 /// iteration.
 ///
 /// ```

@@ -40,7 +40,7 @@ impl<T> FirstTouch<T> {
     /// The answer of a search that has found no touch up to its end.
     pub const NONE: Self = Self::NotBefore(f64::INFINITY);
 
-    /// Returns the touch, if there is one.
+    /// Returns the touch, or `None` if the search found none.
     pub fn touch(self) -> Option<T> {
         match self {
             Self::At(touch) => Some(touch),
@@ -88,8 +88,8 @@ impl Approach {
         self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
     }
 
-    /// Tells whether the surface stays above this height until this time. Under an upward pull, the answer is
-    /// always no, and the caller must search.
+    /// Returns whether the surface stays above this height until this time. Under an upward pull, the answer
+    /// is always no, and the caller must search.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
         // Under a downward pull, the surface is lowest at the first or the last of these times, so two tests
@@ -250,7 +250,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         }
     }
 
-    /// Returns the end of a bounce that begins at `start` and stays lower than rounding, if there is one.
+    /// Returns the end of a bounce that begins at `start`, or `None` if it rises above rounding.
     ///
     /// The gap itself does not show when such a bounce is over. But the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
@@ -290,8 +290,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the value below which a gap counts as closed: the rounding of its lengths, and that of the
-    /// time at this speed.
+    /// Returns the value below which a gap counts as closed: the rounding of its lengths, and of the time at
+    /// this speed.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

@@ -2,7 +2,7 @@
 
 use super::WallMotion;
 
-/// Tells whether the motion is seen to jump at the end of a piece: it is not where its velocity shortly
+/// Returns whether the motion is seen to jump at the end of a piece: it is not where its velocity shortly
 /// before the end leads.
 pub(super) fn seen<M: WallMotion + ?Sized>(motion: &M) -> bool {
     const PIECES: usize = 1000;

@@ -29,7 +29,7 @@ impl<'de> Deserialize<'de> for Motion {
     }
 }
 
-/// Reads a motion, which may be that of a piston.
+/// Reads a motion, which may be a piston's.
 pub(crate) fn motion_or_piston<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Motion, D::Error> {
     Known::deserialize(deserializer)?.motion().map_err(D::Error::custom)
 }

@@ -48,7 +48,7 @@ const LATE: i32 = 40;
 /// the disks, and if the motion says so. The motion must repeat after its period, and answer alike when it is
 /// asked again. The check can miss a fault that is narrower than a five-hundredth of a piece, so check a
 /// motion with one long piece in several short intervals. It refuses an interval of more than ten thousand
-/// pieces. The page "Validation" tells which planted faults it finds.
+/// pieces. The page "Validation" says which planted faults it finds.
 ///
 /// # Errors
 /// The first violation that the check finds.

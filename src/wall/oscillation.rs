@@ -48,7 +48,7 @@ pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
     (number, (number + 1.0) * length)
 }
 
-/// Tells whether a piece number is even.
+/// Returns whether a piece number is even.
 #[inline]
 pub(super) fn is_even(number: f64) -> bool {
     (0.5 * number).floor() * 2.0 == number

@@ -6,7 +6,7 @@ use crate::{Fingerprint, ParameterError};
 
 /// A motion times a factor. The factor −1 mirrors it.
 ///
-/// Displacement, velocity and acceleration are those of the motion times the factor.
+/// Displacement, velocity and acceleration are multiplied by the factor.
 ///
 /// ```
 /// use granular_edmd::wall::{Scaled, Sinusoidal, WallMotion};

@@ -39,8 +39,7 @@ impl StartingAt {
     fn of(motion: Motion, start: f64) -> Result<Self, ParameterError> {
         let start = finite("start of a motion", start)?;
         let lead = match motion.period() {
-            // The remainder is exact, however late the start is. If it is 0, the phases are those of the
-            // motion itself.
+            // The remainder is exact, however late the start is. If it is 0, the motion keeps its phases.
             Some(period) if start % period != 0.0 => period - start.rem_euclid(period),
             Some(_) => 0.0,
             None => -start,

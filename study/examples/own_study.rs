@@ -9,9 +9,11 @@
 //!
 //! It takes two seconds. You learn what an experiment is; the tables of the study are in `out/own_study`.
 
-use granular_edmd::boundary::{Overlap, Probe};
+use granular_edmd::boundary::{Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch};
+use granular_edmd::observable::CollisionCounts;
 use granular_edmd::prelude::*;
 use granular_edmd::quantity::{finite, non_negative};
+use granular_edmd::{Fingerprint, Flight};
 use granular_edmd_study::{
     Axis, Column, Control, Experiment, ExperimentError, Plan, PlanError, Protocol, Study,
 };

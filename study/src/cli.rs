@@ -1,8 +1,8 @@
 //! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `replay`, `diff`,
 //! `accept` and `bench`, for any experiment.
 //!
-//! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
-//! the paper's box.
+//! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
+//! paper's box.
 //!
 //! ```no_run
 //! use granular_edmd_study::vibrated_box::{Base, VibratedBox};
@@ -25,12 +25,12 @@
 //! | 0 | all that was asked for is done |
 //! | 1 | the command failed; standard error says why |
 //! | 2 | the command line or the plan cannot be used |
-//! | 3 | other processes do the rest (`--no-wait`), also from `status` |
+//! | 3 | not finished: other processes work on it (`--no-wait`), also from `status` |
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
 //! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
 //! | 6 | from `diff`: the two runs differ |
 //! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
-//! | 8 | from `status`: not all ramps are done, and no process does any |
+//! | 8 | from `status`: not finished, and no process works on it |
 //! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
 //!
 //! `replay` and `diff` have nothing to save: stopped, they leave no file.
@@ -66,7 +66,7 @@ const LISTED: usize = 8;
 #[derive(Clone, Copy)]
 enum End {
     Done = 0,
-    /// Other processes do the rest.
+    /// Not finished; other processes work on it.
     Elsewhere = 3,
     /// All is done but the tables.
     NoTables = 4,
@@ -76,7 +76,7 @@ enum End {
     Different = 6,
     /// All is done, and some values were not finished.
     Unfinished = 7,
-    /// Nobody does the rest.
+    /// Not finished; no process works on it.
     Idle = 8,
     Interrupted = 130,
 }

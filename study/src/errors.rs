@@ -241,8 +241,8 @@ pub enum StudyError {
         /// The file.
         path: PathBuf,
     },
-    /// A record was made with another rule, other walls or another revision than those of the experiment now:
-    /// its code changed.
+    /// A record was made with another rule, other walls or another revision than the experiment has now: its
+    /// code changed.
     #[error(
         "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
         path.display()
@@ -302,7 +302,7 @@ impl PlanError {
     }
 }
 
-/// Returns a message with its lines cut short, since it repeats a line of the text, which may be long.
+/// Shortens the lines of a message that quotes its input.
 pub(super) fn shortened(message: &str) -> String {
     const LONGEST: usize = 160;
     let short = |line: &str| match line.char_indices().nth(LONGEST) {

@@ -26,18 +26,18 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 /// A system under study, given by its parameters: its simulation, its measurements, and the columns of its
 /// tables.
 ///
-/// An experiment is a serializable type of your own. Its fields are the parameters, which a
-/// [`Plan`](super::Plan) sets by name (`"friction"`, `"base.amplitude"`), and its methods say what the
-/// parameters mean. With `#[serde(deny_unknown_fields)]`, any misspelled name in a plan is an error. Without
-/// it, only the misspelled name of a parameter that varies is an error.
-/// [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
+/// An experiment is your own serializable type. Its fields are the parameters, which a [`Plan`](super::Plan)
+/// sets by name (`"friction"`, `"base.amplitude"`), and its methods say what the parameters mean. With
+/// `#[serde(deny_unknown_fields)]`, any misspelled name in a plan is an error. Without it, only the
+/// misspelled name of a parameter that varies is an error. [`VibratedBox`](super::vibrated_box::VibratedBox)
+/// is one such type.
 ///
 /// # Contract
 /// 1. All methods are functions of the parameters and their arguments: they use no clock and no other random
-///    numbers. So the files of a study have the same bytes, however often it is interrupted.
+///    numbers. The files of a study therefore have the same bytes, however often it is interrupted.
 /// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
 ///    that [`build`](Self::build) makes, since a run is resumed with them.
-/// 3. Samples and observer read back as they were written, in a binary format without names of fields. So
+/// 3. Samples and observer read back as they were written, in a binary format without names of fields, so
 ///    their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study that
 ///    cannot read them back ends with an error.
 ///
@@ -141,7 +141,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the disks at the start.
     ///
-    /// A plan can ask for any number of them. So refuse one that no memory holds before you make a vector of
+    /// A plan can ask for any number of them: refuse one that no memory holds before you make a vector of
     /// that length.
     ///
     /// # Errors
@@ -171,10 +171,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// all samples.
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
 
-    /// Returns the driving of a value, if it has one: kicks of all disks at set times.
+    /// Returns the driving of a value, which kicks all disks at set times, or `None`.
     ///
-    /// Each value has a driving of its own, with a seed of its own, which begins with the value and is saved
-    /// with it.
+    /// Each value has a separate driving, with its seed, which begins with the value and is saved with it.
     ///
     /// # Errors
     /// If these parameters do not give one.
@@ -186,7 +185,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns a companion, an observer that rides along and is not saved: a recorder, a closure, a channel.
     ///
     /// It sees the whole value, its settling too, and is made anew when a value goes on after an
-    /// interruption. Its verdict counts like that of the observer, so it must follow from the run alone.
+    /// interruption. Its verdict counts like the observer's, so it must follow from the run alone.
     ///
     /// # Errors
     /// If it cannot be made, such as a file that cannot be written.
@@ -230,7 +229,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Returns further tables besides those of values and samples, of profiles for example.
+    /// Returns further tables, of profiles for example, besides the tables of values and samples.
     fn tables() -> Vec<Table<Self>> {
         Vec::new()
     }
@@ -296,7 +295,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// The study has checked the checksum, the place and the time before. Many records keep no state.
     ///
     /// # Errors
-    /// The reason why they cannot, if there is one.
+    /// If they cannot, with the reason.
     fn check_measured(
         &self,
         samples: &[Self::Sample],

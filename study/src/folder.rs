@@ -1,7 +1,7 @@
 //! The folder of a study, with its plan, its provenance and values half done.
 //!
-//! A process that writes plan or tables holds the lock of the folder. So whoever holds it next knows that the
-//! writer of a temporary file there is dead.
+//! A process that writes plan or tables holds the lock of the folder. The next process that holds it knows
+//! that the writer of a temporary file there is dead.
 
 use std::collections::HashSet;
 use std::fs;

@@ -1,7 +1,6 @@
-//! The gate for values from plans: they pass the same checks as those of a constructor.
+//! The gate for values from plans: they pass the same checks as a constructor's arguments.
 
-/// Reads a type from a plan: first these fields, and no others, then the value that the expression makes of
-/// them, or the error of its check.
+/// Implements `Deserialize`: reads exactly these fields, then evaluates the expression.
 ///
 /// A derived `Deserialize` would fill private fields with numbers that no constructor accepts.
 macro_rules! from_file {

@@ -1,7 +1,7 @@
 //! Studies: many runs, planned as data and kept in a folder, which you can watch, stop, resume and spread
 //! over processes.
 //!
-//! An [`Experiment`] is the system under study. It is a serializable type of your own: its fields are the
+//! An [`Experiment`] is the system under study. It is your own serializable type: its fields are the
 //! parameters, and its methods define the simulation, the measurements, and the columns of the tables. A
 //! [`Plan`] says what to do with it: a [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
 //! down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of the grid may be
@@ -10,12 +10,12 @@
 //!
 //! The paper's system is an experiment like any other: [`vibrated_box`]. With the feature `cli`, which is on
 //! unless it is turned off, the command `granular-edmd` runs studies of it, and [`cli`] makes such a command
-//! for an experiment of your own. The chapter [`guide::sweep_it`] has all that a study can do.
+//! for a custom experiment. The chapter [`guide::sweep_it`] has all that a study can do.
 //!
 //! # Promises
-//! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed. So
-//!    the tables and the records of a complete study have the same bytes for any number of threads and
-//!    processes, however often these were interrupted or killed, and whether it was done at once or has grown
+//! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed. The
+//!    tables and the records of a complete study have the same bytes for any number of threads and processes,
+//!    however often these were interrupted or killed, and whether it was done at once or has grown
 //!    ([`Control::with_earlier_studies`]). Only the division of the records into logs differs, and wall-clock
 //!    times. A value that [`Control::with_most_seconds`] ended depends on the machine.
 //! 2. A record is whole or absent. A study names damage and never reads it as data;

@@ -85,8 +85,8 @@ impl<E: Experiment> Study<E> {
     /// none if it may continue anyway.
     ///
     /// Its finished values stay as they are. Each record keeps the mark of the code that made it, which the
-    /// column `made_by` of `values.csv` shows: values on both sides of the change can be told apart, and it
-    /// is yours to judge whether they can be compared.
+    /// column `made_by` of `values.csv` shows: values on both sides of the change can be distinguished, and
+    /// you decide whether they can be compared.
     ///
     /// # Errors
     /// If the folder holds no study, or cannot be read or written.
@@ -124,7 +124,7 @@ impl<E: Experiment> Study<E> {
         Ok(Self { folder, store, claims, plan, text, hash, provenance, maker })
     }
 
-    /// Puts the plan into the folder, if it passes a check; returns false if there is one.
+    /// Puts the plan into the folder, if it passes a check; returns false if the folder has a plan.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
         let provenance = Provenance::here(&self.plan, &self.hash, "");
         self.folder.create(&self.text, &provenance, || check(&self.plan))
@@ -136,7 +136,7 @@ impl<E: Experiment> Study<E> {
         Ok(self)
     }
 
-    /// Reads the provenance, which must be that of this plan, whole.
+    /// Reads the provenance, which must be whole and belong to this plan.
     fn read_provenance(&self) -> Result<Provenance, StudyError> {
         let provenance = self.folder.provenance()?;
         if provenance.is_there() && !provenance.is_of(&self.hash) {

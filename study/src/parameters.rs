@@ -39,7 +39,7 @@ pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
     }
 }
 
-/// Sets a parameter by its whole name; returns false if one of the names before the last is not that of a
+/// Sets a parameter by its whole name; returns false if one of the names before the last does not name a
 /// group.
 #[must_use]
 pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {

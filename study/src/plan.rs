@@ -23,19 +23,19 @@ use refinement::{Seen, Step};
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
-/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a seed of its own and
+/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a separate seed and
 /// independent of all others. Each step of a ramp is a *value*. Without axes, the grid has one point. Without
 /// a ramp, each point has one value.
 ///
-/// Axes and ramps vary parameters of the experiment by name. The whole name is that of the field, after the
-/// names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is enough
-/// if no other parameter has it.
+/// Axes and ramps vary parameters of the experiment by name. The whole name is the name of the field, after
+/// the names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is
+/// enough if no other parameter has it.
 ///
 /// A ramp is a function of its parameters, its repeat and the seed, not of the rest of the plan: a larger
 /// plan has the same ramps, and so do the parts of a sweep
 /// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight
 /// bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the
-/// same way from that of the plan, and the name and value of each parameter of the sweep. In the index of a
+/// same way from the plan's seed, and the name and value of each parameter of the sweep. In the index of a
 /// ramp, the repeat counts fastest.
 ///
 /// ```
@@ -247,7 +247,7 @@ impl<E: Experiment> Plan<E> {
         Ok(experiment)
     }
 
-    /// Returns the ramp of each point, if there is one.
+    /// Returns the ramp of each point, or `None` if the plan has no ramp.
     pub const fn ramp(&self) -> Option<&Ramp> {
         self.ramp.as_ref()
     }

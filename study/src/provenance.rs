@@ -91,8 +91,8 @@ impl Provenance {
     }
 }
 
-/// Returns the fields that decide whether a program may continue the study of a plan: those of its maker, and
-/// the fingerprints of rule and walls at the parameters of the plan.
+/// Returns the fields that decide whether a program may continue the study of a plan: the fields of its
+/// maker, and the fingerprints of rule and walls at the parameters of the plan.
 fn deciding<E: Experiment>(plan: &Plan<E>) -> Vec<(&'static str, String)> {
     let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
     let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());

@@ -229,7 +229,7 @@ impl<E: Experiment> Study<E> {
     /// Returns the seconds of one processor that the finished values took, and those that the others will
     /// take if they are like them; the latter is NaN before a value is finished.
     ///
-    /// Both are about right: of a value that was interrupted, the last piece counts alone.
+    /// Both are estimates: of a value that was interrupted, the last piece counts alone.
     ///
     /// # Errors
     /// If files cannot be read.

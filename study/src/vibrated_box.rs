@@ -1,8 +1,7 @@
 //! The paper's system: equal disks in a box over a base that vibrates or is hot.
 //!
-//! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a type of your own would. [`Sample`]
-//! holds what is measured. Its [`Record`] has methods for the flow: order, densest layer, energy change and
-//! noise.
+//! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a custom type would. [`Sample`] holds
+//! what is measured. Its [`Record`] has methods for the flow: order, densest layer, energy change and noise.
 
 mod base;
 mod convection;
@@ -69,13 +68,13 @@ pub struct VibratedBox {
     pub friction: f64,
     /// Dynamic friction $`\kappa_d`$, if not $`\kappa`$.
     pub dynamic_friction: Option<f64>,
-    /// Inelasticity of the walls, normal and tangential, if not that of the disks.
+    /// Inelasticity of the walls, normal and tangential, if it differs from the disks'.
     pub wall_inelasticity: Option<f64>,
-    /// Inelasticity of the base alone, if not that of the walls.
+    /// Inelasticity of the base alone, if it differs from the walls'.
     pub base_inelasticity: Option<f64>,
     /// Tangential inelasticity $`q_t`$ of the base alone, if not the normal one of the base.
     pub base_tangential_inelasticity: Option<f64>,
-    /// Friction of the walls, static and dynamic, if not that of the disks.
+    /// Friction of the walls, static and dynamic, if it differs from the disks'.
     pub wall_friction: Option<f64>,
     /// Contact duration $`t_c`$; none without the model [`ContactDuration`].
     pub contact_duration: Option<f64>,
@@ -131,7 +130,7 @@ impl VibratedBox {
         Self { inelasticity, tangential_inelasticity: None, ..self }
     }
 
-    /// Returns the same box with a tangential inelasticity $`q_t`$ of its own.
+    /// Returns the same box with this tangential inelasticity $`q_t`$.
     pub const fn with_tangential_inelasticity(self, tangential: f64) -> Self {
         Self { tangential_inelasticity: Some(tangential), ..self }
     }
@@ -141,17 +140,17 @@ impl VibratedBox {
         Self { friction, dynamic_friction: None, ..self }
     }
 
-    /// Returns the same box with a dynamic friction $`\kappa_d`$ of its own.
+    /// Returns the same box with this dynamic friction $`\kappa_d`$.
     pub const fn with_dynamic_friction(self, dynamic: f64) -> Self {
         Self { dynamic_friction: Some(dynamic), ..self }
     }
 
-    /// Returns the same box with walls of an inelasticity of their own, normal and tangential.
+    /// Returns the same box with this inelasticity of the walls, normal and tangential.
     pub const fn with_wall_inelasticity(self, inelasticity: f64) -> Self {
         Self { wall_inelasticity: Some(inelasticity), ..self }
     }
 
-    /// Returns the same box with a base of an inelasticity of its own, normal and tangential.
+    /// Returns the same box with this inelasticity of the base, normal and tangential.
     pub const fn with_base_inelasticity(self, inelasticity: f64) -> Self {
         Self { base_inelasticity: Some(inelasticity), base_tangential_inelasticity: None, ..self }
     }
@@ -166,7 +165,7 @@ impl VibratedBox {
         Self { contact_duration: Some(duration), ..self }
     }
 
-    /// Returns the rule of walls of these inelasticities, if it is not that of the disks.
+    /// Returns the rule of walls of these inelasticities, or `None` if it is the disks' rule.
     fn wall_rule(
         &self,
         normal: Option<f64>,

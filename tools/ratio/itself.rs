@@ -1,4 +1,5 @@
-//! This program, built once for any processor of its kind and once for the one at hand.
+//! The programs that are compared, each in a process of its own: this one, built once for any processor of its
+//! kind and once for the one at hand, and the plain simulation.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -10,32 +11,33 @@ use benches::state::State;
 /// The variable that asks for one measurement: the numbers of the state, the seed and the oscillations.
 const ONE: &str = "ONE_MEASUREMENT";
 
-/// This bench, built.
-pub(crate) struct Itself {
+/// A program, built.
+pub(crate) struct Built {
     program: PathBuf,
 }
 
-impl Itself {
-    /// Builds the bench with these flags of the compiler, in a folder of this name.
-    pub(crate) fn build(flags: &str, folder: &str) -> Outcome<Self> {
+impl Built {
+    /// Builds a program of this package with these flags of the compiler, in a folder of this name.
+    pub(crate) fn new(name: &str, flags: &str, folder: &str) -> Outcome<Self> {
         let target = benches::working_folder(folder)?;
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut build = Command::new(cargo);
-        build.args(["build", "--release", "--quiet", "--bin", "ratio", "--target-dir"]).arg(&target);
+        build.args(["build", "--release", "--quiet", "--bin", name, "--target-dir"]).arg(&target);
         build.current_dir(env!("CARGO_MANIFEST_DIR"));
         build.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", flags);
         let built = build.output()?;
         if !built.status.success() {
             return Err(format!("no build: {}", String::from_utf8_lossy(&built.stderr)).into());
         }
-        Ok(Self { program: target.join("release").join("ratio") })
+        Ok(Self { program: target.join("release").join(name) })
     }
 
     /// Measures as [`ours`] does, but in another process.
     pub(crate) fn measure(&self, state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
         let State { gravity, friction, inelasticity } = state;
         let asked = format!("{gravity} {friction} {inelasticity} {seed} {oscillations}");
-        let output = Command::new(&self.program).env(ONE, asked).output()?;
+        // The plain simulation takes arguments; this program has none.
+        let output = Command::new(&self.program).env(ONE, &asked).args(asked.split(' ')).output()?;
         let said = String::from_utf8(output.stdout)?;
         let numbers = said.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>();
         match numbers.as_deref() {

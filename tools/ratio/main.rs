@@ -2,10 +2,11 @@
 //!
 //! ```sh
 //! # A dilute and a dense state; with GRID=1 the κ–q plane of Fig. 5 at both gravities.
-//! REFERENCE=path/to/its/folder cargo run --release -p tools --bin ratio
+//! cargo run --release -p tools --bin ratio
 //! ```
 //!
-//! This crate is measured as users get it without flags of the compiler, and built for the processor at hand.
+//! The other one is `tools/plain`, built for the processor at hand. This crate is measured as users get it
+//! without flags of the compiler, and built for the processor at hand.
 //! The bench builds itself for both, whatever its own flags are.
 //!
 //! Machines are noisy and no two are alike. Therefore, the programs run in turn, and the median of the ratios
@@ -15,7 +16,6 @@
 //! measurement is longer, since flights are longer.
 
 mod itself;
-mod reference;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -24,8 +24,7 @@ use benches::Outcome;
 use benches::ask;
 use benches::state::{DENSE, DILUTE, State, oscillate};
 use granular_edmd::speed::Quartiles;
-use itself::Itself;
-use reference::Reference;
+use itself::Built;
 
 /// The speed of one of the programs in a run.
 #[derive(Debug, Clone, Copy)]
@@ -69,25 +68,20 @@ fn run() -> Outcome<()> {
     Ok(())
 }
 
-/// Builds the programs: this crate for the processor at hand and without flags, and the reference, if any.
+/// Builds the programs: this crate for the processor at hand and without flags, and the plain simulation.
 fn programs() -> Outcome<Vec<Program>> {
     if ask::is_test() {
         return Ok(vec![Program { name: "as built", measure: Box::new(ours) }]);
     }
     let mut programs = Vec::new();
-    for (name, flags, folder) in
-        [("native", "-C target-cpu=native", "ratio-native"), ("no flags", "", "ratio-default")]
-    {
-        let itself = Itself::build(flags, folder)?;
-        let measure = move |state: &State, seed, oscillations| itself.measure(state, seed, oscillations);
+    for (name, program, flags, folder) in [
+        ("native", "ratio", "-C target-cpu=native", "ratio-native"),
+        ("no flags", "ratio", "", "ratio-default"),
+        ("plain", "plain", "-C target-cpu=native", "ratio-native"),
+    ] {
+        let built = Built::new(program, flags, folder)?;
+        let measure = move |state: &State, seed, oscillations| built.measure(state, seed, oscillations);
         programs.push(Program { name, measure: Box::new(measure) });
-    }
-    if let Some(folder) = ask::path("REFERENCE") {
-        let reference = Reference::build(&folder)?;
-        let measure = move |state: &State, seed, oscillations| reference.measure(state, seed, oscillations);
-        programs.push(Program { name: "reference", measure: Box::new(measure) });
-    } else {
-        println!("To compare with another simulation, set REFERENCE to its folder.");
     }
     Ok(programs)
 }
@@ -151,13 +145,13 @@ fn print_head(plan: &Plan) {
         "Medians (and quartiles) of {rounds} rounds of {oscillations} oscillations, after as many to settle."
     );
     println!();
-    println!("| state | program | of native | of the reference | collisions per second | per oscillation |");
+    println!("| state | program | of native | of the plain one | collisions per second | per oscillation |");
     println!("|---|---|---|---|---|---|");
 }
 
 /// Prints a row for each program.
 fn print_rows(state: &State, programs: &[Program], rounds: &[Vec<Speed>]) {
-    let reference = programs.iter().position(|program| program.name == "reference");
+    let plain = programs.iter().position(|program| program.name == "plain");
     for (k, Program { name, .. }) in programs.iter().enumerate() {
         let median =
             |number: fn(&Speed) -> f64| Quartiles::of(rounds.iter().map(|round| number(&round[k]))).median;
@@ -166,7 +160,7 @@ fn print_rows(state: &State, programs: &[Program], rounds: &[Vec<Speed>]) {
             let ratios = rounds.iter().map(|round| round[k].per_second / round[other].per_second);
             if other == k { "1".to_owned() } else { Quartiles::of(ratios).to_string() }
         };
-        let of_reference = reference.map_or_else(|| "–".to_owned(), of);
-        println!("| {state} | {name} | {} | {of_reference} | {rate:.2} million | {level:.0} |", of(0));
+        let of_plain = plain.map_or_else(|| "–".to_owned(), of);
+        println!("| {state} | {name} | {} | {of_plain} | {rate:.2} million | {level:.0} |", of(0));
     }
 }

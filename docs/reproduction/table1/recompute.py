@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Table I from the ramps of this folder, apart from the crate: states from the tables, everything else from the paper's equations.
+"""Table I from the ramps in docs/reproduction/runs/table1 (`docs/reproduction/draw runs` unpacks them), apart from the crate: states from the tables, everything else from the paper's equations.
 
     docs/reproduction/table1/recompute.py           the evaluation that protocol.md fixes
     docs/reproduction/table1/recompute.py --vary    the same with other windows, legs, criteria, and accounts of the loss
 
-Needs Python 3 only. The ramps of the base as stated that were there before are in docs/reproduction/runs (`docs/reproduction/draw runs`).
+Needs Python 3 only. The ramps of the base as stated that were there before are in docs/reproduction/runs/full-length.
 """
 import collections, csv, functools, math, pathlib, sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-BEFORE = HERE.parent / 'runs' / 'full-length'
+RUNS = pathlib.Path(__file__).resolve().parent.parent / 'runs'
+BEFORE = RUNS / 'full-length'
 PAPER = {  # mean and standard deviation along a line
     ('0.002025', '0-1'): (-0.090, 0.017), ('0.002025', '1-2 (a)'): (-0.351, 0.042),
     ('0.002025', '1-2 (b)'): (-0.377, 0.046), ('0.002025', '2-collapse'): (-0.614, 0.036),
@@ -102,7 +102,7 @@ def places(folder, level=as_named, which=('up', 'down')):
 
 def ramps(base, gravity):
     """The ramps of a base: inelasticity and folder."""
-    own = HERE.glob(f'{base}-gravity-{gravity}-inelasticity-*-seed-1')
+    own = (RUNS / 'table1').glob(f'{base}-gravity-{gravity}-inelasticity-*-seed-1')
     found = {float(folder.name.split('-')[-3]): folder for folder in own}
     # Without inelasticity, all bases are one.
     before = '0.0' if base != 'as-stated' else '*'

@@ -28,8 +28,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use granular_edmd::boundary::VesselError;
-use granular_edmd::collision::TangentialResponse;
+use granular_edmd::boundary::{Brick, Domain, VesselError};
+use granular_edmd::collision::{ElasticBelow, TangentialResponse};
+use granular_edmd::initial::Radii;
 use granular_edmd::prelude::*;
 use granular_edmd::statistics::BlockedMean;
 

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The example writes `run.xyz`, `run.dump`, `run.gsd`, `run.pvd` with its folder, `end.csv`, `end.data`,
-//! `series.csv`, `series.jsonl`, and with the feature `gzip` `run.xyz.gz` and `run.dump.gz`. Nothing is
+//! `series.csv`, and with the feature `gzip` `run.xyz.gz` and `run.dump.gz`. Nothing is
 //! overwritten.
 
 mod measure;
@@ -22,7 +22,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::Kind;
-use granular_edmd::observable::from_fn;
+use granular_edmd::observable::{OfKind, Temperatures, from_fn};
 use granular_edmd::prelude::*;
 use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, State};
 use serde_json::{Value, json};
@@ -81,7 +81,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     write_all(arguments)?;
     gallery::say!(
-        "wrote run.xyz, run.dump, run.gsd, run.pvd, end.csv, end.data, series.csv and series.jsonl in {}",
+        "wrote run.xyz, run.dump, run.gsd, run.pvd, end.csv, end.data, and series.csv in {}",
         arguments.out.display()
     );
     if arguments.measure { measure::print(arguments).map_err(Failure::run) } else { Ok(()) }
@@ -150,7 +150,6 @@ fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     state.write_csv(new(&out.join("end.csv"))?)?;
     state.write_lammps_data(new(&out.join("end.data"))?)?;
     series.write_csv(new(&out.join("series.csv"))?)?;
-    series.write_json_lines(new(&out.join("series.jsonl"))?)?;
     if arguments.json_is_printed() {
         output::json(&serde_json::to_string(&frames)?).map_err(|error| format!("--json -: {error}"))?;
     } else if let Some(path) = &arguments.json {

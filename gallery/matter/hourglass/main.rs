@@ -27,8 +27,11 @@ use std::time::Instant;
 use clap::Parser;
 use granular_edmd::boundary::VesselError;
 use granular_edmd::collision::TangentialResponse::{Frictionless, Reversing, Unchanged};
+use granular_edmd::collision::{ElasticBelow, SpeedDependent};
+use granular_edmd::initial::Radii;
 use granular_edmd::observable::stop_when_sampled;
 use granular_edmd::prelude::*;
+use granular_edmd::simulation::{BoxedRule, RunEnd};
 
 use gallery::command_line::{self, Failure, positive, whole};
 use gallery::progress::Progress;

@@ -20,11 +20,13 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::boundary::Boundary;
+use granular_edmd::observable::Temperatures;
 use granular_edmd::observable::{
     MeanSquaredDisplacement, PairCorrelation, Stress, TimeCorrelation, Velocities, VelocityDistribution,
     WallStress,
 };
 use granular_edmd::prelude::*;
+use granular_edmd::simulation::RunError;
 
 use gallery::command_line;
 use gallery::results::Results;

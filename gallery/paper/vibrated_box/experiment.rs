@@ -3,9 +3,13 @@
 use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::observable::{ConvectionOrder, DenseLayer, HeightProfile};
+use granular_edmd::boundary::Thermal;
+use granular_edmd::collision::RulesByKind;
+use granular_edmd::observable::{ConvectionOrder, DenseLayer, EnergyChange, HeightProfile};
 use granular_edmd::prelude::*;
+use granular_edmd::simulation::BoxedRule;
 use granular_edmd::statistics::BlockedMean;
+use granular_edmd::wall::Triangular;
 use granular_edmd_study::analysis::{StateCriteria, thermal_noise};
 
 use crate::arguments::{Arguments, Base};

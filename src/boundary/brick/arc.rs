@@ -74,6 +74,7 @@ impl Arc {
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let (r, v, a) = (path.place - self.center, path.velocity, path.acceleration);
         let (k, s) = (path.widening, path.spread);
+        // The constant terms below are products, so a gap far smaller than the circle keeps its digits.
         let square = [2.0 * r.dot(v), v.length_squared() + r.dot(a), v.dot(a), 0.25 * a.length_squared()];
         match side {
             Side::Right => {
@@ -102,7 +103,7 @@ impl Arc {
         Some(Beside { quantities: [after, before], one_is_enough: sector.is_wide })
     }
 
-    /// Tells whether the path stays too far from the brick for a touch. Most paths do.
+    /// Returns whether the path stays too far from the brick for a touch. Most paths do.
     pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
         const LESS: f64 = 1.0 - 1e-9;
         let (from, to) = (path.place - self.center, path.at(wait) - self.center);
@@ -142,7 +143,7 @@ impl Arc {
         Sight { distance, normal, side, weight: if self.radius == 0.0 { 0.0 } else { distance } }
     }
 
-    /// Tells whether a point of the brick may be within `reach` of a region.
+    /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         let nearest = self.center.clamp(region.min, region.max).distance(self.center);
         let farthest = (region.min - self.center).abs().max((region.max - self.center).abs()).length();

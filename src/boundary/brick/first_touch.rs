@@ -12,8 +12,8 @@ impl Brick {
     /// Returns the first time, from the start of a flight to `until`, at which the disk touches the brick and
     /// closes further; `None` if there is no such time.
     ///
-    /// A [`Boundary`](crate::boundary::Boundary) of your own can find its first touch with this method, which
-    /// is exact for constant acceleration. Only touches beside the brick count, not those at its ends: close
+    /// A custom [`Boundary`](crate::boundary::Boundary) can find its first touch with this method, which is
+    /// exact for constant acceleration. Only touches beside the brick count, not those at its ends: close
     /// open ends with a [`point`](Self::point).
     ///
     /// ```
@@ -34,10 +34,9 @@ impl Brick {
         Some((flight.time() + wait).min(until))
     }
 
-    /// Tells whether a disk of this radius may touch the brick while its center is in a region.
+    /// Returns whether a disk of this radius may touch the brick while its center is in a region.
     ///
-    /// A boundary of your own can answer [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with
-    /// it.
+    /// A custom boundary can answer [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with it.
     pub fn may_touch(&self, region: &Region, radius: f64) -> bool {
         // The margin keeps rounding from hiding a touch at the edge of the region.
         self.is_near(region, 1.001 * radius)

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::Flight;
 
-/// The path of a disk's center relative to a brick, from a moment on.
+/// The path of a disk's center relative to a brick, from a time on.
 ///
 /// The center is known up to an error that grows with time. To allow for it, the disk grows: its radius is
 /// `radius + widening·t + ½·spread·t²`. A grown disk touches no later than the true one.
@@ -41,7 +41,7 @@ impl Path {
         self.place + (self.velocity + 0.5 * time * self.acceleration) * time
     }
 
-    /// Returns the same path, from a later moment on.
+    /// Returns the same path, from a later time on.
     pub(super) fn later(&self, time: f64) -> Self {
         Self {
             place: self.at(time),
@@ -121,7 +121,7 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// Tells whether the condition holds at this time.
+    /// Returns whether the condition holds at this time.
     pub(super) fn holds(&self, time: f64) -> bool {
         let [first, second] = self.quantities.map(|quantity| quantity.at(time) >= 0.0);
         if self.one_is_enough { first || second } else { first && second }

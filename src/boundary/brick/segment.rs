@@ -28,7 +28,7 @@ impl Segment {
         Self { from, to: from, direction, length: f64::INFINITY }
     }
 
-    /// Returns the end, if there is one.
+    /// Returns the end, or `None` if the segment is endless.
     pub(super) fn to(&self) -> Option<DVec2> {
         self.length.is_finite().then_some(self.to)
     }
@@ -65,7 +65,7 @@ impl Segment {
         Beside { quantities: [along.widened(margin, path), before_end], one_is_enough: false }
     }
 
-    /// Tells whether the path stays too far from the brick for a touch. Most paths do.
+    /// Returns whether the path stays too far from the brick for a touch. Most paths do.
     pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
         let (place, growth) = (path.place - self.from, path.growth(wait));
         let passes_by = |direction: DVec2, length: f64| {
@@ -93,7 +93,7 @@ impl Segment {
         Sight { distance, normal, side: self.side(place), weight: height.abs() }
     }
 
-    /// Tells whether a point of the brick may be within `reach` of a region.
+    /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         let (low, high) = self.bounds();
         let (min, max) = (region.min - reach, region.max + reach);

@@ -40,7 +40,8 @@ impl Brick {
 
     /// Returns the first time at which the disk reaches the line or the circle on which the brick lies.
     ///
-    /// This is no search for a touch: a disk that is in the band already is there at once, even if it leaves.
+    /// This is no search for a touch: a disk that is in the band already is there immediately, even if it
+    /// leaves.
     fn wait_to_enter_band(&self, path: &Path, wait: f64) -> Option<f64> {
         if self.distance_from_line(path.place) <= path.radius {
             return Some(0.0);
@@ -49,7 +50,8 @@ impl Brick {
     }
 
     /// Returns the first time, not later than `wait`, at which a disk is in the ring of a brick that turns
-    /// about a point: its distance from the point is then that of some place of the brick, up to the radius.
+    /// about a point: its distance from the point then equals the distance of some position on the brick, up
+    /// to the radius.
     pub(in crate::boundary) fn wait_to_enter_ring(
         &self,
         path: &Path,

@@ -108,7 +108,8 @@ fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
-/// Tells whether the flight ends at a sink. It may take a disk out without a touch, when the center arrives.
+/// Returns whether the flight ends at a sink. It may take a disk out without a touch, when the center
+/// arrives.
 fn is_absorbed(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
     let place = flight.position(touch.time);
     matches!(trial.boundary.surface(touch.wall, place, touch.time).response, Response::Absorbing)
@@ -244,7 +245,7 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
     bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
 }
 
-/// Returns whether two surfaces are the same but for the rounding of late times, which is a place on a wall
+/// Returns whether two surfaces are the same up to the rounding of late times, which is a place on a wall
 /// that moves.
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();

@@ -141,7 +141,7 @@ impl Around<'_, '_> {
         Ok(())
     }
 
-    /// Checks that the radius is that of the curvature, if the wall is smooth near the touch. At a corner or
+    /// Checks that the radius agrees with the curvature, if the wall is smooth near the touch. At a corner or
     /// a tip it may be any.
     fn check_radius(&self, normal: DVec2, radius: f64) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;

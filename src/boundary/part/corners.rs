@@ -19,7 +19,7 @@ struct Joint {
 }
 
 impl Joint {
-    /// Tells whether a disk can touch the corner.
+    /// Returns whether a disk can touch the corner.
     fn is_exposed(&self) -> bool {
         // Disks are on the left of a brick, so a left turn is one toward them. A free end, or a place where
         // more than two bricks meet, counts as exposed: a point too many costs a little time, but one too few

@@ -47,8 +47,8 @@ fn doubled_area(points: &[DVec2]) -> f64 {
     pairs(points).map(|(from, to)| (from - first).perp_dot(to - first)).sum()
 }
 
-/// Returns the numbers of two sides that cross or touch, if there are any. Neighbors may share only their
-/// common end.
+/// Returns the numbers of two sides that cross or touch, or `None` if no two do. Neighbors may share only
+/// their common end.
 ///
 /// Sides are sorted by their left ends, so that each is compared only with those that begin before it ends.
 fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
@@ -69,7 +69,7 @@ fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
     None
 }
 
-/// Tells whether two sides have a point in common that they do not share as neighbors.
+/// Returns whether two sides have a point in common that they do not share as neighbors.
 fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> bool {
     // Two sides cross if each has its ends on both sides of the other. Signs decide, since the place of the
     // crossing would need a division, and its rounding.

@@ -14,7 +14,7 @@ use crate::{Fingerprint, Flight};
 /// error.
 const PIECES: f64 = 16.0;
 
-/// The motion of a part: along a direction, about a point, both, or none.
+/// The motion of a part: along a direction, about a point, both, or neither.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::boundary) struct Travel {
@@ -65,7 +65,7 @@ impl Phase {
     }
 }
 
-/// A flight in the frame of a part, from one moment to a later one.
+/// A flight in the frame of a part, from one time to a later one.
 pub(in crate::boundary) struct Look {
     pub(in crate::boundary) path: Path,
     pub(in crate::boundary) until: f64,
@@ -109,6 +109,8 @@ impl Along {
     /// Describes a path in the frame that moves along, with the acceleration in the middle of its bounds.
     fn look(&self, path: &Path, phase: f64, time: f64) -> Look {
         let (state, bounds) = (self.motion.state(time + phase), self.motion.acceleration(time + phase));
+        // From the middle, the true acceleration differs by half of the range at most, and the disk grows
+        // least.
         let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
         let path = Path {
             place: path.place - self.direction * state.displacement,
@@ -186,8 +188,8 @@ impl Travel {
         along.into_iter().chain(turning).reduce(|a, b| a + b).unwrap_or(DVec2::ZERO)
     }
 
-    /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase is
-    /// that of time 0.
+    /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase
+    /// belongs to time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
         let path = Path::exact(place, velocity, pull, flight.radius());
@@ -201,7 +203,7 @@ impl Travel {
         }
     }
 
-    /// Returns the shortest period of the motions, if there is one.
+    /// Returns the shortest period of the motions, or `None` if none of them is periodic.
     pub(in crate::boundary) fn period(&self) -> Option<f64> {
         let along = self.along.as_ref().and_then(|along| along.motion.period());
         along.into_iter().chain(self.frame().map(Turning::period)).reduce(f64::min)
@@ -242,7 +244,7 @@ impl Travel {
         }
     }
 
-    /// Tells whether a brick of the part comes within `reach` of a region at any time.
+    /// Returns whether a brick of the part comes within `reach` of a region at any time.
     pub(in crate::boundary) fn may_reach(&self, brick: &Brick, region: &Region, reach: f64) -> bool {
         let (low, high) = self.reach();
         let reach = reach + low.abs().max(high.abs());

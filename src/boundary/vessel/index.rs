@@ -90,7 +90,7 @@ impl Index {
     /// Returns the bricks that may come into a rectangle, some of them several times.
     pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = Entry> {
         let (columns, rows) = self.span(min, max);
-        // In a row, the entries of a cell follow those of the cell before.
+        // In a row, the entries of a cell follow the entries of the cell before.
         rows.flat_map(move |row| {
             let before = row * self.columns;
             self.entries_of(before + columns.start..before + columns.end)
@@ -107,8 +107,8 @@ impl Index {
         self.cells(place, place).next().unwrap_or(0)
     }
 
-    /// Returns the middle of a cell. A cell at an edge of the grid extends to infinity; its middle is that of
-    /// its finite part.
+    /// Returns the middle of a cell. A cell at an edge of the grid extends to infinity; the middle of its
+    /// finite part counts.
     pub(super) fn middle(&self, cell: usize) -> DVec2 {
         let (column, row) = ((cell % self.columns) as f64, (cell / self.columns) as f64);
         self.corner + DVec2::new(column + 0.5, row + 0.5) / self.density

@@ -24,6 +24,8 @@ impl Vessel {
         let mut near: Vec<(usize, Entry)> = near.collect();
         near.sort_by_key(|(part, _)| *part);
         let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
+            // If the disk does not reach the nearest brick of these cells, a nearer one may lie in other
+            // cells.
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
                 Some((wall, sighted)) if sighted.distance() <= radius => {
                     Some(Overlap::new(wall, radius - sighted.signed_distance()))
@@ -83,8 +85,8 @@ impl Vessel {
 
     /// Returns the cells that hold no brick of a part and are behind it.
     ///
-    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is. So the
-    /// place of a cell is examined only if its left and lower neighbors do not give the answer.
+    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is, so a cell
+    /// is examined only if its left and lower neighbors do not give the answer.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick =
@@ -103,8 +105,8 @@ impl Vessel {
         (0..known.len()).filter(|&cell| known[cell] == Some(true)).collect()
     }
 
-    /// Returns the cells that may be behind a part: those of its rectangle if disks are free outside it, else
-    /// all cells.
+    /// Returns the cells that may be behind a part: the cells of its rectangle if disks are free outside it,
+    /// else all cells.
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
         let (low, high) = placed.part.bounds();
         let is_bounded = low.is_finite() && high.is_finite() && self.domain().periods() == DVec2::ZERO;

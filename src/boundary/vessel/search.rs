@@ -32,8 +32,8 @@ const MARGIN: f64 = 64.0 * f64::EPSILON;
 /// Longest flight for which entries into the strip are computed. Squares of longer times would overflow.
 const LONGEST: f64 = 1e150;
 
-/// Least period of a part, in units of the distance between two floating-point times. The places of a part
-/// that is faster cannot be told.
+/// Least period of a part, in units of the distance between two floating-point times. The position of a part
+/// that is faster is not defined.
 const LEAST_PERIOD: f64 = 64.0;
 
 impl Vessel {
@@ -55,6 +55,8 @@ impl Vessel {
         let mut moving: Vec<Entry> = Vec::new();
         let mut last = None;
         for entry in self.index.near(low, high) {
+            // A brick that lies in several cells comes several times, mostly in a row. A second search of a
+            // brick at rest costs time and changes nothing.
             if last.replace(entry) == Some(entry) {
                 continue;
             }
@@ -104,6 +106,8 @@ impl Vessel {
         let end = until.min(other.time());
         let (mut from, mut steps) = (flight.time(), 0);
         loop {
+            // All bricks take turns. The back of an arm never meets the disk that its front is about to hit,
+            // and a search of the back alone would use up all steps.
             let mut first = other;
             for &entry in moving {
                 let wall = &self.walls[entry.wall as usize];
@@ -125,7 +129,7 @@ impl Vessel {
     /// Returns the touch of the patch that lies in a touched wall at the place of the touch, or the touch as
     /// it is.
     ///
-    /// A sink in a wall, a belt or a thermal stretch is what people build as a part on the line of the wall.
+    /// A sink in a wall, a belt or a thermal section is usually built as a part on the line of the wall.
     /// Rounding would decide which of both is touched first.
     pub(super) fn on_patch(&self, touch: Touch, flight: &Flight) -> Touch {
         let (place, radius, count) =
@@ -187,8 +191,8 @@ impl Vessel {
 /// there, until the gap is within rounding. It never steps over a touch.
 ///
 /// A fast part has many pieces of motion during a flight. But a disk can touch the part only in the strip
-/// that the part sweeps, and the part sweeps all of the strip within a period. So the search goes straight to
-/// the time at which the disk enters the strip, and is over a few pieces later.
+/// that the part sweeps, and the part sweeps all of the strip within a period. The search therefore goes
+/// straight to the time at which the disk enters the strip, and is over a few pieces later.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,
@@ -229,14 +233,14 @@ impl Search<'_> {
         FirstTouch::NotBefore(time)
     }
 
-    /// Tells whether floating-point times are too coarse to tell where the part is.
+    /// Returns whether floating-point times are too coarse to tell where the part is.
     fn is_too_fast(&self, time: f64) -> bool {
         let latest = time.abs() + self.placed.phase.size();
         let spacing = latest.next_up() - latest;
         self.placed.part.travel().period().is_some_and(|period| period < LEAST_PERIOD * spacing)
     }
 
-    /// Tells whether a turning brick is out of the disk's reach at this time. Most bricks of a turning part
+    /// Returns whether a turning brick is out of the disk's reach at this time. Most bricks of a turning part
     /// are, even where the circles on which they turn are near.
     fn is_out_of_reach(&self, time: f64) -> bool {
         let travel = self.placed.part.travel();

@@ -28,7 +28,7 @@ const COLLISIONS: usize = 4;
 /// Longest time between two steps, in which a disk of the largest size moves by about its radius.
 const LONGEST: f64 = 1.0;
 
-/// Least mass, in units of that of the largest disk.
+/// Least mass, in units of the largest disk's mass.
 const LEAST_MASS: f64 = 1e-20;
 
 /// Fraction of a gap that a disk may grow into, so that it touches nothing.
@@ -60,7 +60,7 @@ impl<'a> Packing<'a> {
         Ok(Self { full, grown: placed(room, full, scale, seed)? })
     }
 
-    /// Tells whether all disks have their full radii.
+    /// Returns whether all disks have their full radii.
     pub(super) fn is_done(&self) -> bool {
         self.grown.iter().zip(self.full).all(|(disk, full)| disk.radius() >= full.radius())
     }
@@ -77,7 +77,7 @@ impl<'a> Packing<'a> {
         self.grown.iter().map(Disk::position)
     }
 
-    /// Lets the disks move and collide for a while.
+    /// Moves the disks for a while, with collisions.
     pub(super) fn stir<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), PlacementError> {
         let disks = self.grown.iter().copied();
         let mut run = Simulation::builder(Elastic, room.clone()).disks(disks).build()?;
@@ -92,7 +92,7 @@ impl<'a> Packing<'a> {
         Ok(())
     }
 
-    /// Lets each disk grow into the room around it.
+    /// Grows each disk into the room around it.
     pub(super) fn grow<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), ParameterError> {
         let domain = room.domain();
         let mut squares = Squares::new(&domain, self.full.iter().map(Disk::radius));

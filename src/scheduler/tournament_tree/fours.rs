@@ -43,7 +43,7 @@ impl Fours {
         Self { matches: Vec::new(), rounds: Vec::new(), winner: Entry::EMPTY }
     }
 
-    /// Makes room for the matches of this many players, of their winners, and so on. All seats are empty.
+    /// Makes room for the matches of `players` players, of their winners, and so on. All seats are empty.
     fn seat(&mut self, mut players: usize) {
         self.rounds.clear();
         let mut count = 0;

@@ -1,8 +1,8 @@
 //! A tournament in matches of 32, for processors that compare several times at once.
 //!
-//! The runner-up is known before the winner's event is carried out. So the next event can begin while the
-//! processor is still busy with the winner's new time, which is known last of all: the one question left is
-//! whether the winner stays first, and its branch is nearly always predicted. A tournament without the
+//! The runner-up is known before the winner's event is carried out. The next event can therefore begin while
+//! the processor is still busy with the winner's new time, which is known last of all: the one question left
+//! is whether the winner stays first, and its branch is nearly always predicted. A tournament without the
 //! runner-up has to wait for the new time, and is slower than that in matches of four.
 
 use std::hint::select_unpredictable;
@@ -94,8 +94,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         Self { rounds, winner, beside, runner_up }
     }
 
-    /// Empties all matches, of which there are as many as this number of disks needs. The memory is kept,
-    /// since a run resets its scheduler whenever its epoch moves.
+    /// Makes all matches that this number of disks needs, and empties them. The memory is kept, since a run
+    /// resets its scheduler whenever its epoch moves.
     fn empty(&mut self, disks: usize) {
         for (round, matches) in self.rounds.iter_mut().enumerate() {
             matches.clear();
@@ -181,6 +181,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
             // Both play in the last match. The climber is compared last of all, since its time is known last.
             let others = matches[0].earliest_without(winners_seat, seat, earliest);
             matches[0].seat(seat, climber);
+            // If both came from the same match of the round before, the climber was compared there, in
+            // `beside`.
             let is_beside = seat == winners_seat;
             let late = Player { due: if is_beside { f64::INFINITY } else { climber.due }, ..climber };
             self.runner_up = self.runner_up.or(others).or(late);

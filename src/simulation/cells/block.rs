@@ -6,7 +6,7 @@ use crate::disk::MOST_DISKS;
 pub(super) const SLOTS: usize = 4;
 
 /// Bits of the number of a disk. In the first slot, the bits above these hold the number of slots taken, or
-/// [`CROWDED`] if the last slot links to more disks. The highest bit tells whether the disks of the cell can
+/// [`CROWDED`] if the last slot links to more disks. The highest bit is set if the disks of the cell can
 /// touch a wall.
 const DISK: u32 = (1 << 28) - 1;
 const ONE: u32 = DISK + 1;
@@ -42,8 +42,8 @@ impl Block {
         self.0[0] |= AT_WALL;
     }
 
-    /// Returns the crowd that holds the other disks of the cell, if there is one. Its number is in the last
-    /// slot.
+    /// Returns the crowd that holds the other disks of the cell, or `None` if they all fit into the block.
+    /// Its number is in the last slot.
     pub(super) fn crowd(&self) -> Option<u32> {
         (self.count() == CROWDED).then_some(self.0[SLOTS - 1])
     }
@@ -91,7 +91,7 @@ impl Block {
         self.0 = slots;
     }
 
-    /// Replaces a disk by another, if it is in the block and not in the crowd. Tells whether it was.
+    /// Replaces a disk by another, if it is in the block and not in the crowd. Returns whether it was.
     pub(super) fn replace(&mut self, disk: u32, by: u32) -> bool {
         let is_here = self.slots()[..SLOTS - 1].contains(&disk);
         if is_here {

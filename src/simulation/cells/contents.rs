@@ -11,8 +11,8 @@ const WINDOW: usize = 16 + SLOTS;
 /// The disks of each cell, by the index of the cell.
 ///
 /// Every cell has a block. If a cell has more disks than fit into its block, the last slot is a link to a
-/// crowd that holds the others. So the memory grows with the numbers of cells and disks, however unevenly the
-/// disks lie.
+/// crowd that holds the others. The memory therefore grows with the numbers of cells and disks, however
+/// unevenly the disks lie.
 #[derive(Debug, Clone)]
 pub(super) struct Contents {
     blocks: Vec<Block>,
@@ -20,7 +20,7 @@ pub(super) struct Contents {
 }
 
 impl Contents {
-    /// Creates this many empty cells.
+    /// Creates empty cells.
     pub(super) fn empty(cells: usize) -> Self {
         Self { blocks: vec![Block::EMPTY; cells], crowds: Crowds::with_room(cells) }
     }
@@ -34,7 +34,7 @@ impl Contents {
         self.blocks[cell].mark_wall();
     }
 
-    /// Tells whether disks in this cell can touch a wall.
+    /// Returns whether disks in this cell can touch a wall.
     #[inline]
     pub(super) fn is_at_wall(&self, cell: usize) -> bool {
         self.blocks[cell].is_at_wall()
@@ -74,6 +74,7 @@ impl Contents {
     fn remove_from_crowded(&mut self, cell: usize, disk: u32) {
         let block = &mut self.blocks[cell];
         let Some(crowd) = block.crowd() else { return };
+        // The crowd gives up its last disk, which then fills the gap, be it in the block or in the crowd.
         let (last, left) = self.crowds.pop(crowd);
         match left {
             Some(crowd) => block.set_crowd(crowd),
@@ -84,7 +85,7 @@ impl Contents {
         }
     }
 
-    /// Returns the room that the disks of this many cells need. Behind the largest number of them, there is
+    /// Returns the room that the disks of `cells` cells need. Behind the largest number of them, there is
     /// room for the rest of a window.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {

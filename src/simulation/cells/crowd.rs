@@ -16,7 +16,7 @@ const NONE: u32 = u32::MAX;
 
 const _: () = assert!(MOST_DISKS < NONE as usize);
 
-/// A few disks of a crowded cell, filled from the first seat on, and a link to the next part.
+/// A few disks of a crowded cell, filled from the first slot on, and a link to the next part.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     seats: [u32; SEATS],
@@ -26,7 +26,7 @@ struct Part {
 
 /// The crowds of all cells, each a chain of parts from a common pool.
 ///
-/// A crowd is identified by the number of its first part, the only one that may have free seats. The memory
+/// A crowd is identified by the number of its first part, the only one that may have free slots. The memory
 /// grows with the number of disks in crowds, and never shrinks.
 #[derive(Debug, Clone)]
 pub(super) struct Crowds {
@@ -36,7 +36,7 @@ pub(super) struct Crowds {
 }
 
 impl Crowds {
-    /// Creates room for the few crowds that are usual in this many cells.
+    /// Creates room for the few crowds that are usual in this number of cells.
     pub(super) fn with_room(cells: usize) -> Self {
         Self { parts: Vec::with_capacity(FEW + cells / CELLS), free: NONE }
     }
@@ -62,7 +62,7 @@ impl Crowds {
         crowd
     }
 
-    /// Takes any disk out of a crowd. Returns the disk, and the new number of the crowd if disks are left in
+    /// Removes any disk from a crowd. Returns the disk, and the new number of the crowd if disks are left in
     /// it.
     pub(super) fn pop(&mut self, crowd: u32) -> (u32, Option<u32>) {
         let first = &mut self.parts[crowd as usize];
@@ -87,7 +87,7 @@ impl Crowds {
         }
     }
 
-    /// Appends a crowd to the first `count` disks in `found`, and returns the new count. Free seats are
+    /// Appends a crowd to the first `count` disks in `found`, and returns the new count. Free slots are
     /// copied, too.
     pub(super) fn gather(&self, mut crowd: u32, found: &mut [u32], mut count: usize) -> usize {
         while let Some(part) = self.parts.get(crowd as usize) {

@@ -15,8 +15,8 @@ pub(super) fn classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let narrow = narrow_classes(diameters);
     let (area, groups) = (area(&narrow), Group::of_each(&narrow));
     let cost = |bounds: &[bool]| cost(&joined(&groups, bounds), area);
-    // There are too many divisions to try them all. So two searches start from the finest and from the
-    // coarsest division, and the better result is taken.
+    // There are too many divisions to try them all. Two searches start from the finest and from the coarsest
+    // division, and the better result is taken.
     let many = cheapest_near(vec![true; groups.len().saturating_sub(1)], cost);
     let few = cheapest_near(vec![false; groups.len().saturating_sub(1)], cost);
     let (_, bounds) = if few.0 < many.0 { few } else { many };

@@ -24,7 +24,7 @@ pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64>
 }
 
 /// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
-/// height. So a disk that flies high does not share its cell with all other high ones.
+/// height, so a disk that flies high does not share its cell with all other high ones.
 pub(super) fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
     /// Ratio of heights from row to row. With it, a few rows more reach exponentially higher.
     const GROWTH: f64 = 1.1;

@@ -84,7 +84,7 @@ impl Grid {
         [range(&self.column_edges, self.margin.x), range(&self.row_edges, self.margin.y)]
     }
 
-    /// Iterates over all cells but those of the ring.
+    /// Iterates over all cells outside the ring.
     pub(in crate::simulation) fn places(&self) -> impl Iterator<Item = Place> + use<> {
         let Layout { columns, rows, .. } = self.layout;
         (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
@@ -141,7 +141,7 @@ impl Grid {
         self.periods
     }
 
-    /// Tells whether the domain is periodic in some direction.
+    /// Returns whether the domain is periodic in some direction.
     #[inline]
     pub(in crate::simulation) fn is_periodic(&self) -> bool {
         self.is_periodic

@@ -60,8 +60,8 @@ impl LayerLayout {
         // The mean free path, up to a factor of order 1.
         let free_path =
             1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
-        // In a small cell, a disk has few partners, but it leaves the cell often. A cell is no smaller than
-        // those of the smallest class, into which its disks look.
+        // In a small cell, a disk has few partners, but it leaves the cell often. A cell is no smaller than a
+        // cell of the smallest class, into which its disks look.
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
@@ -73,7 +73,7 @@ impl LayerLayout {
         Some(layout)
     }
 
-    /// Tells whether there may be twice as many columns and rows. Their number is limited, since each has
+    /// Returns whether there may be twice as many columns and rows. Their number is limited, since each has
     /// entries in tables.
     fn can_be_finer(&self) -> bool {
         self.doublings < FINEST && self.cells.columns.max(self.cells.rows) < MOST_LINES
@@ -101,7 +101,7 @@ impl LayerLayout {
         whole.then_some(Layout { columns: columns / side, rows: rows / side, pitch, cell_size })
     }
 
-    /// Tells whether the cells are so narrow that their disks can meet only one image of each other, and of
+    /// Returns whether the cells are so narrow that their disks can meet only one image of each other, and of
     /// disks of the smallest class.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn is_narrow_enough(
@@ -150,8 +150,8 @@ pub(super) struct Layer {
     pub(super) layout: LayerLayout,
     pub(super) grid: Grid,
     pub(super) contents: Contents,
-    /// The homes whose disks a disk of this class may touch: those of each smaller class, from the smallest
-    /// class on, and last those of its own class.
+    /// The homes within reach of a disk of this class, one entry for each class, from the smallest to this
+    /// one.
     pub(super) reaches: Vec<Reach>,
 }
 
@@ -201,7 +201,7 @@ impl Layer {
         self.contents.is_at_wall(self.home(place))
     }
 
-    /// Takes a disk from one cell to another.
+    /// Moves a disk from one cell to another.
     pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
         let (old, new) = (self.home(from), self.home(to));
         if old != new {

@@ -1,7 +1,7 @@
 //! Layers of cells for disks of several sizes.
 //!
-//! The smallest class has the cells of the engine, and each larger class has a layer of its own above them.
-//! The picture shows a large disk over the homes of a smaller class, one character for each home:
+//! The smallest class has the cells of the engine, and each larger class has a layer above them. The picture
+//! shows a large disk over the homes of a smaller class, one character for each home:
 //!
 //! ```text
 //!     . . . . . . . . . . .     c  the cell of the large disk: its center is somewhere in it
@@ -18,15 +18,15 @@
 //! ```
 //!
 //! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
-//! class, cell and home are the same. A large disk needs both: from anywhere in a home of its own size it
-//! could touch so many small disks that it would have to predict them all, and cells as small as `c` would be
-//! too many to look into.
+//! class, cell and home are the same. A large disk needs both: from anywhere in a home of its size it could
+//! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
+//! many to look into.
 //!
 //! A pair must find each other from both sides, whichever of the two is searched for. The large disk looks
 //! into the homes of its reach. The small disk cannot look up: the cells above it that reach its home are too
-//! many. So each home keeps a list of *visitors*, the larger disks in whose reach it lies. When the large
-//! disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought up to
-//! date there, and only the small disks there are new partners.
+//! many. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it lies. When the
+//! large disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought
+//! up to date there, and only the small disks there are new partners.
 
 use glam::DVec2;
 
@@ -71,8 +71,7 @@ pub(super) fn layouts(
     highest: f64,
 ) -> Option<Layouts> {
     let SizeClass { largest: diameter, count, .. } = classes[0];
-    // Large disks look into many of these cells. So there are fewer of them than if all disks had the same
-    // cells.
+    // Large disks look into many of these cells, so they are made fewer than if all disks had the same cells.
     let most = cells_per_small_disk(cell_size) * count as f64 + SPARE_SMALL_CELLS;
     let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
     let grid = Grid::new(domain, smallest, diameter);
@@ -104,7 +103,7 @@ impl Layers {
         let mut larger: Vec<Layer> = layouts.iter().map(|&layout| Layer::empty(domain, layout)).collect();
         let distances = |a: usize, b: usize| Distances {
             most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
-            // The least distance is smaller than that of a touch, with room for overlaps by rounding. Within
+            // The least distance is below the distance of a touch, with room for overlaps by rounding. Within
             // a class there is no hole, since a home is too large to fit inside a disk.
             least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
@@ -163,7 +162,7 @@ impl Layers {
         }
     }
 
-    /// Takes a disk of a larger class from one cell to another.
+    /// Moves a disk of a larger class from one cell to another.
     pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
@@ -215,8 +214,8 @@ impl Layers {
                 None => reach.for_each_run(place, act),
             }
         }
-        // Disks of its own class are few and near. To tell which of them are new would cost more than to take
-        // them all.
+        // Disks of the same class are few and near. To tell which of them are new would cost more than to
+        // take them all.
         if let Some(own) = own {
             own.for_each_run(place, |first, homes| {
                 count = layer.contents.gather_run(first, homes, found, count);
@@ -248,7 +247,7 @@ impl Layers {
     }
 }
 
-/// Tells whether a disk in its home and a disk of a larger class in its cell are less than half a period
+/// Returns whether a disk in its home and a disk of a larger class in its cell are less than half a period
 /// apart as long as they are within each other's reach. Then they keep meeting at the same image.
 fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) -> bool {
     let touching = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a + 1].largest + classes[b + 1].largest);
@@ -273,6 +272,6 @@ pub(in crate::simulation) struct Layouts {
     pub(in crate::simulation) smallest: Layout,
     /// The layers of the larger classes; none if all disks share the same cells.
     pub(in crate::simulation) larger: Vec<LayerLayout>,
-    /// The classes of disks that have cells of their own.
+    /// The classes of disks that have separate cells.
     pub(in crate::simulation) classes: Vec<SizeClass>,
 }

@@ -1,14 +1,14 @@
 //! The homes of another class of disks that a disk may touch from anywhere in its own cell.
 //!
 //! The picture in `layers.rs` shows a reach and its hole. Both are rectangles, so a reach is given by its
-//! columns and its rows, each with those of the hole. They are tables, one entry for each column and row of
-//! the disk's own grid: the searches of large disks read them all the time, and a table costs one load, where
-//! the edges of uneven rows would have to be searched. Homes of a column lie next to each other in memory, so
-//! the reach is walked through in runs of rows.
+//! columns and its rows, each with the columns or rows of the hole. They are tables, one entry for each
+//! column and row of the disk's own grid: the searches of large disks read them all the time, and a table
+//! costs one load, where the edges of uneven rows would have to be searched. Homes of a column lie next to
+//! each other in memory, so the reach is traversed in runs of rows.
 //!
-//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back at once.
-//! Rows are kept as they are counted, so that reach, hole and difference of two reaches are plain intervals,
-//! and are brought back only when a run is handed out, then in two pieces.
+//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back
+//! immediately. Rows are kept as they are counted, so that reach, hole and difference of two reaches are
+//! plain intervals, and are brought back only when a run is handed out, then in two pieces.
 
 use super::grid::{Grid, Place};
 
@@ -75,7 +75,7 @@ impl Reach {
         let periods = homes.grid.periods();
         // Half the width of the square in the circle on which the nearest possible centers lie. A home in
         // this square is nearer than a touch even with its corners. The homes between square and circle hold
-        // no disks either, but a rectangle is quicker to walk around than what would be left.
+        // no disks either, but a rectangle is quicker to traverse than what would be left.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
             // A disk is in its home up to a margin beyond the edge, so the reach goes as much further. The
@@ -113,7 +113,7 @@ impl Reach {
         }
     }
 
-    /// Calls `act` in the same way for the homes within reach of a place and for those of the hole.
+    /// Calls `act` in the same way for the homes within reach of a place and for the homes of the hole.
     pub(super) fn for_each_run_and_hole(&self, place: Place, mut act: impl FnMut(usize, usize)) {
         for column in self.columns_of(place) {
             self.act_on(column, self.rows[place.row as usize - 1][0], &mut act);
@@ -126,8 +126,8 @@ impl Reach {
             let beyond = self.rows_of(other, column).map(|rows| self.aligned(rows, place, other));
             for rows in self.rows_of(place, column) {
                 let mut first = rows.first;
-                // The rest of an interval without two others, which lie in order: the pieces before each
-                // of them, and the piece after the last.
+                // An interval minus two others, which lie in order: the pieces before each of them, and the
+                // piece after the last.
                 for inside in beyond.into_iter().filter(|inside| inside.count > 0) {
                     let before = Span::between(first, rows.behind().min(inside.first));
                     self.act_on(column, before, &mut act);
@@ -192,7 +192,7 @@ impl Reach {
     }
 }
 
-/// Returns the edges of homes that are this many cells wide.
+/// Returns the edges of homes that are `cells` cells wide.
 fn every(cells: usize, edges: &[f64]) -> Vec<f64> {
     edges.iter().copied().step_by(cells).collect()
 }

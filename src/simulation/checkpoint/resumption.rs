@@ -32,7 +32,7 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     ///
     /// The rule and the boundary are code, so the caller gives them again. The same rule and boundary give
     /// the same future. Others are refused, unless they are given on purpose. Only two parts that both have
-    /// no fingerprint (closures, for example) cannot be told apart. [`Checkpoint`] has an example.
+    /// no fingerprint (closures, for example) cannot be distinguished. [`Checkpoint`] has an example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
         Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
@@ -48,14 +48,13 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
     }
 
-    /// Takes the rule on purpose, even if it is not that of the checkpoint: the next value of a ramp, for
-    /// example.
+    /// Uses this rule on purpose, even if the checkpoint has another: the next value of a ramp, for example.
     pub const fn with_another_rule(mut self) -> Self {
         self.another_rule = true;
         self
     }
 
-    /// Takes the boundary on purpose, even if it is not that of the checkpoint.
+    /// Uses this boundary on purpose, even if the checkpoint has another.
     ///
     /// All events are then predicted anew, as [`Simulation::set_boundary`] does.
     pub const fn with_another_boundary(mut self) -> Self {
@@ -71,8 +70,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// given on purpose.
     pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
-        // A part with a fingerprint never equals one without. Two parts without fingerprints cannot be told
-        // apart.
+        // A part with a fingerprint never equals one without. Two parts without fingerprints cannot be
+        // distinguished.
         if !self.another_rule && saved.rule != self.rule.fingerprint() {
             return Err(CheckpointError::AnotherRule);
         }

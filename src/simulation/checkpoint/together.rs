@@ -16,7 +16,7 @@ impl Checkpoint {
     ///
     /// Numbers keep their bits, infinities and NaN, too, and state and observers cannot come from different
     /// moments. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
-    /// measure, a tuple of several, or a type of your own.
+    /// measure, a tuple of several, or a custom type.
     ///
     /// [`Series`]: crate::observable::Series
     /// [`Sampled`]: crate::observable::Sampled

@@ -79,7 +79,7 @@ pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Res
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Tells whether the cells suit the domain, and disks of these diameters.
+/// Returns whether the cells suit the domain, and disks of these diameters.
 pub(super) fn are_layouts(saved: &Saved, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
     let Layouts { smallest, larger, classes } = &saved.layouts;
     let suits_all = |least: f64| {
@@ -92,8 +92,8 @@ pub(super) fn are_layouts(saved: &Saved, diameters: impl ExactSizeIterator<Item 
     are_classes(classes, larger.len() + 1, diameters) && suits_all(classes[0].largest)
 }
 
-/// Tells whether these are so many classes, in order, and there is one for each disk. There cannot be far
-/// more or far fewer disks than in the classes, since new cells would have been made.
+/// Returns whether these are `number` classes in order, with one for each disk. There cannot be far more or
+/// far fewer disks than in the classes, since new cells would have been made.
 fn are_classes(classes: &[SizeClass], number: usize, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
     let are_sizes = classes
         .iter()
@@ -110,7 +110,7 @@ fn are_classes(classes: &[SizeClass], number: usize, diameters: impl ExactSizeIt
     classes.len() == number && are_sizes && are_ordered && are_as_many && have_a_class
 }
 
-/// Tells whether the cells suit the domain and disks of at most this diameter.
+/// Returns whether the cells suit the domain and disks of at most this diameter.
 fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
     let Layout { columns, rows, pitch, .. } = *layout;
     let disks = 2 * saved.places.len() + SPARE_DISKS;
@@ -130,12 +130,12 @@ fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
         && pitch.is_finite()
 }
 
-/// Tells whether a place is one of the cells, and not of the ring.
+/// Returns whether a place is one of the cells, and not of the ring.
 fn is_cell(layout: &Layout, place: Place) -> bool {
     (1..=layout.columns).contains(&place.column) && (1..=layout.rows).contains(&place.row)
 }
 
-/// Tells whether the length is a power of two. Other lengths would not add up without rounding.
+/// Returns whether the length is a power of two. Other lengths would not add up without rounding.
 fn is_epoch_length(length: f64) -> bool {
     const FRACTION: u64 = (1 << 52) - 1;
     length.is_normal() && length > 0.0 && length.to_bits() & FRACTION == 0
@@ -149,7 +149,7 @@ fn is_trajectory(trajectory: &Trajectory) -> bool {
     is_bounded(trajectory.position) && is_bounded(trajectory.velocity)
 }
 
-/// Tells whether a rotation is bounded, and its last collision is not in the future.
+/// Returns whether a rotation is bounded, and its last collision is not in the future.
 fn is_spin(spin: &Spin, now: f64) -> bool {
     spin.angle.is_finite() && spin.angular_velocity.abs() <= LARGEST && spin.last_collision <= now
 }
@@ -192,7 +192,7 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
     })
 }
 
-/// Tells whether a disk at this position belongs in this cell.
+/// Returns whether a disk at this position belongs in this cell.
 fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
     let (region, slack) = (grid.region(place), SLACK * grid.layout.pitch);
     position.is_finite()
@@ -200,7 +200,7 @@ fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
         && position.cmple(region.max + slack).all()
 }
 
-/// Tells whether there is room for the disks in their cells without overlaps.
+/// Returns whether there is room for the disks in their cells without overlaps.
 fn has_room(saved: &Saved, cells: &Cells, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
     let mut taken: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
@@ -219,7 +219,7 @@ fn has_room(saved: &Saved, cells: &Cells, bodies: &Bodies) -> bool {
     })
 }
 
-/// Tells whether the flight of a disk in its cell ends at the edge that its forecast names, or at a wall or
+/// Returns whether the flight of a disk in its cell ends at the edge that its forecast names, or at a wall or
 /// horizon that is not too far in the future.
 fn ends_where_it_can(
     saved: &Saved,
@@ -250,8 +250,8 @@ fn ends_where_it_can(
     gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbor(place, exit.direction()).0)
 }
 
-/// Tells whether a disk touches its partner when it collides with it. An outdated prediction passes, since it
-/// is made anew when it comes up.
+/// Returns whether a disk touches its partner when it collides with it. An outdated prediction passes, since
+/// it is made anew when it comes up.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due.is_finite()

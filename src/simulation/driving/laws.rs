@@ -67,7 +67,7 @@ impl Promises {
 /// Checks that drivings keep their contract and these promises, in two hundred kicks of sixteen disks.
 ///
 /// The closure `make` returns a fresh driving each time. Two drivings kick the same disks: one in a run, and
-/// one in a run that is cut into two. The page "Validation" tells which planted faults the check finds.
+/// one in a run that is cut into two. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.

@@ -10,10 +10,10 @@ use crate::quantity::non_negative;
 use crate::random::normal;
 use crate::{Disk, ParameterError};
 
-/// White noise: at each beat of a clock, every disk gets a random kick, and the total momentum is kept.
+/// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is kept.
 ///
 /// Each component of each velocity gains, in a time $`t`$, a normal variable of variance $`\xi_0^2 t`$, and
-/// the mean of all kicks, in proportion to the masses, is taken away. So $`N`$ equal disks of mass $`m`$
+/// the mean of all kicks, in proportion to the masses, is subtracted. Thus $`N`$ equal disks of mass $`m`$
 /// gain the temperature
 ///
 /// ```math
@@ -24,10 +24,10 @@ use crate::{Disk, ParameterError};
 /// if the kicks are more frequent than collisions. At each kick, all events are predicted anew, so a kick
 /// takes about as long as a collision of each disk.
 ///
-/// The random numbers are those of the seed alone, and the clock and they are part of what serde writes.
+/// The random numbers follow from the seed alone; serde writes their state and the clock.
 ///
 /// ```
-/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::observable::{EnergyChange, SampleTimes};
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::WhiteNoise;
 ///

@@ -8,14 +8,14 @@ use crate::observable::SampleTimes;
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
-/// Rescaling: at each beat of a clock, all velocities about their mean, and all spins, are multiplied by one
+/// Rescaling: at each time of a clock, all velocities about their mean, and all spins, are multiplied by one
 /// factor, so that the translational temperature is $`T = \tfrac12\langle m v'^2\rangle`$.
 ///
 /// Under a rule without a speed scale, this changes nothing but the unit of time: a gas that is rescaled is
 /// one that cools, with the same $`T_r/T`$ and cumulants, and never becomes slow.
 ///
 /// ```
-/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::observable::{SampleTimes, Temperatures};
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::Rescaling;
 ///

@@ -18,7 +18,8 @@ pub enum Remedy {
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
-    /// The surface of the wall says another velocity than its geometry has, so disks are hit again at once.
+    /// The surface of the wall says another velocity than its geometry has, so disks are hit again
+    /// immediately.
     WallVelocity,
     /// The rule gains energy, so disks become ever faster.
     EnergyGain,

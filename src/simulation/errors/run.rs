@@ -33,7 +33,7 @@ pub enum RunError {
     /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
     /// ever more often.
     #[error(
-        "the run stalled at time {}: {events} events took it only {} further; disk {disk}{} is next to collide: \
+        "the run stalled at time {}: it advanced by only {} in {events} events; disk {disk}{} is next to collide: \
          {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
         Rounded(*.time), Rounded(*.elapsed), named(*.partner, .wall.as_deref())
     )]
@@ -143,7 +143,8 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// A kick of a driving failed: it gives an impossible motion, or its time is too late to be told apart.
+    /// A kick of a driving failed: it gives an impossible motion, or its time is too late for the digits of a
+    /// number.
     #[error("a kick failed at time {}", Rounded(*.time))]
     Driving {
         /// The present.
@@ -151,7 +152,8 @@ pub enum RunError {
         /// The cause.
         source: Box<BuildError>,
     },
-    /// An inlet cannot go on: its next opening is too late to be told apart, or there are no ids left.
+    /// An inlet cannot go on: its next opening is too late for the digits of a number, or there are no ids
+    /// left.
     #[error("an inlet failed at time {}", Rounded(*.time))]
     Inlet {
         /// The present.

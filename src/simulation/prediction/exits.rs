@@ -25,7 +25,7 @@ compiled_for_each! {
         }
 }
 
-/// Returns whether the vector instructions are written for this gravity: straight down, or none.
+/// Returns whether the vector instructions are written for this gravity: straight down, or zero.
 #[inline(always)]
 #[cfg(target_arch = "x86_64")]
 fn pulls_down(bodies: &Bodies) -> bool {
@@ -64,6 +64,7 @@ fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, E
     // For a disk at rest that reaches no edge, the result is 0/0 or inf/inf, which means never.
     let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
     let level = vertical < sideways;
+    // Rounding may have put the disk beyond its edge. It leaves now, and not in the past.
     let wait = if level { vertical } else { sideways }.max(0.0);
     let exit = Exit::EDGES[usize::from(level)][usize::from((level & up) | (!level & rightward))];
     (now + wait, exit)

@@ -4,12 +4,12 @@
 //! Three things here are not in the plain code, and are what makes it faster:
 //! 1. **Nothing is read that was just written in pieces.** The processor can pass a number on from a write to
 //!    a read only if the write covers all of the read. Otherwise the read waits until the writes have left
-//!    for the cache, some 15 cycles, and the whole search waits with it. From the plain code, the compiler
+//!    for the cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler
 //!    makes such reads: it merges four numbers that lie side by side into one vector. The functions of
 //!    [`load`](crate::instructions::load) read as much as they say, and arguments come in registers or from
 //!    tables, never as an array or a rectangle that was just built.
 //! 2. **Two searches in one loop.** After a collision, neither of the two depends on the other, and the root
-//!    and the quotient of a search take most of its time. So one is computed while the other waits.
+//!    and the quotient of a search take most of its time, so one is computed while the other waits.
 //! 3. **Two exits in one vector**, with one root and two quotients for both.
 
 pub(super) mod exits;

@@ -86,7 +86,7 @@ pub(in crate::simulation) struct Bodies {
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
     pub(in crate::simulation) identities: Identities,
-    /// The count of collisions with which the next new disk begins, larger than those of all disks whose
+    /// The count of collisions with which the next new disk begins, larger than the count of any disk whose
     /// index it may get.
     pub(in crate::simulation) fresh_count: u32,
     /// True if disks have come or gone since the typical diameter was measured.

@@ -101,7 +101,7 @@ impl Clock {
         if by <= self.now { by } else { nearest.next_down() - self.origin }
     }
 
-    /// Counts an event, and tells whether it is time to look at limits and guard.
+    /// Counts an event, and returns whether limits and guard are due to be checked.
     #[inline]
     pub(in crate::simulation) fn is_look_due(&mut self) -> bool {
         self.events_to_look -= 1;

@@ -40,7 +40,7 @@ impl Exit {
         (right, up)
     }
 
-    /// Tells whether the flight continues in a neighbor cell.
+    /// Returns whether the flight continues in a neighbor cell.
     #[inline]
     pub(in crate::simulation) fn is_passage(self) -> bool {
         matches!(self, Self::Left | Self::Right | Self::Down | Self::Up)
@@ -77,7 +77,7 @@ impl Forecast {
         wall: 0,
     };
 
-    /// Tells whether the collision comes first. Of equal times, the collision wins, since disks come before
+    /// Returns whether the collision comes first. Of equal times, the collision wins, since disks come before
     /// walls and cells.
     #[inline]
     pub(in crate::simulation) fn is_collision(&self) -> bool {

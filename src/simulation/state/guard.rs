@@ -10,14 +10,15 @@ const WINDOW: u64 = 200_000;
 const WINDOW_PER_DISK: u64 = 20;
 
 /// Number of events for which a search counts, beside its own, that ended at its horizon. A search may take
-/// so many steps, each about as long as an event. So the guard bounds the time that searches take, too.
+/// this number of steps, each about as long as an event, so the guard bounds the time that searches take,
+/// too.
 pub(in crate::simulation) const EVENTS_PER_HORIZON: u64 = 255;
 
 /// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]
 /// more for each disk.
 ///
 /// A typical disk goes, or falls, some tens of diameters in an epoch. The bounds are far above the rates of
-/// dense flows, and of packings with up to some 1e4 collisions for each diameter that a disk goes. They are
+/// dense flows, and of packings with up to about 1e4 collisions for each diameter that a disk goes. They are
 /// far below the rates of matter that comes to rest without a remedy. At the bounds, an epoch of a thousand
 /// disks still takes minutes and not days.
 const MOST_EVENTS: f64 = (1_u64 << 27) as f64;
@@ -25,8 +26,8 @@ const MOST_EVENTS_PER_DISK: f64 = (1_u64 << 22) as f64;
 
 /// The start of the present window of events.
 ///
-/// Windows follow each other without a gap, by numbers of events alone. So a run stalls at the same event,
-/// however the caller cuts it into pieces.
+/// Windows follow each other without a gap, by numbers of events alone. A run therefore stalls at the same
+/// event, however the caller cuts it into pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Guard {
@@ -52,7 +53,7 @@ pub(in crate::simulation) struct Standstill {
     pub(in crate::simulation) elapsed: f64,
 }
 
-/// Returns the least simulated time per event of a run of this many disks, unless its caller sets another.
+/// Returns the default of the least simulated time per event in a run of `disks` disks.
 pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> f64 {
     epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
 }

@@ -55,7 +55,7 @@ impl Identities {
         self.ids.swap_remove(disk);
     }
 
-    /// Removes those of these disks for which `leaves` is true.
+    /// Removes the disks for which `leaves` is true.
     pub(super) fn remove(&mut self, leaves: &[bool]) {
         self.list(leaves.len());
         let mut leaves = leaves.iter();
@@ -63,7 +63,7 @@ impl Identities {
         self.forget_the_obvious();
     }
 
-    /// Tells whether there can be such ids of so many disks, none of them twice.
+    /// Returns whether a run with `count` disks can have these ids, none of them twice.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn suits(&self, count: usize) -> bool {
         let mut ids = self.ids.clone();

@@ -31,7 +31,7 @@ impl Bodies {
         length
     }
 
-    /// Tells whether a disk of this velocity goes no further in an epoch of this length than a disk may go.
+    /// Returns whether a disk of this velocity goes no further in an epoch of this length than a disk may go.
     ///
     /// A collision can make a disk faster than all disks were when the epoch began. Its place at the epoch
     /// would be so far away that it would lack digits.

@@ -59,6 +59,8 @@ impl Stroke {
             let is_high =
                 last.state(&piston, last.until).displacement > 0.5 * (piston.lowest + piston.highest);
             let stop = if is_high { piston.highest } else { piston.lowest };
+            // A stop takes all of the speed. The next piece begins at the stop itself, not where rounding
+            // ended this one.
             pieces.push(piece(&piston, last.until, stop, 0.0));
         }
         Self { piston, origin, pieces }

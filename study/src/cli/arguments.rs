@@ -13,9 +13,9 @@ const MOST_THREADS: i64 = 4096;
 
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
-/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 5
-/// slower than before, 6 the runs differ, 7 done but some values were not finished, 8 nobody does the rest,
-/// 130 stopped with all saved.
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 not finished and other processes work on it,
+/// 4 no tables yet, 5 slower than before, 6 the runs differ, 7 done but some values were not finished, 8 not
+/// finished and no process works on it, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(name = "granular-edmd", version)]
 pub(super) struct Arguments {
@@ -60,7 +60,7 @@ pub(super) enum Command {
     Tables {
         /// Folder of the study.
         folder: PathBuf,
-        /// Folder for the tables; that of the study if not given. Existing tables there are not overwritten.
+        /// Folder for the tables; the study's folder if not given. Existing tables there are not overwritten.
         #[arg(long)]
         out: Option<PathBuf>,
     },
@@ -89,25 +89,25 @@ pub(super) enum Command {
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
     /// from its place in the other run than a tolerance.
     Diff(super::diff::Wishes),
-    /// Lets this program continue a study that other code began. Records keep the mark of the code that made
-    /// them.
+    /// Allows this program to continue a study that other code began. Records keep the mark of the code that
+    /// made them.
     Accept {
         /// Folder of the study.
         folder: PathBuf,
     },
-    /// Measures the standard states, in some ten seconds; for a plan, the core hours that it will take.
+    /// Measures the speed in standard states, in about ten seconds; with a plan, estimates its core hours.
     Bench {
         /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
         plan: Option<PathBuf>,
         /// Prints JSON, for `--against`.
         #[arg(long)]
         json: bool,
-        /// Measures for a second only, by shorter stretches, whose times are some percent longer.
+        /// Measures for a second only, by shorter intervals, whose times are a few percent longer.
         #[arg(long)]
         quick: bool,
         /// File with the JSON of an earlier table, to which the present one is compared. A state is called
-        /// slower or faster if its quartiles lie more than 5 % beyond those of then. Other events mean that
-        /// a change of the code altered the trajectories.
+        /// slower or faster if its quartiles lie more than 5 % beyond the earlier ones. Other events mean
+        /// that a change of the code altered the trajectories.
         #[arg(long, conflicts_with_all = ["plan", "json"])]
         against: Option<PathBuf>,
     },
@@ -119,8 +119,8 @@ pub(super) struct Manner {
     /// Number of threads; one for each processor if not given.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub(super) threads: Option<u16>,
-    /// Folder of an earlier study, to take over what it has done of this plan: with fewer values on the axes
-    /// or at the end of the ramp, fewer repeats, or fewer samples. Can be given several times.
+    /// Folder of an earlier study to reuse. This plan may add values to the axes and to the end of the ramp,
+    /// repeats, and samples. Can be given several times.
     #[arg(long)]
     from: Vec<PathBuf>,
     /// Runs values that stalled or failed again, with those after them in their ramps. The same code fails

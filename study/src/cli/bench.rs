@@ -208,7 +208,8 @@ pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Resul
     Ok(End::Done)
 }
 
-/// Returns the hours on a core of the first value of a ramp, if all its cycles take as long as those of now.
+/// Returns the hours on a core of the first value of a ramp, if all its cycles take as long as the present
+/// ones.
 fn hours<E: Experiment>(plan: &Plan<E>, ramp: usize, share: Duration) -> Result<f64, Failure> {
     let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let experiment = plan.experiment(ramp, 0)?;

@@ -24,7 +24,7 @@ pub(super) struct Wishes {
     second: Option<PathBuf>,
     #[command(flatten)]
     place: Place,
-    /// File from which the second run starts; `--start` is that of the first.
+    /// File from which the second run starts; `--start` belongs to the first.
     #[arg(long)]
     other_start: Option<PathBuf>,
     /// Distance beyond which a disk is away from its place in the other run.

@@ -15,7 +15,7 @@ const NOTES: [(&str, &str); 6] = [
     ("[experiment]", "The system: each of its parameters can be ramped or swept."),
     (
         "[protocol]",
-        "In cycles: each value settles for `settle`, then takes `samples` samples, one after each `every` cycles.",
+        "In cycles (periods of the base): wait `settle`, then take `samples` samples, `every` cycles apart.",
     ),
     (
         "[ramp]",
@@ -48,7 +48,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     let mut known = HashSet::new();
     let columns: Vec<_> = columns.iter().map(Column::name).filter(|name| known.insert(*name)).collect();
     lines.push(format!("\n# Parameters: {names}."));
-    lines.push("# Those without a value are not named here.".to_owned());
+    lines.push("# Parameters that have no value in this plan are not listed.".to_owned());
     lines.push(format!("# Measured: {}.\n", columns.join(", ")));
     Ok(lines.join("\n"))
 }

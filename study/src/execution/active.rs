@@ -22,7 +22,7 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) origin: Origin,
     pub(super) experiment: E,
     pub(super) step: Step,
-    /// The record from which the value starts, if there is one.
+    /// The record from which the value starts; `None` for a fresh start.
     pub(super) before: Option<&'a Record<E>>,
     /// Folder of the study.
     pub(super) folder: &'a Path,
@@ -92,7 +92,7 @@ impl<'a, E: Experiment> Value<'a, E> {
 
     /// Returns the driving at the start of the value.
     fn driving(&self) -> Result<Option<Box<dyn SavedDriving>>, StudyError> {
-        // The seeds of 0 and 1 are those of disks and rule.
+        // Seeds 0 and 1 belong to the disks and the rule.
         let seed = derived_seed(self.origin.seed, self.origin.value as u64 + 2);
         self.experiment.driving(seed).map_err(|source| self.cannot_start(source))
     }
@@ -118,7 +118,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         is_whole && (contents.state.is_some() || !self.plan.keeps_state(self.origin.value))
     }
 
-    /// Returns the record of this value from that of the same value in another study.
+    /// Returns the record of this value, made from the record of the same value in another study.
     pub(super) fn taken_over(&self, Record { contents, .. }: Record<E>) -> Record<E> {
         let origin = Origin { maker: contents.origin.maker, ..self.origin.clone() };
         let keeps = self.plan.keeps_state(self.origin.value);

@@ -78,12 +78,12 @@ impl<'a> Control<'a> {
 
     /// Returns the same control, which takes over the values that earlier studies in these folders have done.
     ///
-    /// So a study grows into a new folder, and so the parts of a sweep become one study. The plans may differ
-    /// in the values of their axes and in repeats. A ramp may have more values at its end. With more samples,
-    /// a value goes on where it ended, if its record keeps the state
-    /// ([`Plan::with_end_states`](crate::Plan::with_end_states)). Anything else that differs is an
-    /// error. The study gets the same bytes as without the earlier ones. Values of code that was accepted
-    /// there are done again.
+    /// A study grows into a new folder in this way, and the parts of a sweep become one study. The plans may
+    /// differ in the values of their axes and in repeats. A ramp may have more values at its end. With more
+    /// samples, a value goes on where it ended, if its record keeps the state
+    /// ([`Plan::with_end_states`](crate::Plan::with_end_states)). Anything else that differs is an error. The
+    /// study gets the same bytes as without the earlier ones. Values of code that was accepted there are done
+    /// again.
     #[doc(alias("grow", "merge", "extend"))]
     pub fn with_earlier_studies(self, folders: &'a [PathBuf]) -> Self {
         Self { earlier: folders, ..self }
@@ -100,10 +100,10 @@ impl<'a> Control<'a> {
     /// Returns the same control, which ends each value that takes more than this wall-clock time, with
     /// [`Outcome::Limited`](crate::Outcome::Limited).
     ///
-    /// Whether a value ends so depends on the machine. It counts as one that failed: its record stays until
-    /// [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result everywhere
-    /// is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a value that
-    /// was interrupted counts from its resumption.
+    /// It depends on the machine which values end in this way. It counts as one that failed: its record stays
+    /// until [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result
+    /// everywhere is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a
+    /// value that was interrupted counts from its resumption.
     ///
     /// # Errors
     /// If the time is not positive.

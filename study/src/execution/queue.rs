@@ -16,7 +16,7 @@ enum Block {
 
 /// A ring of blocks.
 ///
-/// Processes begin at random places and go on in order from there. So they seldom meet, and each runs the
+/// Processes begin at random places and go on in order from there, so they seldom meet, and each runs the
 /// blocks ahead of it. One that meets another goes to a new place.
 #[derive(Debug)]
 pub(super) struct Queue {

@@ -30,7 +30,7 @@ struct Made<E: Experiment> {
     record: Record<E>,
     /// True if an earlier study has made it.
     is_taken: bool,
-    /// What its simulation noticed and survived.
+    /// Warnings of its simulation.
     warnings: Vec<String>,
 }
 
@@ -38,7 +38,7 @@ struct Made<E: Experiment> {
 struct Walk<'a, 's, E: Experiment> {
     session: &'a Session<'s, E>,
     ramp: usize,
-    /// What the store had when the ramp was claimed.
+    /// The records that the store had when the ramp was claimed.
     entries: &'a Entries,
     unfinished: &'a HashSet<[usize; 2]>,
     earlier: SameRamps<'a, E>,
@@ -166,7 +166,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(Some(Made { record, is_taken: false, warnings }))
     }
 
-    /// Returns an unfinished value as it was saved, if there is one.
+    /// Returns an unfinished value as it was saved, or `None`.
     fn saved<'v>(&mut self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
         let (study, index) = (self.session.study, self.seen.len());
         if !self.has_partial {

@@ -8,7 +8,7 @@ use granular_edmd::simulation::{Limits, RunEnd, RunError, Simulation};
 
 use crate::{ExperimentError, SavedDriving};
 
-/// What rides along beside the observer.
+/// The companion and the driving beside the observer.
 #[derive(Default)]
 pub(super) struct Riders {
     pub(super) driving: Option<Box<dyn SavedDriving>>,
@@ -27,7 +27,7 @@ impl Riders {
 /// Runs until a limit.
 ///
 /// `is_under_way` is true if an earlier slice has begun the run. The observer sees one start and one end,
-/// however many slices there are. So does the companion, of which each process has one of its own.
+/// however many slices there are, and so does the companion, of which each process has one.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
     limits: &Limits<'_>,

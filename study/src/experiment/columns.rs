@@ -119,7 +119,7 @@ impl<E: Experiment> fmt::Debug for Column<E> {
     }
 }
 
-/// A table besides those of values and samples, with some rows for each record.
+/// A further table, besides the tables of values and samples, with some rows for each record.
 ///
 /// ```
 /// use granular_edmd_study::{Table, vibrated_box::VibratedBox};
@@ -149,7 +149,7 @@ impl<E: Experiment> Table<E> {
         Self { name: name.into(), columns, rows: Box::new(rows) }
     }
 
-    /// Returns the name of the table, which is that of its file without the ending.
+    /// Returns the name of the table: the name of its file without the ending.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -171,7 +171,7 @@ impl<E: Experiment> fmt::Debug for Table<E> {
     }
 }
 
-/// Names that are taken: those of the tables of every study, and those of the columns of every table.
+/// Names that are taken, by the tables of every study and by the columns of every table.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 const PLACE: [&str; 12] = [
     "ramp",
@@ -194,8 +194,8 @@ pub(crate) fn error_names(name: &str) -> [String; 2] {
     ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
 }
 
-/// Checks that the names of an experiment's columns and tables are valid, and that they, those of the varied
-/// parameters and those of every table are all different.
+/// Checks that the names of an experiment's columns and tables are valid and unique, also among the varied
+/// parameters and the built-in columns.
 pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
     let taken = [PLACE.as_slice(), varied].concat();

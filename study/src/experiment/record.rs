@@ -87,7 +87,7 @@ impl Outcome {
 
 /// A finished value: its parameters, samples, counts, and its last state if that is kept.
 ///
-/// Samples, observer and times are those of the measured part, after the value has settled.
+/// Samples, observer and times belong to the measured part, after the value has settled.
 #[doc(alias("checkpoint", "restart"))]
 #[derive(Clone, PartialEq)]
 pub struct Record<E: Experiment> {
@@ -147,7 +147,7 @@ pub(crate) struct Cycles {
 impl Cycles {
     pub(crate) const START: Self = Self { since: 0.0, count: 0 };
 
-    /// Returns the absolute time after this many more cycles of this length.
+    /// Returns the absolute time after further cycles of this length.
     pub(crate) fn time(&self, more: f64, cycle: f64) -> f64 {
         self.since + (self.count as f64 + more) * cycle
     }

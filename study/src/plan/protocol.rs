@@ -90,7 +90,7 @@ impl Protocol {
         Ok(Self { most_collisions: Some(most), ..self })
     }
 
-    /// Returns the largest number of collisions in a value, if there is one.
+    /// Returns the largest number of collisions in a value, or `None` if there is no limit.
     pub const fn most_collisions(&self) -> Option<u64> {
         self.most_collisions
     }
@@ -139,12 +139,12 @@ impl Protocol {
         }
     }
 
-    /// Returns the cycles that this many steps take.
+    /// Returns the cycles that `steps` steps take.
     pub(crate) fn cycles_of(&self, steps: u64) -> u64 {
         steps.checked_sub(1).map_or(0, |last| self.end_of(last))
     }
 
-    /// Returns the number of samples in this many steps.
+    /// Returns the number of samples in `steps` steps.
     pub(crate) const fn samples_of(&self, steps: u64) -> u64 {
         steps.saturating_sub(self.settling_steps())
     }

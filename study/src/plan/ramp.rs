@@ -104,8 +104,8 @@ impl Ramp {
     ///
     /// A transition is a change of [`Experiment::state`](super::Experiment::state). The ramp looks for
     /// transitions only between neighbors of different states. A ramp up brackets transitions from below, a
-    /// ramp down from above. The values of a bisection come after those of the ramp, each from the last state
-    /// on the near side.
+    /// ramp down from above. The values of a bisection come after the values of the ramp, each from the last
+    /// state on the near side.
     ///
     /// # Errors
     /// If the width is not positive, or is relative and a value of the ramp is not positive.

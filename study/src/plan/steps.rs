@@ -63,11 +63,11 @@ impl Steps {
         Ok(Self { from, to, step: Some(step), log: None, count: steps as usize + 1 })
     }
 
-    /// Creates this many values in equal ratios, the first and the last included.
+    /// Creates `count` values in equal ratios, the first and the last included.
     ///
     /// # Errors
     /// If the first value is not positive, the last one is not finite or not above the first, their ratio is
-    /// not finite, or there are fewer than two, or so many that neighbors would be equal.
+    /// not finite, or there are fewer than two, or too many, so that neighbors would be equal.
     pub fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
         positive("first value", from)?;
         positive("last value", to)?;

@@ -112,8 +112,7 @@ impl<E: Experiment> Plan<E> {
         if is_same { Err(not_rampable(ramp)) } else { Ok(()) }
     }
 
-    /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at those
-    /// of its values that are tried.
+    /// Checks that the disks fit at the first point, and along each axis at the tried values.
     fn check_disks(&self) -> Result<(), PlanError> {
         let mut stride = self.ramp_count();
         let mut ramps = vec![0];

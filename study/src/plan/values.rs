@@ -13,9 +13,9 @@ use crate::{PlanError, Scalar, Steps};
 /// Largest number of values that are tried when a plan is made.
 pub(crate) const MOST_TRIED: usize = 1024;
 
-/// Returns the indices, of this many, that are tried when a plan is made: all if they are few, otherwise the
-/// ends and some between at equal distances, so that a plan of a million values is made as fast as a small
-/// one. The others are refused when their turn comes.
+/// Returns which of `count` indices are tried when a plan is made: all if they are few, otherwise the ends
+/// and some between at equal distances, so that a plan of a million values is made as fast as a small one.
+/// The others are refused when their turn comes.
 pub(crate) fn tried(count: usize) -> impl Iterator<Item = usize> {
     let tried = count.min(MOST_TRIED);
     (0..tried).map(move |index| index * count.saturating_sub(1) / tried.saturating_sub(1).max(1))

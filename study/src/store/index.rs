@@ -14,7 +14,7 @@ pub(crate) struct Head {
     pub(crate) seconds: f32,
 }
 
-/// What is known of a record without its contents.
+/// The head of a record, without its contents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Marks(u16);
 

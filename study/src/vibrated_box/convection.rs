@@ -45,7 +45,7 @@ impl Record<VibratedBox> {
         let total: f64 = self.samples().iter().map(|s| s.collisions as f64 * s.energy_change).sum();
         let mean = total / collisions;
         let per_sample = collisions / self.samples().len() as f64;
-        // The error of a ratio is that of the mean residual, over the mean number of collisions.
+        // The error of a ratio is the error of the mean residual, over the mean number of collisions.
         self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread;
 use std::time::Duration;
 
 use granular_edmd::simulation::Checkpoint;
@@ -103,7 +104,16 @@ impl Disk {
     }
 
     fn remount(&self, options: &str) {
-        assert!(mount(&["-o", &format!("remount,{options}")], self.folder()), "{options}");
+        // A test beside this one may be starting a program: until that has begun, it holds a copy of every file
+        // that was open here, and a disk with files open for writing cannot become read-only.
+        let remounted = (0..500).any(|_| {
+            let done = mount(&["-o", &format!("remount,{options}")], self.folder());
+            if !done {
+                thread::sleep(Duration::from_millis(20));
+            }
+            done
+        });
+        assert!(remounted, "{options}");
     }
 }
 

@@ -4,9 +4,10 @@
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use granular_edmd::Fingerprint;
 use granular_edmd::observable::{Observer, SampleTimes, Snapshot, on_collision};
 use granular_edmd::prelude::*;
-use granular_edmd::simulation::WhiteNoise;
+use granular_edmd::simulation::{Inlet, WhiteNoise};
 use granular_edmd::trajectory::{ExtendedXyz, Recorder};
 use granular_edmd_study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Interval, Outcome, Plan, Protocol, Ramp, Run,

@@ -75,7 +75,7 @@ impl Experiment for Tumbling {
 }
 
 #[test]
-fn a_stranger_s_study_is_run_read_and_recorded() -> Result<(), Box<dyn std::error::Error>> {
+fn a_stranger_s_study_is_run_read_and_recorded() -> Result<(), ExperimentError> {
     let folder = std::env::temp_dir().join(format!("granular-edmd-stranger-{}", std::process::id()));
     let plan = Plan::new(Tumbling { disks: 15, loss: 0.1, spin: 0.5 }, Protocol::new(2, 4, 1)?, 1)?;
     let plan = plan.with_axis(Axis::new("spin", [0.0, 2.0])?)?;

@@ -31,7 +31,7 @@ struct Search {
     partner: __m256i,
 }
 
-/// What all pairs have in common.
+/// The numbers that all pairs share.
 #[derive(Clone, Copy)]
 struct Common {
     now: __m256d,
