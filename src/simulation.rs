@@ -28,6 +28,7 @@ mod cells;
 mod checking;
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod closed_sinks;
 mod driving;
 mod epoch;
 mod errors;

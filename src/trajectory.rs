@@ -40,7 +40,7 @@
 //! let state = Reader::new().read(&path)?;
 //! assert_eq!(state.disks(), run.disks());
 //! let again = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, container)
-//!     .start_time(state.time().unwrap_or(0.0))
+//!     .starting_at(state.time().unwrap_or(0.0))
 //!     .disks(state.into_disks())
 //!     .build()?;
 //! assert_eq!(again.time(), 2.0);

@@ -309,3 +309,31 @@ fn bins_below_rounding_are_refused() {
     }
     assert!(Histogram::new(1e16, 1e16 + 16.0, 4).is_ok());
 }
+
+/// A few repeats, each too short to be trusted alone, are trusted together once they have as many independent
+/// samples as one run needs; two errors then hold the mean. Repeats of less than a correlation time are not.
+#[test]
+fn a_few_repeats_are_trusted_together() {
+    const SERIES: u64 = 400;
+    let correlation = 9.0 / 11.0;
+    for (repeats, length) in [(2, 300.0), (3, 30.0), (3, 80.0), (4, 60.0), (5, 100.0), (4, 2.0), (7, 1.0)] {
+        let run = |seed| Autoregressive::new(seed, correlation).take((10.0 * length) as usize);
+        let together = |series: u64| {
+            let seeds = (0..repeats).map(|repeat| 1000 * series + repeat);
+            Estimate::over_repeats(seeds.map(|seed| run(seed).collect::<BlockedMean>().estimate()))
+        };
+        let called: Vec<_> = (0..SERIES).map(together).filter(Estimate::is_converged).collect();
+        let within =
+            called.iter().filter(|estimate| estimate.mean().abs() <= 2.0 * estimate.standard_error());
+        let (share, within) =
+            (called.len() as f64 / SERIES as f64, within.count() as f64 / called.len() as f64);
+        println!(
+            "{repeats} repeats of {length}: {share:.3} converged, of these {within:.3} within two errors"
+        );
+        let independent = repeats as f64 * length;
+        assert!(share > 0.5 || independent < 240.0, "{repeats} of {length}: {share}");
+        assert!(share > 0.9 || independent < 480.0, "{repeats} of {length}: {share}");
+        assert!(share < 0.05 || independent > 60.0, "{repeats} of {length}: {share}");
+        assert!(share < 0.05 || within > 0.88, "{repeats} of {length}: {within}");
+    }
+}

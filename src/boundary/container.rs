@@ -181,7 +181,7 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall.
-    pub fn with_absorbing(mut self, wall: Wall) -> Result<Self, WallError> {
+    pub fn absorbing(mut self, wall: Wall) -> Result<Self, WallError> {
         self.plane_mut(wall)?.conduct = Conduct::Absorbing;
         Ok(self)
     }

@@ -1,6 +1,6 @@
 //! The paper's rule: inelastic, rotating disks with static and dynamic friction.
 
-use super::{CollisionRule, Contact, Friction, Impulse, KnownRule, inelasticity};
+use super::{CollisionRule, Contact, Friction, Impulse, KnownRule, Smooth, inelasticity};
 use crate::{Fingerprint, ParameterError};
 
 /// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two
@@ -30,11 +30,29 @@ use crate::{Fingerprint, ParameterError};
 /// assert!(rule.with_dynamic_friction(0.6).is_err(), "dynamic above static friction could gain energy");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
+///
+/// Three numbers in a row are easily exchanged: their order is that of the equations, normal, tangential,
+/// friction. [`Smooth::with_friction`](super::Smooth::with_friction) names them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Frictional {
     normal_inelasticity: f64,
     friction: Friction,
+}
+
+impl Smooth {
+    /// Returns the rule with the same normal impulse and this friction.
+    ///
+    /// ```
+    /// use granular_edmd::collision::{Friction, Frictional, Smooth};
+    /// let friction = Friction::from_inelasticity(0.2, 0.3)?;
+    /// let rule = Smooth::from_inelasticity(0.1)?.with_friction(friction);
+    /// assert_eq!(rule, Frictional::from_inelasticity(0.1, 0.2, 0.3)?);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub const fn with_friction(self, friction: Friction) -> Frictional {
+        Frictional { normal_inelasticity: self.normal_inelasticity(), friction }
+    }
 }
 
 impl Frictional {
@@ -46,10 +64,8 @@ impl Frictional {
     /// # Errors
     /// If an inelasticity is out of its range, or the friction is negative or not finite.
     pub fn from_inelasticity(normal: f64, tangential: f64, friction: f64) -> Result<Self, ParameterError> {
-        Ok(Self {
-            normal_inelasticity: inelasticity::normal(normal)?,
-            friction: Friction::from_inelasticity(tangential, friction)?,
-        })
+        Ok(Smooth::from_inelasticity(normal)?
+            .with_friction(Friction::from_inelasticity(tangential, friction)?))
     }
 
     /// Creates a rule from the restitution coefficients r_n, in `[0, 1]`, and r_t, in `[-1, 1]` (paper,
@@ -58,10 +74,7 @@ impl Frictional {
     /// # Errors
     /// If a restitution is out of its range, or the friction is negative or not finite.
     pub fn from_restitution(normal: f64, tangential: f64, friction: f64) -> Result<Self, ParameterError> {
-        Ok(Self {
-            normal_inelasticity: inelasticity::of_normal_restitution(normal)?,
-            friction: Friction::from_restitution(tangential, friction)?,
-        })
+        Ok(Smooth::from_restitution(normal)?.with_friction(Friction::from_restitution(tangential, friction)?))
     }
 
     /// Returns the same rule with a smaller coefficient of dynamic friction κ_d.
@@ -114,5 +127,5 @@ impl CollisionRule for Frictional {
 
 crate::gate::from_file! {
     Frictional { normal_inelasticity: f64, friction: Friction } =>
-        Ok(Self { normal_inelasticity: inelasticity::normal(normal_inelasticity)?, friction })
+        Ok(Smooth::from_inelasticity(normal_inelasticity)?.with_friction(friction))
 }

@@ -95,7 +95,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     }
 
     /// Sets the time at which the run starts; 0 unless given.
-    pub const fn start_time(mut self, time: f64) -> Self {
+    pub const fn starting_at(mut self, time: f64) -> Self {
         self.start_time = time;
         self
     }

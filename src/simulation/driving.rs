@@ -91,7 +91,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].
     pub fn run_driven<D: Driving + ?Sized, O: Observer + ?Sized>(
         &mut self,
-        limits: &Limits,
+        limits: &Limits<'_>,
         driving: &mut D,
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {

@@ -274,7 +274,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Changes the motion of a disk in a collision. Predictions that involve the disk are then out of date.
     #[inline]
     fn kick(&mut self, disk: usize, kick: &Kick) {
-        self.bodies.kick(disk, kick.velocity, kick.angular_velocity, self.clock.now);
+        self.bodies.kick(disk, &kick.change, self.clock.now);
         self.forecast_mut(disk).count_collision();
     }
 

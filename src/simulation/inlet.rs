@@ -25,7 +25,7 @@ use crate::{Disk, Kind, ParameterError};
 /// use granular_edmd::simulation::Inlet;
 ///
 /// // A shower of four grains for each unit of time, onto a floor that takes them out.
-/// let container = Container::open(10.0)?.with_absorbing(Wall::Floor)?;
+/// let container = Container::open(10.0)?.absorbing(Wall::Floor)?;
 /// let mut run = Simulation::builder(Elastic, container).gravity(1.0).build()?;
 /// let grain = Disk::new(DVec2::ZERO, 0.5)?.with_velocity(DVec2::new(0.0, -2.0))?;
 /// let places = [DVec2::new(1.0, 8.0), DVec2::new(9.0, 9.0)];

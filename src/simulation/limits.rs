@@ -1,6 +1,5 @@
 //! The limits of a run: its end time, and reasons to stop earlier.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -34,16 +33,16 @@ const EVENTS_BETWEEN_LOOKS: u64 = 256;
 /// assert_eq!(counters.disk_collisions + counters.wall_collisions, 500);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone)]
-pub struct Limits {
+#[derive(Debug, Clone, Copy)]
+pub struct Limits<'a> {
     end: f64,
     most_collisions: u64,
     wall_clock: Option<Duration>,
-    interrupt: Option<Arc<AtomicBool>>,
+    interrupt: Option<&'a AtomicBool>,
     least_progress: Option<f64>,
 }
 
-impl Limits {
+impl<'a> Limits<'a> {
     /// Creates the limits of a run that ends at the absolute time `end`, with no other limit.
     pub const fn until(end: f64) -> Self {
         Self { end, most_collisions: u64::MAX, wall_clock: None, interrupt: None, least_progress: None }
@@ -66,19 +65,18 @@ impl Limits {
     /// handler of a signal.
     ///
     /// ```
-    /// use std::sync::Arc;
     /// use std::sync::atomic::{AtomicBool, Ordering};
     /// use granular_edmd::simulation::{Limits, RunEnd};
     /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic};
     /// # let mut simulation = Simulation::builder(Elastic, Container::open(4.0)?).build()?;
-    /// let flag = Arc::new(AtomicBool::new(false));
-    /// let limits = Limits::until(1e3).with_interrupt(Arc::clone(&flag));
+    /// let flag = AtomicBool::new(false);
+    /// let limits = Limits::until(1e3).with_interrupt(&flag);
     /// // Another thread asks the run to end.
     /// flag.store(true, Ordering::Relaxed);
     /// assert_eq!(simulation.run(&limits, &mut ())?, RunEnd::Interrupted);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn with_interrupt(self, flag: Arc<AtomicBool>) -> Self {
+    pub fn with_interrupt(self, flag: &'a AtomicBool) -> Self {
         Self { interrupt: Some(flag), ..self }
     }
 
@@ -101,7 +99,7 @@ impl Limits {
     pub(super) fn rest(&self, collisions: u64, spent: Duration) -> Self {
         let most_collisions = self.most_collisions.saturating_sub(collisions);
         let wall_clock = self.wall_clock.map(|time| time.saturating_sub(spent));
-        Self { most_collisions, wall_clock, ..self.clone() }
+        Self { most_collisions, wall_clock, ..*self }
     }
 
     /// Returns the same limits with another end.
@@ -118,7 +116,7 @@ impl Limits {
 /// The limits of a run that is under way.
 #[derive(Debug)]
 pub(super) struct Watch<'a> {
-    limits: &'a Limits,
+    limits: &'a Limits<'a>,
     /// The count of all collisions at which the run ends.
     last_collision: u64,
     deadline: Option<Instant>,
@@ -126,7 +124,7 @@ pub(super) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     /// Begins to watch a run that starts with these counts.
-    pub(super) fn new(limits: &'a Limits, counters: &Counters) -> Self {
+    pub(super) fn new(limits: &'a Limits<'a>, counters: &Counters) -> Self {
         Self {
             limits,
             last_collision: counters.collisions().saturating_add(limits.most_collisions),
@@ -146,7 +144,7 @@ impl<'a> Watch<'a> {
         if counters.collisions() >= self.last_collision {
             return Some(RunEnd::Collisions);
         }
-        if self.limits.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        if self.limits.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Some(RunEnd::Interrupted);
         }
         self.deadline.is_some_and(|deadline| Instant::now() >= deadline).then_some(RunEnd::WallClock)

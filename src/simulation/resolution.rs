@@ -24,8 +24,8 @@ const GRAZING: f64 = 1e-6;
 /// The change of a disk's motion in a collision.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kick {
-    pub(super) velocity: DVec2,
-    pub(super) angular_velocity: f64,
+    /// Differences of the velocity and the angular velocity.
+    pub(super) change: Body,
     /// Motion after the collision, with the velocity in the free-fall frame.
     pub(super) after: Body,
 }
@@ -33,11 +33,11 @@ pub(super) struct Kick {
 impl Kick {
     #[inline]
     fn between(before: &Body, after: &Body) -> Self {
-        Self {
+        let change = Body {
             velocity: after.velocity - before.velocity,
             angular_velocity: after.angular_velocity - before.angular_velocity,
-            after: *after,
-        }
+        };
+        Self { change, after: *after }
     }
 
     /// Returns whether the kick leads to a motion within the engine's bounds.
@@ -155,7 +155,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     };
     let mut kick = Kick::between(&arriving, &leaving);
     // The wall was met in the container's frame, and disks keep their velocities in the free-fall frame.
-    kick.after.velocity = bodies.particles[disk].trajectory.velocity + kick.velocity;
+    kick.after.velocity = bodies.particles[disk].trajectory.velocity + kick.change.velocity;
     (collision, kick)
 }
 

@@ -51,7 +51,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// simulation then keeps the state of that time.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
-        limits: &Limits,
+        limits: &Limits<'_>,
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {
         self.guarded(|run| run.watched_run(limits, observer)).map_err(|error| *error)
@@ -69,7 +69,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         done
     }
 
-    fn watched_run<O: Observer + ?Sized>(&mut self, limits: &Limits, observer: &mut O) -> Outcome<RunEnd> {
+    fn watched_run<O: Observer + ?Sized>(
+        &mut self,
+        limits: &Limits<'_>,
+        observer: &mut O,
+    ) -> Outcome<RunEnd> {
         self.check_end(limits.end())?;
         let watch = Watch::new(limits, &self.counters);
         let (events, start) = (self.counters.events(), self.time());

@@ -34,7 +34,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (disk, due) = self.next_collider(disk, due);
         let partner = self.partner_of(disk);
         let wall = partner.and_then(|partner| self.name_of(partner));
-        let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
+        let remedy = match partner.map(|partner| self.remedy(disk, partner, due)) {
+            Some(Remedy::ElasticWhenSlow | Remedy::LongerContactDuration | Remedy::FasterDisks)
+                if self.closed_sink().is_some() =>
+            {
+                Remedy::ClosedSink
+            }
+            remedy => remedy.unwrap_or(Remedy::OtherParts),
+        };
         let Standstill { events, elapsed } = *standstill;
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
     }

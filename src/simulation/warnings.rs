@@ -91,6 +91,14 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
+    /// No disk can get to a sink, and none has been taken out: walls are in its way, such as those nearer than
+    /// a radius to a line for centers. A gate that opens later is a harmless cause.
+    ClosedSink {
+        /// The first wall of the sink.
+        wall: usize,
+        /// The name of that wall.
+        name: String,
+    },
     /// A thousand disks or more wait at an inlet. It may have no room at all, as inside of a part.
     DisksWait {
         /// Index of the inlet.
@@ -133,6 +141,11 @@ impl fmt::Display for Warning {
                 "the energy grew from {} to {} without a source: a rule gains energy; see collision::laws::check",
                 Rounded(*before),
                 Rounded(*now)
+            ),
+            Self::ClosedSink { name, .. } => write!(
+                formatter,
+                "no disk can get to the sink \"{name}\", since walls are in its way: a line for centers must be farther \
+                 from them than a radius"
             ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,
@@ -187,6 +200,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         warnings.extend(self.long_contact_duration());
         warnings.extend(self.one_direction());
         warnings.extend(self.energy_gained());
+        warnings.extend(self.closed_sink_so_far());
         warnings
     }
 
@@ -214,6 +228,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let DVec2 { x, y } = speeds.fold(DVec2::ZERO, DVec2::max);
         let is_one = collisions >= FEWEST && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })
+    }
+
+    fn closed_sink_so_far(&self) -> Option<Warning> {
+        let may_be = self.counters.removals == 0 && self.counters.collisions() >= FEWEST;
+        let wall = may_be.then(|| self.closed_sink()).flatten()?;
+        Some(Warning::ClosedSink { wall, name: self.boundary.wall_name(wall).into_owned() })
     }
 
     fn energy_gained(&self) -> Option<Warning> {

@@ -10,7 +10,7 @@ const FEWEST_BLOCKS: u64 = 8;
 /// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. With
 /// half of this number, every tenth series of 30 would be called converged, with an error too small by a
 /// third.
-const FEWEST_INDEPENDENT: f64 = 120.0;
+pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Excess of a trusted error over its blocks' error, times the number of independent samples.
 ///

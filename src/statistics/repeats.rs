@@ -1,6 +1,7 @@
 //! Estimates of several runs combined into one.
 
 use super::Estimate;
+use super::plateau::FEWEST_INDEPENDENT;
 
 /// Smallest number of repeats with a meaningful scatter, as with blocks.
 const ENOUGH: usize = 8;
@@ -18,7 +19,8 @@ impl Estimate {
     ///
     /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
     /// way. But the scatter of two or three runs may be small by chance; then the errors of the runs count.
-    /// The estimate has converged if the estimates of all runs have, or if there are at least eight runs.
+    /// The estimate has converged if the estimates of all runs have, if there are at least eight runs, or if the
+    /// runs together have 120 independent samples by this error, as many as one run needs.
     /// Runs without samples are left out.
     ///
     /// ```
@@ -59,8 +61,10 @@ impl Estimate {
         let variance = weighted(&Self::variance) + scatter;
         let naive = (variance / samples as f64).sqrt();
         let growth = if naive > 0.0 { error / naive } else { 1.0 };
-        let converged = runs.len() >= ENOUGH || runs.iter().all(Self::is_converged);
-        Self::blocked(mean, error, samples, growth * growth, converged)
+        let correlated = growth * growth;
+        let is_long = samples as f64 / correlated.max(1.0) >= FEWEST_INDEPENDENT;
+        let converged = is_long || runs.len() >= ENOUGH || runs.iter().all(Self::is_converged);
+        Self::blocked(mean, error, samples, correlated, converged)
     }
 
     /// Returns the variance of the samples, as far as it is known.

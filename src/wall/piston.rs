@@ -31,7 +31,7 @@ use crate::{Fingerprint, ParameterError};
 /// use granular_edmd::wall::Piston;
 ///
 /// // A lid of mass 20, at first at height 30, that sinks to height 5 at most, under its weight.
-/// let lid = Piston::new(20.0, 0.0, 25.0)?.with_force(20.0 * 0.1)?;
+/// let lid = Piston::new(20.0, [0.0, 25.0])?.with_force(20.0 * 0.1)?;
 /// let container = Container::closed(10.0, 30.0)?.with_piston(Wall::Lid, lid)?;
 /// let disks = initial::random(&container, 30, 0.5, 30.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
@@ -55,12 +55,13 @@ pub struct Piston {
 }
 
 impl Piston {
-    /// Creates a wall of this mass between two stops, given as displacements along its normal, at rest at
-    /// displacement 0 or the stop next to it, without forces.
+    /// Creates a wall of this mass between a lower and an upper stop, given as displacements along its normal,
+    /// at rest at displacement 0 or the stop next to it, without forces.
     ///
     /// # Errors
     /// If the mass is not finite and positive, or the stops are not finite and in order.
-    pub fn new(mass: f64, lowest: f64, highest: f64) -> Result<Self, ParameterError> {
+    pub fn new(mass: f64, stops: [f64; 2]) -> Result<Self, ParameterError> {
+        let [lowest, highest] = stops;
         let (lowest, highest) = (finite("lowest stop", lowest)?, finite("highest stop", highest)?);
         accept(highest > lowest, "highest stop", "above the lowest one", highest)?;
         let (mass, displacement) = (positive("mass of a piston", mass)?, 0_f64.clamp(lowest, highest));
@@ -91,7 +92,7 @@ impl Piston {
     ///
     /// # Errors
     /// If the displacement is not between the stops, or the velocity is not finite.
-    pub fn starting_at(self, displacement: f64, velocity: f64) -> Result<Self, ParameterError> {
+    pub fn with_start(self, displacement: f64, velocity: f64) -> Result<Self, ParameterError> {
         let is_between = self.lowest <= displacement && displacement <= self.highest;
         accept(is_between, "displacement of a piston", "between its stops", displacement)?;
         Ok(Self { displacement, velocity: finite("velocity of a piston", velocity)?, ..self })
@@ -112,7 +113,7 @@ impl Piston {
     ///
     /// ```
     /// use granular_edmd::wall::Piston;
-    /// let lid = Piston::new(4.0, 0.0, 10.0)?.with_force(0.5)?;
+    /// let lid = Piston::new(4.0, [0.0, 10.0])?.with_force(0.5)?;
     /// assert_eq!(lid.energy(2.0, 3.0), 17.0);
     /// # Ok::<(), granular_edmd::ParameterError>(())
     /// ```
@@ -142,8 +143,8 @@ crate::gate::from_file! {
     Piston {
         mass: f64, lowest: f64, highest: f64, force: f64, stiffness: f64, center: f64, displacement: f64,
         velocity: f64
-    } => Self::new(mass, lowest, highest)?
+    } => Self::new(mass, [lowest, highest])?
         .with_force(force)?
         .with_spring(stiffness, center)?
-        .starting_at(displacement, velocity)
+        .with_start(displacement, velocity)
 }

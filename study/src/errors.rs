@@ -4,11 +4,60 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::ParameterError;
+use granular_edmd::boundary::{VesselError, WallError};
+use granular_edmd::initial::PlacementError;
+use granular_edmd::observable::ObserverError;
+use granular_edmd::simulation::{BuildError, CheckpointError, RunError};
+use granular_edmd::trajectory::{ReadError, RecordError};
+use granular_edmd::{ParameterError, Violation};
 use thiserror::Error;
 
-/// A reason why an experiment cannot be built or changed: any error of its parts.
-pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
+/// An error: an experiment cannot be built or changed.
+///
+/// `?` makes it from the errors of both packages, of input and output, and from texts;
+/// [`new`](Self::new) from any other. It shows its cause, and `?` takes it into any error.
+///
+/// ```
+/// use granular_edmd::collision::Smooth;
+/// use granular_edmd_study::ExperimentError;
+///
+/// fn rule(loss: f64) -> Result<Smooth, ExperimentError> {
+///     if loss == 0.25 {
+///         return Err("a quarter is too much".into());
+///     }
+///     Ok(Smooth::from_inelasticity(loss)?)
+/// }
+/// assert_eq!(rule(0.25).unwrap_err().to_string(), "a quarter is too much");
+/// assert!(rule(0.7).unwrap_err().to_string().starts_with("normal inelasticity"));
+///
+/// let number = "ten".parse::<f64>().map_err(ExperimentError::new);
+/// assert_eq!(number.unwrap_err().to_string(), "invalid float literal");
+/// ```
+#[derive(Debug, Error)]
+#[error(transparent)]
+pub struct ExperimentError(Box<dyn std::error::Error + Send + Sync>);
+
+impl ExperimentError {
+    /// Creates an error from its cause.
+    pub fn new(cause: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self(cause.into())
+    }
+}
+
+macro_rules! from_causes {
+    ($($cause:ty),+) => {
+        $(impl From<$cause> for ExperimentError {
+            fn from(cause: $cause) -> Self {
+                Self::new(cause)
+            }
+        })+
+    };
+}
+
+from_causes! {
+    &str, String, io::Error, ParameterError, WallError, VesselError, PlacementError, BuildError, RunError,
+    CheckpointError, RecordError, ReadError, Violation, ObserverError, PlanError, StudyError
+}
 
 /// An error in a plan: it cannot be run.
 ///

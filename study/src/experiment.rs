@@ -99,7 +99,7 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 /// let last = |ramp| Ok::<_, ExperimentError>(study.record(ramp, 0)?.ok_or("not done")?.samples()[4]);
 /// assert!(last(1)? < last(0)?);
 /// # std::fs::remove_dir_all(&folder)?;
-/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an experiment",

@@ -53,8 +53,8 @@ fn every_motion_goes_round() {
     let types = ours.filter_map(|path| path.rsplit("::").next()).filter(|name| !name.contains('{'));
     let types = types.filter(|name| name.starts_with(char::is_uppercase) && *name != "Violation");
     // A piston is no motion that others could hold.
-    let lid = Piston::new(3.0, -0.5, 2.0).unwrap().with_force(1.0).unwrap().with_spring(2.0, 0.5).unwrap();
-    let piston = closed().with_piston(Wall::Lid, lid.starting_at(0.25, -1.0).unwrap()).unwrap();
+    let lid = Piston::new(3.0, [-0.5, 2.0]).unwrap().with_force(1.0).unwrap().with_spring(2.0, 0.5).unwrap();
+    let piston = closed().with_piston(Wall::Lid, lid.with_start(0.25, -1.0).unwrap()).unwrap();
     goes_round(&piston, "Piston");
     let text = serde_json::to_string(&piston).unwrap();
     let motion = text.split_once("\"stroke\":").unwrap().1.split_once('}').unwrap().0;

@@ -117,7 +117,7 @@ fn engine() -> Vec<Case> {
         ),
         (
             "start time",
-            |value| told(Simulation::builder(Elastic, box_of(8.0)).start_time(value).build()),
+            |value| told(Simulation::builder(Elastic, box_of(8.0)).starting_at(value).build()),
             f64::is_finite,
         ),
     ]
@@ -182,7 +182,7 @@ fn runs(container: &Container, gravity: f64, start: f64, speed: f64) {
         let Ok(disks) = initial::lattice(container, count, 0.5) else { continue };
         let disks = disks.into_iter().map(|disk| disk.with_velocity(DVec2::new(speed, 0.3 * speed)).unwrap());
         let builder = Simulation::builder(Elastic, container.clone()).disks(disks);
-        let Ok(mut run) = builder.gravity(gravity).start_time(start).build() else { continue };
+        let Ok(mut run) = builder.gravity(gravity).starting_at(start).build() else { continue };
         for _ in 0..100 {
             let end = run.time() + 1.0;
             if run.step_until(end, &mut ()).is_err() {

@@ -34,7 +34,7 @@ impl System {
             .disks(self.disks.iter().copied())
             .gravity(self.gravity)
             .seed(self.seed)
-            .start_time(self.start)
+            .starting_at(self.start)
     }
 }
 

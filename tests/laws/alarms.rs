@@ -79,7 +79,7 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
     let bar = Part::polyline([middle - DVec2::X, middle + DVec2::X])?;
     let triangle = [DVec2::new(3.0, 2.5), DVec2::new(6.0, 2.5), DVec2::new(4.5, 4.5)];
     let outer = [DVec2::ZERO, DVec2::new(8.0, 0.0), DVec2::new(9.0, 5.0), DVec2::new(4.0, 7.0)];
-    let piston = Piston::new(20.0, -0.5, 3.0)?.with_force(-1.0)?.with_spring(5.0, 1.0)?;
+    let piston = Piston::new(20.0, [-0.5, 3.0])?.with_force(-1.0)?.with_spring(5.0, 1.0)?;
     let sine = Sinusoidal::new(0.3, 3.0)?;
     Ok(vec![
         ("closed", Box::new(container()?)),

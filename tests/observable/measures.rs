@@ -129,7 +129,7 @@ fn a_late_gap_is_a_gap() -> Outcome {
     let disk = Disk::new(DVec2::splat(2.0), 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?;
     for (start, interval) in [(0.0, 1e-3), (1e6, 1e-3), (1e7, 1e-2), (1e9, 1e-5)] {
         let container = Container::periodic(8.0, 8.0)?;
-        let mut run = Simulation::builder(Elastic, container).disks([disk]).start_time(start).build()?;
+        let mut run = Simulation::builder(Elastic, container).disks([disk]).starting_at(start).build()?;
         let mut squared = MeanSquaredDisplacement::new(2, SampleTimes::every(interval)?)?;
         let at = |k: u32| start + f64::from(k) * interval;
         for k in 0..50 {

@@ -85,7 +85,7 @@ fn times_too_coarse_for_samples_are_told() -> Outcome {
     {
         let disk = Disk::new(DVec2::splat(3.0), 0.5)?;
         let container = Container::closed(10.0, 10.0)?;
-        let mut run = Simulation::builder(Elastic, container).disks([disk]).start_time(start).build()?;
+        let mut run = Simulation::builder(Elastic, container).disks([disk]).starting_at(start).build()?;
         let mut series = Series::new(CenterOfMass, SampleTimes::every(interval)?);
         match run.run_until(start + 8.0, &mut series) {
             Ok(_) => assert!(fits && series.times() == [start + 4.0, start + 8.0], "{start} {interval}"),

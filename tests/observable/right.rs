@@ -125,7 +125,7 @@ fn the_layer_that_a_floor_sweeps_has_the_area_that_is_left() -> Result<(), Failu
     let motion = Sinusoidal::new(1.0, 2.0 * PI)?;
     let container = Container::closed(10.0, 8.0)?.with_motion(Wall::Floor, motion)?;
     let still = disk(5.0, 1.5)?;
-    let run = Simulation::builder(Elastic, container).disks([still]).start_time(0.25).build()?;
+    let run = Simulation::builder(Elastic, container).disks([still]).starting_at(0.25).build()?;
     let (mut profile, region) =
         (HeightProfile::new(0.0, 8.0, 4)?, Region::new(DVec2::ZERO, DVec2::splat(8.0)));
     let mut fields = Fields::new(Grid::new(region, 1, 4)?);
@@ -313,7 +313,7 @@ fn a_series_from_negative_times_may_be_cut_at_its_samples() -> Result<(), Failur
         for interval in [0.1, 0.3, 0.7, 1.0, 1.0 / 3.0] {
             let disks = [disk(2.0, 2.0)?.with_velocity(DVec2::new(1.0, 0.7))?];
             let run =
-                || Simulation::builder(Elastic, container.clone()).disks(disks).start_time(start).build();
+                || Simulation::builder(Elastic, container.clone()).disks(disks).starting_at(start).build();
             let (mut whole, mut pieces) = (run()?, run()?);
             let series = || -> Result<_, ParameterError> {
                 Ok(Series::new(CenterOfMass, SampleTimes::every(interval)?))

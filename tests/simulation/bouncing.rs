@@ -27,7 +27,7 @@ fn touches<R: granular_edmd::collision::CollisionRule>(
     end: f64,
 ) -> Vec<(f64, f64)> {
     let mut simulation =
-        Simulation::builder(rule, open()).disks([disk]).gravity(1.0).start_time(start).build().unwrap();
+        Simulation::builder(rule, open()).disks([disk]).gravity(1.0).starting_at(start).build().unwrap();
     let mut touches = Vec::new();
     let mut watch = on_collision(|c: &Collision| touches.push((c.time - start, c.contact.closing_speed())));
     simulation.run_until(start + end, &mut watch).unwrap();
@@ -60,7 +60,7 @@ fn an_elastic_ball_bounces_for_ever_at_any_time() {
         let mut simulation = Simulation::builder(Elastic, open())
             .disks([ball(3.7)])
             .gravity(1.0)
-            .start_time(start)
+            .starting_at(start)
             .build()
             .unwrap();
         let before = simulation.measure(&Energies).total();
@@ -90,7 +90,7 @@ fn late_runs_see_the_same_base() {
         let mut simulation = Simulation::builder(Elastic, boundary)
             .disks([ball(1.0)])
             .gravity(1.0)
-            .start_time(start)
+            .starting_at(start)
             .build()
             .unwrap();
         let mut log = Log(Vec::new());

@@ -44,7 +44,7 @@ proptest! {
         let mut simulation = Simulation::builder(Elastic, Container::open(8.0).unwrap())
             .disks([Disk::new(DVec2::new(2.0, 3.0), 0.5).unwrap()])
             .gravity(0.3)
-            .start_time(start)
+            .starting_at(start)
             .build()
             .unwrap();
         let times = SampleTimes::every(interval).unwrap().starting_at(start).unwrap();

@@ -149,7 +149,7 @@ fn try_systems(cases: std::ops::Range<u64>) -> usize {
         let start = if random.chance(3) { random.decade(-10.0, 15.0) } else { 0.0 };
         let scheduler = SCHEDULERS[case as usize % SCHEDULERS.len()]();
         let builder = Simulation::builder(random.rule(), random.walls(size)).disks(random.disks(size));
-        match builder.gravity(random.gravity()).start_time(start).scheduler(scheduler).build() {
+        match builder.gravity(random.gravity()).starting_at(start).scheduler(scheduler).build() {
             Ok(mut run) => {
                 built += 1;
                 live(&mut random, &mut run, size, case);

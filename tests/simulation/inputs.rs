@@ -46,7 +46,7 @@ fn times_and_gravity_must_be_finite() {
         assert!(builder().gravity(value).build().unwrap_err().to_string().contains("gravity"));
         let mut run = builder().build().unwrap();
         assert!(run.set_gravity(value).unwrap_err().to_string().contains("gravity"));
-        assert!(builder().start_time(value).build().unwrap_err().to_string().contains("start time"));
+        assert!(builder().starting_at(value).build().unwrap_err().to_string().contains("start time"));
     }
 }
 
@@ -162,7 +162,7 @@ fn initial_states_are_accepted_by_the_builder() {
                 initial::lattice(&boundary, 24, 0.5).unwrap(),
                 initial::random(&boundary, 12, 0.5, 6.0, 3).unwrap(),
             ] {
-                let builder = Simulation::builder(Elastic, boundary.clone()).disks(disks).start_time(start);
+                let builder = Simulation::builder(Elastic, boundary.clone()).disks(disks).starting_at(start);
                 assert!(builder.build().is_ok(), "{boundary:?}");
             }
         }
@@ -227,7 +227,7 @@ fn odd_start_times_and_intervals_lose_no_sample() {
     for start in [0.1, -3.7, 1.0 / 3.0, 1e5 + 0.1, 12_345.678] {
         for interval in [0.3, 0.07, 1.0 / 7.0] {
             let disks = [at(2.0, 2.0).with_velocity(DVec2::new(1.0, 0.7)).unwrap(), at(5.0, 3.0)];
-            let builder = Simulation::builder(Elastic, closed()).disks(disks).gravity(0.1).start_time(start);
+            let builder = Simulation::builder(Elastic, closed()).disks(disks).gravity(0.1).starting_at(start);
             let mut simulation = builder.build().unwrap();
             let times = SampleTimes::every(interval).unwrap().starting_at(start + interval).unwrap();
             let mut series = Series::new(Energies, times);

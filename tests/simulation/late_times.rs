@@ -25,7 +25,7 @@ fn times_too_far_apart_are_refused_at_once() {
     {
         let began = Instant::now();
         let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap()).disks(pair(speed));
-        match builder.start_time(start).build() {
+        match builder.starting_at(start).build() {
             Err(BuildError::StartTime { start: named, spacing, epoch }) => {
                 assert_eq!(named, start);
                 assert!(64.0 * spacing > epoch);
@@ -50,7 +50,7 @@ fn disks_that_become_too_fast_for_their_time_end_the_run() {
     };
     for (start, temperature) in [(1e12, 1e12), (1e9, 1e20), (1e15, 1e8), (1.0, 1e40)] {
         let began = Instant::now();
-        let builder = Simulation::builder(Elastic, hot(temperature)).disks(pair(0.1)).start_time(start);
+        let builder = Simulation::builder(Elastic, hot(temperature)).disks(pair(0.1)).starting_at(start);
         let Ok(mut run) = builder.build() else { continue };
         let error = loop {
             let end = run.time() + 1.0;
@@ -119,7 +119,7 @@ fn disks_stay_in_the_box_at_all_times_that_are_allowed() {
             let disks = initial::with_maxwellian_velocities(disks, 1.0, 7).unwrap();
             let rule = Smooth::from_inelasticity(0.05).unwrap();
             let builder =
-                Simulation::builder(rule, walls.clone()).disks(disks).gravity(gravity).start_time(start);
+                Simulation::builder(rule, walls.clone()).disks(disks).gravity(gravity).starting_at(start);
             let mut run = match builder.build() {
                 Ok(run) => run,
                 Err(BuildError::StartTime { .. }) => continue,
@@ -199,7 +199,7 @@ fn a_kick_too_fast_for_its_time_moves_no_disk() {
         let walls = Container::closed(10.0, 10.0).unwrap();
         let walls = walls.with_temperature(Wall::Floor, Thermal::new(temperature).unwrap()).unwrap();
         let disks = slow_disks(slow, 1);
-        let builder = Simulation::builder(Elastic, walls).disks(disks.clone()).start_time(start);
+        let builder = Simulation::builder(Elastic, walls).disks(disks.clone()).starting_at(start);
         let mut run = builder.build().unwrap();
         let error = run.run_until(start + 10.0 / slow, &mut ()).unwrap_err();
         assert!(matches!(error, RunError::TimeTooLate { .. }), "{start:e}: {error}");
@@ -220,7 +220,7 @@ fn a_kick_too_fast_for_its_time_moves_no_disk() {
 fn gravity_too_strong_for_the_time_is_refused() {
     for (start, gravity) in [(1e7, 1e20), (1e12, 1e10), (1e12, -1e10), (1.0, 1e40)] {
         let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap()).disks(pair(1.0));
-        let mut run = builder.start_time(start).build().unwrap();
+        let mut run = builder.starting_at(start).build().unwrap();
         run.run_until(start + 0.3, &mut ()).unwrap();
         let before = run.disks();
         let error = run.set_gravity(gravity).unwrap_err();

@@ -437,7 +437,7 @@ fn an_observer_that_fails_ends_the_run_there() {
 
 #[test]
 fn an_end_before_the_present_tells_no_observer() {
-    let mut run = Simulation::builder(Elastic, walls()).disks(disks()).start_time(3.0).build().unwrap();
+    let mut run = Simulation::builder(Elastic, walls()).disks(disks()).starting_at(3.0).build().unwrap();
     let mut failing = Failing::default();
     assert!(matches!(run.run_until(2.0, &mut failing), Err(RunError::End { .. })));
     assert_eq!((failing.starts, failing.ends), (0, 0));

@@ -1,6 +1,5 @@
 //! The ends of runs: each limit ends the run, says so, and leaves the bits as they would have been.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -59,8 +58,8 @@ fn a_run_cut_by_the_clock_has_the_same_bits() {
 #[test]
 fn a_run_cut_by_a_flag_has_the_same_bits() {
     let (collisions, disks) = whole();
-    let flag = Arc::new(AtomicBool::new(false));
-    let limits = Limits::until(END).with_interrupt(Arc::clone(&flag));
+    let flag = AtomicBool::new(false);
+    let limits = Limits::until(END).with_interrupt(&flag);
     let (mut run, mut all, mut cuts) = (run(), Vec::new(), 0);
     loop {
         let before = run.counters().events();
@@ -84,9 +83,9 @@ fn a_run_cut_by_a_flag_has_the_same_bits() {
 
 #[test]
 fn another_thread_ends_a_run() {
-    let flag = Arc::new(AtomicBool::new(false));
+    let flag = AtomicBool::new(false);
     let mut gas = elastic_gas(30, 20.0, 20.0, 0.0);
-    let limits = Limits::until(1e9).with_interrupt(Arc::clone(&flag));
+    let limits = Limits::until(1e9).with_interrupt(&flag);
     let end = std::thread::scope(|scope| {
         let running = scope.spawn(|| gas.run(&limits, &mut ()).unwrap());
         std::thread::sleep(Duration::from_millis(20));

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{CollisionCounts, Snapshot};
+use granular_edmd::observable::{Collision, CollisionCounts, Partner, Snapshot, on_collision};
 use granular_edmd::simulation::Limits;
 use granular_edmd::wall::Piston;
 use granular_edmd::{Disk, Simulation, initial};
@@ -33,7 +33,7 @@ fn energy(snapshot: &Snapshot<'_>, piston: &Piston, height: f64) -> f64 {
 #[test]
 fn collisions_count_the_digits_of_pi() -> Outcome {
     for digits in 0..6 {
-        let piston = Piston::new(100_f64.powi(digits), -90.0, 9.6)?.starting_at(0.0, 1e-3)?;
+        let piston = Piston::new(100_f64.powi(digits), [-90.0, 9.6])?.with_start(0.0, 1e-3)?;
         let container = Container::closed(10.0, 4.0)?.with_piston(Wall::Right, piston)?;
         let disk = Disk::new(DVec2::new(3.0, 2.0), 0.25)?.with_mass(1.0)?;
         let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
@@ -51,7 +51,7 @@ fn collisions_count_the_digits_of_pi() -> Outcome {
 fn energy_is_kept_over_a_million_blows() -> Outcome {
     let height = 6.0;
     let piston =
-        Piston::new(7.0, -1.0, 4.0)?.with_force(200.0)?.with_spring(3e4, 1.0)?.starting_at(1.0, 0.5)?;
+        Piston::new(7.0, [-1.0, 4.0])?.with_force(200.0)?.with_spring(3e4, 1.0)?.with_start(1.0, 0.5)?;
     let container = Container::closed(4.0, height)?.with_piston(Wall::Lid, piston)?;
     let disk = Disk::new(DVec2::new(2.0, 2.0), 0.4)?.with_velocity(DVec2::new(3.0, 60.0))?;
     let mut run = Simulation::builder(Elastic, container).disks([disk]).gravity(0.1).build()?;
@@ -67,11 +67,41 @@ fn energy_is_kept_over_a_million_blows() -> Outcome {
     Ok(())
 }
 
+/// The momentum that a piston loses is that of its blows, and with those of the other wall, all momentum is
+/// accounted for, over three million collisions.
+#[test]
+fn momentum_is_kept_over_a_million_blows() -> Outcome {
+    let (mass, speed) = (1e12, 1e-3);
+    let piston = Piston::new(mass, [-90.0, 9.6])?.with_start(0.0, speed)?;
+    let container = Container::closed(10.0, 4.0)?.with_piston(Wall::Right, piston)?;
+    let disk = Disk::new(DVec2::new(3.0, 2.0), 0.25)?.with_mass(1.0)?;
+    let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
+    let (mut to_piston, mut from_left, mut blows) = (0.0, 0.0, 0);
+    let mut sum = on_collision(|collision: &Collision| {
+        if collision.partner == Partner::Wall(1) {
+            from_left += collision.impulse.normal();
+        } else {
+            to_piston += collision.impulse.normal();
+            blows += 1;
+        }
+    });
+    run.run(&Limits::until(2e4).with_least_progress(0.0)?, &mut sum)?;
+    // The piston moves to the left at first.
+    let after = run.snapshot().wall_velocity(2).ok_or("it is known")?.x;
+    let scale = mass * speed;
+    let error = (mass * (after + speed) - to_piston) / scale;
+    let carried = run.disks()[0].velocity().x;
+    let all = (carried - from_left + to_piston) / scale;
+    println!("{blows} blows; error of the momentum of the piston {error:e}, of all {all:e}");
+    assert!(blows > 1_000_000 && error.abs() < 1e-12 && all.abs() < 1e-12);
+    Ok(())
+}
+
 /// The same bits from a checkpoint, and however the run is cut.
 #[cfg(feature = "serde")]
 #[test]
 fn a_resumed_piston_goes_on_with_the_same_bits() -> Outcome {
-    let piston = Piston::new(30.0, 0.0, 9.0)?.with_force(3.0)?.with_spring(0.5, 2.0)?;
+    let piston = Piston::new(30.0, [0.0, 9.0])?.with_force(3.0)?.with_spring(0.5, 2.0)?;
     let container = Container::closed(8.0, 12.0)?.with_piston(Wall::Lid, piston)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.4)?, 1.0, 3)?;
     let mut whole = Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build()?;
@@ -102,15 +132,15 @@ fn a_lid_without_disks_follows_its_closed_forms() -> Outcome {
     let near = |(displacement, velocity): (f64, f64), expected: (f64, f64)| {
         (displacement - expected.0).abs() < 1e-12 && (velocity - expected.1).abs() < 1e-12
     };
-    let falling = Piston::new(2.0, 0.0, 8.0)?.with_force(1.0)?;
+    let falling = Piston::new(2.0, [0.0, 8.0])?.with_force(1.0)?;
     assert!(near(at(falling, 4.0)?, (4.0, 2.0)));
     assert_eq!(at(falling, 100.0)?, (8.0, 0.0), "it rests at its stop");
     // About displacement 5 with frequency 1/2: from rest at 4, it swings to 6 and back.
-    let swinging = Piston::new(4.0, 0.0, 8.0)?.with_spring(1.0, 5.0)?.starting_at(4.0, 0.0)?;
+    let swinging = Piston::new(4.0, [0.0, 8.0])?.with_spring(1.0, 5.0)?.with_start(4.0, 0.0)?;
     assert!(near(at(swinging, 2.0 * PI)?, (6.0, 0.0)));
     assert!(near(at(swinging, PI)?, (5.0, 0.5)));
     // From rest at 0, it comes to the stop at 8, stays there without velocity, and swings back to 2.
-    let stopped = swinging.starting_at(0.0, 0.0)?;
+    let stopped = swinging.with_start(0.0, 0.0)?;
     let first = (PI - (3.0_f64 / 5.0).acos()) / 0.5;
     assert!(near(at(stopped, first + 2.0 * PI)?, (2.0, 0.0)));
     Ok(())
@@ -120,7 +150,7 @@ fn a_lid_without_disks_follows_its_closed_forms() -> Outcome {
 /// as the inverse of the volume.
 #[test]
 fn a_slow_compression_heats_as_the_inverse_volume() -> Outcome {
-    let piston = Piston::new(1e9, 0.0, 15.0)?.starting_at(0.0, 2e-3)?;
+    let piston = Piston::new(1e9, [0.0, 15.0])?.with_start(0.0, 2e-3)?;
     let container = Container::closed(20.0, 20.0)?.with_piston(Wall::Lid, piston)?;
     // Small, so that the volume is the whole one; and not too small to mix both directions.
     let disks = initial::random(&container, 200, 0.05, 20.0, 5)?;

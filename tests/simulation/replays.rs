@@ -13,7 +13,7 @@ type Gas = Simulation<Elastic, Container, BySize>;
 
 /// Returns a gas whose disks leave through one side and come back at the other.
 fn gas() -> Gas {
-    let container = Container::closed(15.0, 15.0).unwrap().with_absorbing(Wall::Right).unwrap();
+    let container = Container::closed(15.0, 15.0).unwrap().absorbing(Wall::Right).unwrap();
     let disks = initial::lattice(&container, 60, 0.4).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 4).unwrap();
     let mut gas = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
@@ -101,7 +101,7 @@ fn runs_that_are_the_same_have_no_differences_and_others_have_them_where_they_ar
 
 fn replay_of_another_time() -> Replay<Elastic, Container, BySize> {
     let container = Container::closed(15.0, 15.0).unwrap();
-    let late = Simulation::builder(Elastic, container).start_time(0.1).build().unwrap();
+    let late = Simulation::builder(Elastic, container).starting_at(0.1).build().unwrap();
     Replay::new(late, 0.5).unwrap()
 }
 

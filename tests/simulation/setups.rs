@@ -105,7 +105,7 @@ impl Setup {
             .disks(self.disks())
             .gravity(self.gravity)
             .seed(self.seed)
-            .start_time(self.start)
+            .starting_at(self.start)
     }
 
     pub(crate) fn simulation(&self) -> Simulation<Rule> {
@@ -129,7 +129,7 @@ pub(crate) fn elastic_gas_at(
     let boundary = Container::closed(width, height).unwrap();
     let disks = initial::lattice(&boundary, count, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 4).unwrap();
-    Simulation::builder(Elastic, boundary).disks(disks).gravity(gravity).start_time(start).build().unwrap()
+    Simulation::builder(Elastic, boundary).disks(disks).gravity(gravity).starting_at(start).build().unwrap()
 }
 
 /// All collisions of a run until `end`, and the disks after it.

@@ -14,7 +14,7 @@ use crate::setups::shaken_and_heated;
 type Run = Simulation<Frictional, Container, Scheduler>;
 
 fn run(scheduler: Scheduler, start: f64) -> Run {
-    shaken_and_heated().start_time(start).scheduler(scheduler).build().unwrap()
+    shaken_and_heated().starting_at(start).scheduler(scheduler).build().unwrap()
 }
 
 /// An observer that stops after every `each[0]` collisions and every `each[1]` samples.

@@ -116,7 +116,7 @@ fn a_silo_of_a_thousand_is_refilled_a_million_times() {
 #[ignore = "a measurement"]
 fn removals_and_insertions_cost_the_same_among_few_disks_and_many() {
     for width in [125.0_f64, 12_500.0] {
-        let container = Container::open(width).unwrap().with_absorbing(Wall::Floor).unwrap();
+        let container = Container::open(width).unwrap().absorbing(Wall::Floor).unwrap();
         let mut run = Simulation::builder(Elastic, container).build().unwrap();
         let drop = Disk::new(DVec2::ZERO, 0.1).unwrap().with_velocity(DVec2::NEG_Y).unwrap();
         let places = [DVec2::new(1.0, 8.0), DVec2::new(width - 1.0, 8.0)];
@@ -164,7 +164,7 @@ fn the_bits_are_those_of_every_scheduler_checkpoint_and_cut() {
 #[test]
 fn large_and_small_disks_come_and_go() {
     for is_periodic in [false, true] {
-        let container = Container::closed(40.0, 40.0).unwrap().with_absorbing(Wall::Floor).unwrap();
+        let container = Container::closed(40.0, 40.0).unwrap().absorbing(Wall::Floor).unwrap();
         let container = if is_periodic { container.with_periodic_sides().unwrap() } else { container };
         let model = |k: u32| {
             let radius = [0.2, 0.25, 3.0, 0.2, 1.0][k as usize % 5];
@@ -195,7 +195,7 @@ fn large_and_small_disks_come_and_go() {
 #[test]
 fn an_absorbing_wall_takes_the_flux_of_kinetic_theory() {
     const COUNT: usize = 10_000;
-    let container = Container::closed(100.0, 100.0).unwrap().with_absorbing(Wall::Right).unwrap();
+    let container = Container::closed(100.0, 100.0).unwrap().absorbing(Wall::Right).unwrap();
     let disks = initial::random(&container, COUNT, 1e-3, 100.0, 2).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
     let mut run = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
@@ -272,7 +272,7 @@ fn what_an_inlet_cannot_do_is_an_error() {
     assert_eq!((run.len(), run.inlets()[0].waiting()), (1, 9));
     // Late times are too coarse for an inlet that opens so often.
     let container = Container::closed(8.0, 8.0).unwrap();
-    let mut late = Simulation::builder(Elastic, container).start_time(1e15).build().unwrap();
+    let mut late = Simulation::builder(Elastic, container).starting_at(1e15).build().unwrap();
     late.add_inlet(Inlet::new(places(7.0, 7.0), [large], SampleTimes::every(0.5).unwrap(), 0).unwrap())
         .unwrap();
     assert!(late.run_until(1e15 + 10.0, &mut ()).is_err());
@@ -337,7 +337,7 @@ fn an_inlet_without_ids_or_times_ends_the_run() {
     let error = cause(run.run_until(5.0, &mut ()).unwrap_err());
     assert!(error.contains("an inlet failed at time 1: largest id so far"), "{error}");
 
-    let mut late = Simulation::builder(Elastic, walls()).start_time(1e9).build().unwrap();
+    let mut late = Simulation::builder(Elastic, walls()).starting_at(1e9).build().unwrap();
     let times = SampleTimes::every(1e-8).unwrap();
     late.add_inlet(Inlet::new(places, [small], times, 1).unwrap()).unwrap();
     let error = cause(late.run_until(2e9, &mut ()).unwrap_err());

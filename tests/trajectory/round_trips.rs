@@ -90,7 +90,7 @@ fn a_run_starts_from_any_frame_as_if_it_had_not_stopped() {
     let state = states[6].clone();
     let mut again = Simulation::builder(Frictional::from_inelasticity(0.02, 0.02, 0.2).unwrap(), container)
         .gravity(state.gravity().unwrap())
-        .start_time(state.time().unwrap())
+        .starting_at(state.time().unwrap())
         .disks(state.into_disks())
         .build()
         .unwrap();

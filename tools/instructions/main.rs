@@ -48,7 +48,7 @@ fn count<R: CollisionRule, B: Boundary>(mut run: Simulation<R, B>) -> Outcome<()
 fn shower(drops: f64) -> Outcome<Simulation<Elastic, Container>> {
     const TOP: f64 = 2.0;
     let width = (drops / TOP).round();
-    let container = Container::open(width)?.with_absorbing(Wall::Floor)?;
+    let container = Container::open(width)?.absorbing(Wall::Floor)?;
     let at_rest = initial::random(&container, drops as usize, 0.1, TOP, 1)?;
     let falling: Vec<Disk> =
         at_rest.iter().map(|drop| drop.with_velocity(DVec2::NEG_Y)).collect::<Result<_, _>>()?;

@@ -151,7 +151,7 @@ impl Run {
         Ok(())
     }
 
-    fn run(&mut self, limits: &Limits, marks: bool) -> Result<RunEnd, Failure> {
+    fn run(&mut self, limits: &Limits<'_>, marks: bool) -> Result<RunEnd, Failure> {
         let Self { simulation, watch, .. } = self;
         let mut marking = marks.then_some(on_collision(|collision| watch.mark(collision)));
         Ok(simulation.run(limits, &mut marking)?)

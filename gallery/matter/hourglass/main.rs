@@ -187,7 +187,7 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
     Ok(run)
 }
 
-fn limits(arguments: &Arguments, end: f64) -> Limits {
+fn limits(arguments: &Arguments, end: f64) -> Limits<'static> {
     Limits::until(end).with_most_collisions((1e6 * arguments.collisions) as u64)
 }
 

@@ -18,7 +18,7 @@ pub(crate) fn measure(ramp: &Ramp, at: &Crossing, oscillations: u32) -> Result<L
     // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
     let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;
     let mut profile = Sampled::new(EnergyChangeProfile::new(0.0, 150.0, 75)?, times);
-    let mut simulation = experiment.build(1).map_err(|error| error as Box<dyn Error>)?;
+    let mut simulation = experiment.build(1)?;
     simulation.run_until(settled, &mut ())?;
     simulation.run_until(2.0 * settled, &mut profile)?;
     let (Some(energy_change), Some(temperature_ratio)) =

@@ -8,7 +8,7 @@ use crate::boundary::{Boundary, Impact, Reaction, Touch};
 use crate::violation::require;
 
 /// Speeds that blows give to a wall, in units of the typical speed.
-const BLOWS: [f64; 3] = [1e-6, 1e-3, 5e-2];
+const BLOWS: [f64; 5] = [1e-6, 1e-3, 5e-2, 2.0, 2.0];
 
 /// Largest error of a velocity after a blow, relative to the change and to the typical speed.
 const EXACT: f64 = 1e-8;

@@ -82,6 +82,15 @@ fn mild_contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
+/// Returns an ordinary contact of each kind with its like, with the default kind, and with a wall.
+pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
+    let contact = Contact::new(1.0, 0.5, 0.5, 0.25);
+    (0..u16::MAX).map(Kind::new).flat_map(move |kind| {
+        let partners = [(kind, 0.5), (Kind::DEFAULT, 0.5), (Kind::WALL, f64::INFINITY)];
+        partners.map(|(partner, radius)| between(contact, ([kind, partner], [0.5, radius])))
+    })
+}
+
 fn extreme_contacts() -> impl Iterator<Item = Contact> {
     let contacts = speeds().flat_map(|(closing, slip)| {
         masses().flat_map(move |(normal, tangential)| {

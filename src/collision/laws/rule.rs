@@ -1,16 +1,17 @@
 //! The check of a rule against all laws at once.
 
+use super::hostile::{contacts_of_all_kinds, hostile_contacts};
 use super::random::random_contacts;
 use super::simplest::simplest;
 use super::{
     LEAST, ROUNDING, check_friction_cone, check_friction_opposes_slip, check_impulse, check_rolling,
-    check_separation, hostile_contacts, unless,
+    check_separation, unless,
 };
 use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::fingerprint::check_pair;
 use crate::{Kind, Violation};
 
-/// Kinds of the partners, unless others are named.
+/// Kinds of the partners of which all pairs meet, unless others are named.
 const KINDS: [Kind; 23] = {
     let mut kinds = [Kind::DEFAULT; 23];
     let mut number = 0;
@@ -47,7 +48,7 @@ pub struct Promises {
     rolling_friction: Option<f64>,
     exchange: bool,
     mirror: bool,
-    kinds: &'static [Kind],
+    kinds: Option<&'static [Kind]>,
     seed: u64,
 }
 
@@ -67,7 +68,7 @@ impl Promises {
             rolling_friction: None,
             exchange: true,
             mirror: true,
-            kinds: &KINDS,
+            kinds: None,
             seed: 1,
         }
     }
@@ -104,8 +105,7 @@ impl Promises {
         Self { mirror: false, ..self }
     }
 
-    /// Returns the same promises for disks of these kinds only; the default are 0 to 19 and three larger
-    /// ones.
+    /// Returns the same promises for disks of these kinds only; by default, for all.
     ///
     /// ```
     /// use granular_edmd::Kind;
@@ -119,7 +119,7 @@ impl Promises {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub const fn with_kinds(self, kinds: &'static [Kind]) -> Self {
-        Self { kinds, ..self }
+        Self { kinds: Some(kinds), ..self }
     }
 
     /// Returns the same promises, which [`check`] tests with other random contacts.
@@ -167,14 +167,18 @@ impl Promises {
 
     /// Returns the contacts of a check, with kinds of these promises.
     fn contacts(&self) -> impl Iterator<Item = Contact> + '_ {
-        let named = |kind: Kind| match kind {
+        let kinds = self.kinds.unwrap_or(&KINDS);
+        let named = move |kind: Kind| match kind {
             Kind::WALL => kind,
-            _ => {
-                self.kinds.get(usize::from(kind.number()) % self.kinds.len().max(1)).copied().unwrap_or(kind)
-            }
+            _ => kinds.get(usize::from(kind.number()) % kinds.len().max(1)).copied().unwrap_or(kind),
         };
         let hostile = hostile_contacts().map(move |contact| contact.with_kinds(contact.kinds().map(named)));
-        hostile.chain(random_contacts(self.seed, self.kinds))
+        hostile.chain(random_contacts(self.seed, kinds))
+    }
+
+    /// Returns ordinary contacts of all kinds, unless some are named.
+    fn contacts_of_kinds(&self) -> impl Iterator<Item = Contact> + use<> {
+        self.kinds.is_none().then(contacts_of_all_kinds).into_iter().flatten()
     }
 }
 
@@ -182,19 +186,24 @@ impl Promises {
 /// orders.
 ///
 /// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
-/// convex and hollow walls, kinds, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
-/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. The page
+/// convex and hollow walls, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
+/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. Each kind has an
+/// ordinary contact with its like, with the default kind and with a wall. The page
 /// "Validation" tells which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken, at the simplest contact at which the same promise is still broken.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
+    let answer = |contact: &Contact| promises.check_answer(rule, contact);
+    let simplify = |contact, violation| simplest(contact, violation, |contact| answer(contact).err());
     let mut answers = Vec::new();
     for contact in promises.contacts() {
-        let impulse = promises.check_answer(rule, &contact).map_err(|violation| {
-            simplest(contact, violation, |contact| promises.check_answer(rule, contact).err())
-        })?;
+        let impulse = answer(&contact).map_err(|violation| simplify(contact, violation))?;
         answers.push((contact, impulse));
+    }
+    for contact in promises.contacts_of_kinds() {
+        let verdict = promises.check(&contact, rule.impulse(&contact));
+        verdict.map_err(|violation| simplify(contact, violation))?;
     }
     // A rule with a memory remembers other contacts in each pass.
     let count = answers.len();
@@ -224,7 +233,9 @@ where
     S: CollisionRule + ?Sized,
 {
     let differ = |contact: &Contact| bits(first.impulse(contact)) != bits(second.impulse(contact));
-    let difference = Promises::new().contacts().find(differ).map(|contact| format!("in {contact}"));
+    let promises = Promises::new();
+    let mut contacts = promises.contacts().chain(promises.contacts_of_kinds());
+    let difference = contacts.find(differ).map(|contact| format!("in {contact}"));
     check_pair("collision rule", [first.fingerprint(), second.fingerprint()], difference)
 }
 

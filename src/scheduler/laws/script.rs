@@ -64,7 +64,7 @@ pub(super) const SCRIPTS: [Script; 13] = [
     script("resets", FEW, 300, Stage::spread_time, Some(reset_often)),
     script("resets to as many", &[1, 2, 20], 4000, Stage::spread_time, Some(reset_to_as_many)),
     script("a long run", SOME, 8000, Stage::spread_time, Some(run)),
-    script("a longer run", &[40], 50_000, Stage::spread_time, Some(run)),
+    script("a longer run", &[17], 3_000_000, Stage::spread_time, Some(run)),
     script("a large run", MANY, 200, Stage::spread_time, Some(run)),
     script("large and small", MANY, 12, Stage::spread_time, Some(reset_to_few)),
 ];

@@ -23,6 +23,8 @@ pub enum Remedy {
     WallVelocity,
     /// The rule gains energy, so disks become ever faster.
     EnergyGain,
+    /// Matter comes to rest, and walls keep it from a sink: no disk can touch the sink.
+    ClosedSink,
     /// No collision is in sight: the boundary or the scheduler names events that lead nowhere.
     OtherParts,
 }
@@ -46,6 +48,10 @@ impl fmt::Display for Remedy {
                 "the wall moves otherwise than the velocity of its surface says; boundary::laws::check compares both"
             }
             Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
+            Self::ClosedSink => {
+                "matter comes to rest, and no disk can get to a sink, since walls are in its way; \
+                 Simulation::warnings names it"
+            }
             Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
         })
     }

@@ -224,17 +224,11 @@ impl Bodies {
     /// Changes the motion of `disk` by a collision at this time offset. Its place at that time stays as it
     /// was.
     #[inline]
-    pub(in crate::simulation) fn kick(
-        &mut self,
-        disk: usize,
-        velocity: DVec2,
-        angular_velocity: f64,
-        offset: f64,
-    ) {
-        self.push(disk, velocity, offset);
+    pub(in crate::simulation) fn kick(&mut self, disk: usize, change: &Body, offset: f64) {
+        self.push(disk, change.velocity, offset);
         let spin = &mut self.spins[disk];
-        spin.angular_velocity += angular_velocity;
-        spin.angle -= angular_velocity * offset;
+        spin.angular_velocity += change.angular_velocity;
+        spin.angle -= change.angular_velocity * offset;
         spin.last_collision = offset;
     }
 

@@ -109,7 +109,7 @@ impl Stroke {
         &self,
         [start, displacement, velocity]: [f64; 3],
     ) -> Result<Self, ParameterError> {
-        let piston = self.piston.starting_at(displacement, velocity)?;
+        let piston = self.piston.with_start(displacement, velocity)?;
         accept(start.is_finite(), "phase of the last blow", "finite", start)?;
         let (displacement, velocity) = (piston.displacement, piston.velocity);
         Ok(Self::new(self.piston, self.origin, start, displacement, velocity))

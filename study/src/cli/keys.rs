@@ -7,7 +7,7 @@ pub(super) const OF_PLANS: [(&str, &str); 12] = [
     ("seed", "Seed of all random numbers, a whole number: the same plan gives the same bytes. Required."),
     (
         "repeats",
-        "Number of times that each point is done, each with another seed. 1 if not given; three tell errors.",
+        "Number of times that each point is done, each with another seed. 1 if not given. Eight give a mean an error that can be trusted; fewer do if all together have 120 independent samples: see not_converged in points.csv.",
     ),
     (
         "protocol.settle",

@@ -121,7 +121,7 @@ pub(super) fn begun<E: Experiment>(
         tell(&format!("{} has another gravity; the run takes the gravity of the plan", path.display()));
     }
     let builder = Simulation::builder(rule, boundary).gravity(experiment.gravity());
-    let builder = builder.start_time(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
+    let builder = builder.starting_at(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
     Ok(builder.disks(state.into_disks()).build()?)
 }
 

@@ -16,7 +16,7 @@ const NOTES: [(&str, &str); 4] = [
 
 /// Examples of sections that a plan may have, for a plan that lacks them.
 const EXAMPLES: [(&str, &str); 3] = [
-    ("repeats", "repeats = 3   (before [experiment])"),
+    ("repeats", "repeats = 8   (before [experiment])"),
     ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),
     ("[[sweep]]", "[[sweep]]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]"),
 ];

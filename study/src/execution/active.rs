@@ -286,7 +286,7 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     /// Returns the limits of a piece of the value.
-    fn limits(&self, end: f64, slice: Duration) -> Limits {
+    fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
         let limits = Limits::until(end).with_wall_clock(slice);
         let Some(most) = self.value.plan.protocol().most_collisions() else { return limits };
         let done = self.run.counters().since(&self.work.counters).collisions();
@@ -338,7 +338,7 @@ impl<E: Experiment> Active<'_, E> {
             Early::Limited(reason) => Outcome::Limited { time, reason },
             Early::Run(error @ RunError::Stalled { .. }) => Outcome::Stalled { time, reason: chain(&error) },
             Early::Run(error) => Outcome::Failed { time, reason: chain(&error) },
-            Early::Prepare(error) => Outcome::Failed { time, reason: chain(error.as_ref()) },
+            Early::Prepare(error) => Outcome::Failed { time, reason: chain(&error) },
         };
         let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
         self.into_record(outcome, start, state)

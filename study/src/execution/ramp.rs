@@ -216,7 +216,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.has_partial = true;
         let folder = &self.session.study.folder;
         let path = folder.partial(self.ramp, self.seen.len());
-        let partial = active.partial().map_err(|source| StudyError::Encode { path: path.clone(), source })?;
+        let partial = active
+            .partial()
+            .map_err(|source| StudyError::Encode { path: path.clone(), source: source.into() })?;
         folder.make_room_for_unfinished()?;
         whole::write_sealed::<Partial<E>>(&path, &partial)
     }

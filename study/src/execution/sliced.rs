@@ -30,7 +30,7 @@ impl Riders {
 /// however many slices there are, and so does the companion, of which each process has one.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
-    limits: &Limits,
+    limits: &Limits<'_>,
     riders: &mut Riders,
     observer: &mut O,
     is_under_way: &mut bool,
@@ -52,7 +52,7 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
 
 fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
     simulation: &mut Simulation<R, B>,
-    limits: &Limits,
+    limits: &Limits<'_>,
     driving: Option<&mut (dyn SavedDriving + 'static)>,
     observer: &mut O,
 ) -> Result<RunEnd, RunError> {

@@ -31,11 +31,11 @@ pub trait SavedDriving: Driving + Send {
 
 impl<D: Driving + Serialize + DeserializeOwned + Send> SavedDriving for D {
     fn save(&self) -> Result<Vec<u8>, ExperimentError> {
-        Ok(postcard::to_stdvec(self)?)
+        postcard::to_stdvec(self).map_err(ExperimentError::new)
     }
 
     fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError> {
-        *self = postcard::from_bytes(bytes)?;
+        *self = postcard::from_bytes(bytes).map_err(ExperimentError::new)?;
         Ok(())
     }
 }

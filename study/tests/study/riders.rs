@@ -116,7 +116,7 @@ impl Experiment for Silo {
     fn boundary(&self) -> Result<Vessel, ExperimentError> {
         let half = 0.5 * self.outlet;
         let plate = |from, to| Part::polyline([DVec2::new(from, 2.0), DVec2::new(to, 2.0)]);
-        let vessel = Vessel::new(Container::open(10.0)?.with_absorbing(Wall::Floor)?);
+        let vessel = Vessel::new(Container::open(10.0)?.absorbing(Wall::Floor)?);
         Ok(vessel
             .with("left plate", plate(0.0, 5.0 - half)?)?
             .with("right plate", plate(5.0 + half, 10.0)?)?)

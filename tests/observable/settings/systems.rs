@@ -167,7 +167,7 @@ fn of_two_kinds() -> Result<Run, Failure> {
 }
 
 fn coming_and_going() -> Result<Run, Failure> {
-    let mut run = gas(closed()?.with_absorbing(Wall::Floor)?, 0.1)?;
+    let mut run = gas(closed()?.absorbing(Wall::Floor)?, 0.1)?;
     let model = Disk::new(DVec2::ZERO, 0.4)?.with_velocity(DVec2::new(0.4, -0.8))?.with_kind(OTHER);
     run.add_inlet(Inlet::new(points([(1.0, 6.5), (9.0, 7.5)]), [model], every(0.8), 5)?)?;
     Ok(run)
@@ -257,7 +257,7 @@ fn walls_that_move() -> Vec<Setting> {
             bulk: rectangle(1.75, 1.75, 8.25, 4.0),
             walls_move: true,
             ..Setting::new("piston", || {
-                let lid = Piston::new(20.0, 0.0, 2.0)?.with_force(2.0)?.starting_at(0.5, 0.0)?;
+                let lid = Piston::new(20.0, [0.0, 2.0])?.with_force(2.0)?.with_start(0.5, 0.0)?;
                 gas(closed()?.with_piston(Wall::Lid, lid)?, 0.1)
             })
         },

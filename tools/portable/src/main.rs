@@ -91,7 +91,7 @@ fn run(
         .disks(disks(&container()?)?)
         .gravity(gravity)
         .seed(3)
-        .start_time(start)
+        .starting_at(start)
         .scheduler(TournamentTree::new())
         .build()?;
     first.run_until(start + 0.5 * duration, &mut ())?;

@@ -1,0 +1,92 @@
+//! Sinks that no disk can reach, because walls hold its center off.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::Simulation;
+use crate::boundary::{Boundary, FirstTouch, Probe, Response};
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+use crate::{Flight, Kind};
+
+/// Distance from a wall at which a flight to it starts, in radii.
+const AWAY: f64 = 1.5;
+
+/// Speed of such a flight, relative to the speed of a typical disk: walls hardly move meanwhile.
+const FAST: f64 = 1e3;
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Returns the first sink that no disk can touch now, as its walls lie in or beside others.
+    ///
+    /// The smallest disk of each kind flies from both sides to places all along the walls.
+    #[cold]
+    pub(super) fn closed_sink(&self) -> Option<usize> {
+        let now = self.clock.now;
+        let is_sink = |wall: usize| {
+            let place = self.boundary.wall_point(wall, now).unwrap_or_default();
+            matches!(self.boundary.surface(wall, place, now).response, Response::Absorbing)
+        };
+        let mut sinks: Vec<usize> = (0..self.wall_count).filter(|&wall| is_sink(wall)).collect();
+        for (kind, radius) in self.smallest_disks() {
+            for (place, across) in self.places_at_walls(radius) {
+                if sinks.is_empty() {
+                    return None;
+                }
+                let ahead = [across, -across].map(|side| self.wall_ahead(place, side, radius, kind));
+                // Other bricks of the same part need not be reached.
+                let names = ahead.map(|wall| wall.map(|wall| self.boundary.wall_name(wall)));
+                sinks.retain(|&sink| !names.contains(&Some(self.boundary.wall_name(sink))));
+            }
+        }
+        sinks.first().copied()
+    }
+
+    fn smallest_disks(&self) -> BTreeMap<Kind, f64> {
+        let mut smallest = BTreeMap::new();
+        let probes = (0..self.len()).map(|disk| self.probe(disk));
+        let models = self.inlets.iter().flat_map(|inlet| inlet.models().iter());
+        for probe in probes.chain(models.map(|model| Probe::of(model, 0.0))) {
+            let radius = smallest.entry(probe.kind()).or_insert(probe.radius());
+            *radius = probe.radius().min(*radius);
+        }
+        smallest
+    }
+
+    /// Returns places on all walls and on the edges of the domain, a diameter apart at most, each with a unit
+    /// vector across.
+    fn places_at_walls(&self, radius: f64) -> impl Iterator<Item = (DVec2, DVec2)> {
+        let inside = self.boundary.interior();
+        let top = inside.top.min(inside.bottom + inside.width());
+        let [low, high] = [DVec2::new(inside.left, inside.bottom), DVec2::new(inside.right, top)];
+        let edges = vec![low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y), low];
+        let lines = self.boundary.wall_lines(self.clock.now).into_iter().chain([edges]);
+        let pieces =
+            lines.flat_map(|line| line.windows(2).map(|ends| [ends[0], ends[1]]).collect::<Vec<_>>());
+        pieces.flat_map(move |[from, to]| {
+            let (way, across) = (to - from, (to - from).perp().normalize_or_zero());
+            let count = (way.length() / (2.0 * radius)).ceil();
+            (0..count as u32).map(move |step| (from + (f64::from(step) + 0.5) / count * way, across))
+        })
+    }
+
+    /// Returns the wall that a disk touches first when it flies from `side` across this place.
+    fn wall_ahead(&self, place: DVec2, side: DVec2, radius: f64, kind: Kind) -> Option<usize> {
+        let (domain, inside, now) = (self.boundary.domain(), self.boundary.interior(), self.clock.now);
+        let start = domain.wrapped(place + AWAY * radius * side);
+        let probe = Probe::new(start, radius, now).with_kind(kind);
+        if !domain.contains(start, 0.0) || self.boundary.overlap(&probe).is_some() {
+            return None;
+        }
+        // Moving walls of a container may be behind the edges of its interior.
+        let reach =
+            (inside.bottom - domain.bottom).max(inside.left - domain.left).max(domain.right - inside.right);
+        let speed = FAST * self.bodies.typical_diameter / self.clock.epoch_length;
+        let until = now + (2.0 * AWAY * radius + reach) / speed;
+        let flight = Flight::new(now, start, -speed * side, DVec2::ZERO, radius).with_kind(kind);
+        match self.boundary.first_touch(&flight, until) {
+            FirstTouch::At(touch) => Some(touch.wall),
+            FirstTouch::NotBefore(_) => None,
+        }
+    }
+}
