@@ -83,6 +83,12 @@ pub enum Warning {
         /// Number of collisions, with disks or walls.
         collisions: u64,
     },
+    /// Gravity points upwards, and the boundary is open there: disks that fall out never come back, and the run
+    /// becomes slower and slower.
+    EndlessFall {
+        /// Upward component of gravity.
+        upwards: f64,
+    },
     /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in:
     /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds out.
     EnergyGained {
@@ -135,6 +141,12 @@ impl fmt::Display for Warning {
                 formatter,
                 "after {collisions} collisions all disks still move along one axis only: they started in line; give \
                  them small velocities in all directions"
+            ),
+            Self::EndlessFall { upwards } => write!(
+                formatter,
+                "gravity points upwards by {} where there is no lid: disks fall for ever, and each step of the clock takes \
+                 more events; a lid or another gravity is needed",
+                Rounded(*upwards)
             ),
             Self::EnergyGained { before, now } => write!(
                 formatter,
@@ -199,6 +211,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         warnings.extend(crowded.map(|(inlet, waiting)| Warning::DisksWait { inlet, waiting }));
         warnings.extend(self.long_contact_duration());
         warnings.extend(self.one_direction());
+        warnings.extend(self.endless_fall());
         warnings.extend(self.energy_gained());
         warnings.extend(self.closed_sink_so_far());
         warnings
@@ -228,6 +241,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let DVec2 { x, y } = speeds.fold(DVec2::ZERO, DVec2::max);
         let is_one = collisions >= FEWEST && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })
+    }
+
+    fn endless_fall(&self) -> Option<Warning> {
+        let upwards = self.gravity().acceleration().y;
+        (upwards > 0.0 && self.boundary.domain().top.is_infinite())
+            .then_some(Warning::EndlessFall { upwards })
     }
 
     fn closed_sink_so_far(&self) -> Option<Warning> {

@@ -25,6 +25,24 @@ fn gas(container: &Container) -> Outcome<Vec<Disk>> {
     Ok(initial::with_maxwellian_velocities(initial::lattice(container, 100, 0.5)?, 1.0, 1)?)
 }
 
+/// Disks that fall out of an open box never come back.
+#[test]
+fn gravity_upwards_without_a_lid_is_a_warning() -> Outcome {
+    let warned = |container: Container, gravity: f64| -> Outcome<Vec<Warning>> {
+        let run = Simulation::builder(Elastic, container.clone())
+            .disks(gas(&container)?)
+            .gravity(gravity)
+            .build()?;
+        Ok(run.warnings())
+    };
+    let open = warned(Container::open(20.0)?, -1.0)?;
+    assert_eq!(open, [Warning::EndlessFall { upwards: 1.0 }]);
+    assert!(open[0].to_string().contains("a lid or another gravity"), "{}", open[0]);
+    assert_eq!(warned(Container::open(20.0)?, 1.0)?, []);
+    assert_eq!(warned(Container::closed(20.0, 20.0)?, -1.0)?, []);
+    Ok(())
+}
+
 /// A square lattice at rest over a shaken floor hops in columns for ever; the least motion aside mends it.
 #[test]
 fn columns_that_hop_in_line_are_a_warning() -> Outcome {
