@@ -30,6 +30,7 @@ mod replays;
 mod rest;
 #[cfg(feature = "serde")]
 mod resuming;
+mod rotor;
 #[path = "../support/schedulers.rs"]
 mod schedulers;
 #[cfg(feature = "serde")]

@@ -187,9 +187,9 @@ impl Promises {
 ///
 /// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
 /// convex and hollow walls, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
-/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. Each kind has an
-/// ordinary contact with its like, with the default kind and with a wall. The page
-/// "Validation" tells which planted faults the check finds.
+/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. Each kind
+/// has an ordinary contact with its like, with the default kind and with a wall. The page "Validation" says
+/// which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken, at the simplest contact at which the same promise is still broken.
