@@ -83,8 +83,8 @@ pub enum Warning {
         /// Number of collisions, with disks or walls.
         collisions: u64,
     },
-    /// Gravity points upwards, and the boundary is open there: disks that fall out never come back, and the run
-    /// becomes slower and slower.
+    /// Gravity points upwards, and the boundary is open there: disks that fall out never come back, and the
+    /// run becomes slower and slower.
     EndlessFall {
         /// Upward component of gravity.
         upwards: f64,
@@ -97,8 +97,8 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk can get to a sink, and none has been taken out: walls are in its way, such as those nearer than
-    /// a radius to a line for centers. A gate that opens later is a harmless cause.
+    /// No disk can get to a sink, and none has been taken out: walls are in its way, such as those nearer
+    /// than a radius to a line for centers. A gate that opens later is a harmless cause.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,

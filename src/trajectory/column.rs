@@ -53,7 +53,7 @@ const NAMES: [(Quantity, &str); 17] = {
         (Q::Mass, "mass masses m"),
         (Q::Density, "density densities"),
         (Q::InertiaFactor, "inertiafactor"),
-        (Q::Image, "image images periodicimage i"),
+        (Q::Image, "image images periodicimage mapshift i"),
     ]
 };
 

@@ -31,7 +31,7 @@ use crate::quantity::non_negative;
 /// | angle | `angle`; `orientation`, as an angle or a quaternion x, y, z, w |
 /// | angular velocity | `angular_velocity`, `omega`, `omegaz`, `wz`; of three components the third |
 /// | id | `id`, `identifier` |
-/// | kind | `kind`; `type`, in LAMMPS from 1 on; `species`, `element`, `name`: a number, or by first appearance |
+/// | kind | `kind`; `type`, in LAMMPS from 1 on; `species`, `element`, `name`: numbers, or by first appearance |
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///
@@ -51,7 +51,8 @@ use crate::quantity::non_negative;
 /// assert!(error.to_string().starts_with("line 11: the disk overlaps the disk of line 10 by 0.0625"));
 ///
 /// let state = Reader::new().with_shrunk_radii().read_from(dump.as_bytes())?;
-/// assert_eq!(state.notes(), ["ignored columns: fx", "all radii are shrunk by the deepest overlap, a share of 0.0625"]);
+/// let shrunk = "all radii are shrunk by the deepest overlap, a share of 0.0625";
+/// assert_eq!(state.notes(), ["ignored columns: fx", shrunk]);
 /// let run = Simulation::builder(Elastic, Container::closed(9.0, 9.0)?).disks(state.into_disks()).build()?;
 /// assert_eq!((run.disks()[0].velocity().x, run.disks()[0].radius()), (3.0, 0.46875));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -55,8 +55,8 @@ pub struct Piston {
 }
 
 impl Piston {
-    /// Creates a wall of this mass between a lower and an upper stop, given as displacements along its normal,
-    /// at rest at displacement 0 or the stop next to it, without forces.
+    /// Creates a wall of this mass between a lower and an upper stop, given as displacements along its
+    /// normal, at rest at displacement 0 or the stop next to it, without forces.
     ///
     /// # Errors
     /// If the mass is not finite and positive, or the stops are not finite and in order.

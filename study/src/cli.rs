@@ -63,8 +63,8 @@ use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
 
-/// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status` has
-/// all.
+/// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status`
+/// has all.
 const LISTED: usize = 8;
 
 /// The way in which a command ended, with its exit code.

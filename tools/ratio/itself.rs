@@ -1,5 +1,5 @@
-//! The programs that are compared, each in a process of its own: this one, built once for any processor of its
-//! kind and once for the one at hand, and the plain simulation.
+//! The programs that are compared, each in a process of its own: this one, built once for any processor of
+//! its kind and once for the one at hand, and the plain simulation.
 
 use std::path::PathBuf;
 use std::process::Command;

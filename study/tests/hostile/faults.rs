@@ -104,8 +104,8 @@ impl Disk {
     }
 
     fn remount(&self, options: &str) {
-        // A test beside this one may be starting a program: until that has begun, it holds a copy of every file
-        // that was open here, and a disk with files open for writing cannot become read-only.
+        // A test beside this one may be starting a program: until that has begun, it holds a copy of every
+        // file that was open here, and a disk with files open for writing cannot become read-only.
         let remounted = (0..500).any(|_| {
             let done = mount(&["-o", &format!("remount,{options}")], self.folder());
             if !done {

@@ -44,7 +44,7 @@ fn main() -> anyhow::Result<()> {
             let handle = { let (stop, progress) = (stop.clone(), progress.clone()); std::thread::spawn(move || -> Result<_, anyhow::Error> {
                 let mut s = sim()?;
                 let mut tick = granular_edmd::observable::on_sample(SampleTimes::every(1.0)?, |snap: &Snapshot<'_>| { *progress.lock().unwrap() = snap.time(); let _ = tx.send(snap.time()); });
-                let end = s.run(&Limits::until(1e9).with_interrupt(stop), &mut tick)?;
+                let end = s.run(&Limits::until(1e9).with_interrupt(&stop), &mut tick)?;
                 Ok((end, s.time()))
             }) };
             for _ in 0..50 { rx.recv()?; }
