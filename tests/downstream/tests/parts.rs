@@ -31,7 +31,7 @@ fn disks() -> Outcome<Vec<Disk>> {
 #[test]
 fn a_membrane_holds_the_large_disks() -> Outcome {
     let mut run = Simulation::builder(Elastic, cell()?).disks(disks()?).build()?;
-    let line = || Crossings::new([DVec2::new(10.0, 0.0), DVec2::new(10.0, 15.0)], SampleTimes::every(50.0)?);
+    let line = || Crossings::new([DVec2::new(10.0, 15.0), DVec2::new(10.0, 0.0)], SampleTimes::every(50.0)?);
     let mut crossings = (OfKind::new(Kind::default(), line()?), OfKind::new(LARGE, line()?));
     run.run_until(500.0, &mut crossings)?;
     let sum = |counts: &[u64]| counts.iter().sum::<u64>();
