@@ -314,7 +314,7 @@ fn a_plan_may_come_from_standard_input() {
     let output = scratch.command(&["check", "-"]).stdin(plan).output().unwrap();
     let said = said(&output);
     assert_eq!(code(&output), Some(0));
-    assert!(said.starts_with("4 ramps of 1 value of 20 cycles, 2 repeats among them\n  0: "), "{said}");
+    assert!(said.starts_with("4 ramps of 1 value of 20 cycles, 2 repeats among them\n  0 to 1: "), "{said}");
 }
 
 #[test]

@@ -45,9 +45,10 @@ pub(super) fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
     if plan.varied().next().is_none() {
         return Ok(End::Done);
     }
-    (0..ramps.min(LISTED)).try_for_each(|ramp| say(&values_of(&plan, ramp)))?;
-    if ramps > LISTED {
-        say(&format!("and {} more", ramps - LISTED))?;
+    let points = plan.point_count();
+    (0..points.min(LISTED)).try_for_each(|point| say(&values_of(&plan, point)))?;
+    if points > LISTED {
+        say(&format!("and {} more", counted(ramps - LISTED * plan.repeats(), "ramp")))?;
     }
     Ok(End::Done)
 }
@@ -56,8 +57,9 @@ fn counted(count: usize, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Returns a line with the values of all parameters that differ in or among the ramps.
-fn values_of<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
+/// Returns a line with the values of all parameters that differ in or among the ramps, for all repeats.
+fn values_of<E: Experiment>(plan: &Plan<E>, point: usize) -> String {
+    let ramp = point * plan.repeats();
     let changing = plan.ramp().map(Ramp::parameter);
     let fixed = plan.parameters(ramp, 0).into_iter().filter(|(name, _)| Some(*name) != changing);
     let mut parts: Vec<String> = fixed.map(|(name, value)| format!("{name} = {value}")).collect();
@@ -68,7 +70,11 @@ fn values_of<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
         }
         parts.push(format!("{} = {}", ramp.parameter(), values.join(", ")));
     }
-    format!("  {ramp}: {}", parts.join("; "))
+    let repeats = match plan.repeats() {
+        1 => ramp.to_string(),
+        repeats => format!("{ramp} to {}", ramp + repeats - 1),
+    };
+    format!("  {repeats}: {}", parts.join("; "))
 }
 
 pub(super) fn completions(shell: &str) -> Result<End, Failure> {
