@@ -210,7 +210,8 @@ impl Experiment for VibratedBox {
             None => Container::open(self.width)?,
         };
         if let Some(rule) = self.wall_rule(self.wall_inelasticity, None)? {
-            for wall in [Wall::Left, Wall::Right].into_iter().chain(self.height.map(|_| Wall::Lid)) {
+            let sides = [Wall::Left, Wall::Right].into_iter().filter(|_| self.sides != Sides::Periodic);
+            for wall in sides.chain(self.height.map(|_| Wall::Lid)) {
                 container = container.with_rule(wall, rule)?;
             }
         }

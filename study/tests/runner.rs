@@ -104,7 +104,9 @@ fn keys_and_columns_are_explained() {
     let friction = "friction: Coulomb's coefficient, at least 0: static, and dynamic unless that is given. 0 if not given.\n";
     assert_eq!(said(&scratch.runs(&["explain", "experiment.friction"])), friction);
     let unknown = scratch.runs(&["explain", "frction"]);
-    assert_eq!(code(&unknown), Some(1));
+    assert_eq!(code(&unknown), Some(2));
+    let amplitude = said(&scratch.runs(&["explain", "amplitude"]));
+    assert_eq!(amplitude.matches(".amplitude: Amplitude").count(), 2, "{amplitude}");
     assert!(said(&unknown).contains("there is no key `frction`; the nearest is `friction`"));
 }
 
@@ -752,4 +754,27 @@ fn a_trajectory_is_what_its_name_says() {
         "{}",
         said(&start)
     );
+}
+
+/// What the format written has no place for is told, each by its name.
+#[test]
+fn a_conversion_tells_what_it_loses() {
+    let scratch = Scratch::new("loses");
+    fs::write(scratch.0.join("in.csv"), "x,y,radius,angle,inertia_factor\n1.1,1,0.5,100.5,0.4\n").unwrap();
+    let told = |out: &str| said(&scratch.runs(&["convert", "in.csv", out]));
+    assert!(told("a.data").contains("has no place for the inertia factors, angles of the file"));
+    assert!(told("a.dump").contains("has no place for the inertia factors of the file"));
+    let gsd = told("a.gsd");
+    assert!(gsd.contains("whole turns of angles, digits beyond single precision"), "{gsd}");
+    assert!(!told("a.xyz").contains("no place"));
+}
+
+/// Without sides, a rule of the walls is for the others.
+#[test]
+fn walls_may_differ_between_periodic_sides() {
+    let scratch = Scratch::new("sides");
+    let plan = SMALL.replace("disks = ", "sides = \"periodic\"\nwall_inelasticity = 0.1\ndisks = ");
+    fs::write(scratch.0.join("plan.toml"), plan).unwrap();
+    let checked = scratch.runs(&["check", "plan.toml"]);
+    assert_eq!(code(&checked), Some(0), "{}", said(&checked));
 }

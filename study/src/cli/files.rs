@@ -1,9 +1,11 @@
 //! Files of disks that commands write, by the endings of their names.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
+use granular_edmd::Disk;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump, Recorder, State};
 
@@ -92,6 +94,14 @@ impl Ending {
     /// Returns the names of what the state has and the format has no place for.
     pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
         let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
+        let any = |has: fn(&Disk) -> bool| state.disks().iter().any(has);
+        let is_lammps = matches!(self, Self::Dump | Self::Data);
+        let is_single = |number: f64| f64::from(number as f32) == number;
+        let has_digits = state.disks().iter().any(|disk| {
+            let (position, velocity) = (disk.position(), disk.velocity());
+            let numbers = [position.x, position.y, velocity.x, velocity.y, disk.radius(), disk.mass()];
+            !numbers.into_iter().all(is_single)
+        });
         let keeps_time = self != Self::Csv;
         let keeps_gravity = matches!(self, Self::Xyz | Self::Gsd);
         let parts = [
@@ -99,6 +109,10 @@ impl Ending {
             (!keeps_time && state.time().is_some(), "time"),
             (!keeps_gravity && has_gravity, "gravity"),
             (!state.kind_names().is_empty(), "names of kinds"),
+            (is_lammps && any(|disk| disk.inertia_factor() != 0.5), "inertia factors"),
+            (self == Self::Data && any(|disk| disk.angle() != 0.0), "angles"),
+            (self == Self::Gsd && any(|disk| disk.angle().abs() > PI), "whole turns of angles"),
+            (self == Self::Gsd && has_digits, "digits beyond single precision"),
         ];
         parts.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, name)| name).collect()
     }

@@ -29,7 +29,7 @@ pub(super) fn new<E: Experiment>(
 }
 
 pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
-    say(&keys::explained::<E>(key)?)?;
+    say(&keys::explained::<E>(key).map_err(PlanError::Toml)?)?;
     Ok(End::Done)
 }
 

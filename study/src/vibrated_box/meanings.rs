@@ -1,8 +1,8 @@
 //! The meanings of the parameters of the box and of the columns of its tables.
 
 pub(super) const MEANINGS: [(&str, &str); 38] = [
-    ("disks", "Number of disks, at least 1. Their diameter and their mass are the units."),
-    ("width", "Width of the box, in diameters."),
+    ("disks", "Number of disks, from 1 to 2^24. Their diameter and their mass are the units. Required."),
+    ("width", "Width of the box, in diameters. Required."),
     ("height", "Height of the lid, in diameters. Without a value, the box is open."),
     (
         "gravity",
@@ -12,7 +12,10 @@ pub(super) const MEANINGS: [(&str, &str); 38] = [
         "inelasticity",
         "q = (1 - r) / 2 of the restitution r, from 0 (elastic) to 0.5: normal, and tangential unless that is given. 0 if not given.",
     ),
-    ("tangential_inelasticity", "Tangential inelasticity, from 0 to 0.5. That of the normal if not given."),
+    (
+        "tangential_inelasticity",
+        "Tangential inelasticity, from 0 (sticking reverses the slip) over 0.5 (stops it) to 1 (does nothing). The normal one if not given.",
+    ),
     (
         "friction",
         "Coulomb's coefficient, at least 0: static, and dynamic unless that is given. 0 if not given.",
@@ -25,12 +28,12 @@ pub(super) const MEANINGS: [(&str, &str); 38] = [
     ("base_inelasticity", "Inelasticity of the base alone. The walls' if not given."),
     (
         "base_tangential_inelasticity",
-        "Tangential inelasticity of the base alone. Its normal one if not given.",
+        "Tangential inelasticity of the base alone, from 0 to 1. If not given, the same as `base_inelasticity`, or else `wall_inelasticity`; without these, as the disks.",
     ),
     ("wall_friction", "Friction of the walls, static and dynamic. The disks' if not given."),
     (
         "contact_duration",
-        "Time after a collision in which the next one of a disk loses nothing, which prevents inelastic collapse. None if not given.",
+        "Time after a collision in which the next one of a disk loses nothing, which prevents inelastic collapse; above 0. None if not given.",
     ),
     ("initial_temperature", "Temperature of the velocities at the start. 1 if not given."),
     (
@@ -39,7 +42,7 @@ pub(super) const MEANINGS: [(&str, &str); 38] = [
     ),
     (
         "base.bi_parabolic.amplitude",
-        "Amplitude of the paper's base, whose motion is made of parabolas, in diameters.",
+        "Amplitude of the paper's base, whose motion is made of parabolas, in diameters. A box needs one kind of base: bi_parabolic, sinusoidal or thermal.",
     ),
     ("base.bi_parabolic.angular_frequency", "Angular frequency of the base: a period is 2 pi divided by it."),
     ("base.sinusoidal.amplitude", "Amplitude of a base that moves as a sine, in diameters."),
