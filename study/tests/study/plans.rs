@@ -206,6 +206,21 @@ fn a_value_that_was_not_tried_is_refused_in_its_turn() -> Result<(), AnyError> {
 }
 
 /// No measured column has the name of a parameter, so each parameter can vary.
+/// Only the values that are run are checked, not the parameters that a ramp replaces.
+#[test]
+fn parameters_that_a_ramp_replaces_are_not_checked() -> Result<(), AnyError> {
+    let plan = Plan::new(small_box(), Protocol::new(0, 1, 1)?, 1)?;
+    let ramp = plan.with_ramp(Ramp::new("friction", [0.1, 0.2], Course::Up)?)?.to_toml()?;
+    let text = ramp.replacen("[experiment]", "[experiment]\ndynamic_friction = 0.05", 1);
+    Plan::<VibratedBox>::from_toml(&text)?;
+    let error = report(&Plan::<VibratedBox>::from_toml(&text.replace("0.05", "0.15")).unwrap_err());
+    assert!(
+        error.contains("friction = 0.1: dynamic friction must be at most the static friction"),
+        "{error}"
+    );
+    Ok(())
+}
+
 /// Disks that fall upwards would never come back.
 #[test]
 fn gravity_upwards_needs_a_lid() -> Result<(), AnyError> {
