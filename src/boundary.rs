@@ -249,8 +249,8 @@ pub trait Boundary {
     /// Returns a point of a wall at `time`, which moves with the wall; `None` if the boundary does not know
     /// one.
     ///
-    /// If other walls are set between two runs, the engine tells from this point whether a wall of the same
-    /// name has jumped. It is `None` unless implemented.
+    /// If other walls are set between two runs, the engine finds out from this point whether a wall of the
+    /// same name has jumped. The default is `None`.
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None

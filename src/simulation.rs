@@ -169,7 +169,7 @@ const _: () = {
 /// Buffers that are used again and again.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
-    /// The neighbors of one disk, or of both that collide.
+    /// Buffers for the neighbors of one disk, or of both disks of a collision.
     found: [Vec<u32>; 2],
     /// The times of all disks.
     due: Vec<f64>,

@@ -16,11 +16,10 @@ const TOLERANCE: f64 = 1e-12;
 /// Largest number of times that a piece is halved. A jump at an unknown height is then lost in rounding.
 const MOST_HALVINGS: u32 = 44;
 
-/// Number of places between two crossings at which a line is examined if there may be curves that are not
-/// known.
+/// Number of points between two crossings at which a line is examined if some curves may be unknown.
 pub(super) const LOOKS: u32 = 16;
 
-/// Distance of the first and the last of these places from the ends, relative to the interval.
+/// Distance of the first and the last of these points from the ends of the interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
 
 /// Nodes and weights of Gauss and Legendre's rule of ten points on [-1, 1]: the positive half.
@@ -32,7 +31,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// A curve at which the freedom of a center may change.
+/// A curve that may separate free positions of a center from occupied ones.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Curve {
     Line(DVec2, DVec2),
@@ -40,7 +39,7 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// Returns the same curve with its points moved.
+    /// Returns the same curve with its points mapped by `to`.
     pub(super) fn moved(self, to: impl Fn(DVec2) -> DVec2) -> Self {
         match self {
             Self::Line(from, end) => Self::Line(to(from), to(end)),
@@ -179,7 +178,7 @@ impl Field<'_> {
         self.refined(low, high, &curves, whole, MOST_HALVINGS)
     }
 
-    /// Returns the area between two heights, of which `whole` is a first estimate.
+    /// Returns the free area between two heights. `whole` is a first estimate of it.
     fn refined(&self, low: f64, high: f64, curves: &[Curve], whole: f64, halvings: u32) -> f64 {
         let middle = low + 0.5 * (high - low);
         let halves = [(low, middle), (middle, high)].map(|(low, high)| self.quadrature(low, high, curves));

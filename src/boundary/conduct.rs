@@ -20,7 +20,7 @@ pub(super) enum Conduct {
     Thermal(Thermal),
     /// Removes disks at their first touch.
     Absorbing,
-    /// Removes disks when their centers arrive.
+    /// Removes disks when their centers reach the wall.
     AbsorbingCenters,
 }
 

@@ -24,7 +24,7 @@ use area::check_areas;
 use flight::check_flights;
 use trial::{PART, Trial};
 
-/// Number of disks that are sent on flights.
+/// Number of disks that the check lets fly.
 const DISKS: usize = 400;
 
 /// Number of flights of each disk, from touch to touch.
@@ -96,7 +96,7 @@ pub fn check<B: Boundary + ?Sized>(
         let (origin, flight) = random.flight(&mut trial)?;
         trial.begin(origin)?;
         check_flights(&mut trial, flight, FLIGHTS)?;
-        // Each time, the disk is of another size.
+        // Each of these disks has another size.
         if number % 83 == 4 {
             check_areas(&trial, flight.time(), &mut random)?;
         }

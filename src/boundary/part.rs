@@ -216,7 +216,7 @@ impl Part {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
 
-    /// Returns a rectangle around the part as it was built. Its edges may be infinite.
+    /// Returns a rectangle around the part in its original position. Its edges may be infinite.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
         enclosing(self.all_bricks().map(Brick::bounds))
     }
@@ -249,7 +249,7 @@ impl Part {
     }
 }
 
-/// Returns the rectangle around some rectangles.
+/// Returns the smallest rectangle around all of these rectangles.
 pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     rectangles.fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))

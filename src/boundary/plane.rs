@@ -185,7 +185,7 @@ impl Plane {
         (low < high).then(|| (displacement * self.normal + DVec2::ZERO, phase))
     }
 
-    /// Returns whether a disk is so near that it may overlap the wall at some phase of the motion.
+    /// Returns whether a disk is near enough to overlap the wall at some phase of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
         position.dot(self.normal) - self.place - radius <= self.highest

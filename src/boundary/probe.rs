@@ -111,7 +111,7 @@ impl<T> Overlap<T> {
         Self { with, depth }
     }
 
-    /// Returns the deepest of some overlaps; a depth that is not positive is no overlap.
+    /// Returns the deepest overlap, or `None` if no depth is positive.
     #[inline]
     pub(crate) fn deepest(all: impl Iterator<Item = Self>) -> Option<Self> {
         all.filter(|overlap| overlap.depth > 0.0).max_by(|one, other| one.depth.total_cmp(&other.depth))

@@ -223,8 +223,8 @@ impl Vessel {
     /// Replaces the part of this name, and returns the old one.
     ///
     /// # Errors
-    /// If there is no part of this name, and the same as for [`put`](Self::put). The vessel then stays as it
-    /// was.
+    /// If there is no part of this name, or for the reasons of [`put`](Self::put). The vessel then stays
+    /// unchanged.
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
         let place = self.place_of(name)?;
         let placed = Placed::new(name.to_owned(), part);

@@ -38,7 +38,7 @@ impl fmt::Display for Wall {
     }
 }
 
-/// An error: a wall cannot be changed in this way.
+/// The error of a change that a wall does not allow.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -67,7 +67,7 @@ pub enum WallError {
     Motion {
         /// The wall.
         wall: Wall,
-        /// The answer of the motion.
+        /// The violation of the contract of motions.
         violation: Violation,
     },
     /// The motion jumps back, and the wall on the other side would jump into the disks.

@@ -88,7 +88,7 @@ impl<M: Medium> Growing<M> {
 mod tests {
     use super::*;
 
-    /// A drive with room for this many bytes.
+    /// A drive with room for a limited number of bytes.
     struct Small {
         bytes: Vec<u8>,
         room: usize,

@@ -17,7 +17,7 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Takes the lock of a file, unless somebody has it.
+    /// Locks a file that nobody else has locked.
     ///
     /// # Errors
     /// If somebody has the lock, or the file system has no locks.
@@ -26,8 +26,8 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Takes the lock of a file, unless somebody has it. Goes on without a lock where the system has none,
-    /// and outside Unix, where a lock could keep other programs from reading.
+    /// Locks a file that nobody else has locked. Continues without a lock where the system has no locks, and
+    /// outside Unix, where a lock could keep other programs from reading.
     ///
     /// # Errors
     /// [`WouldBlock`](io::ErrorKind::WouldBlock) if somebody has the lock.

@@ -70,10 +70,10 @@ impl Draft {
         Ok(draft)
     }
 
-    /// Puts the file in its place, where it outlasts a loss of power.
+    /// Renames the finished file to its final name, so that it survives a loss of power.
     ///
     /// # Errors
-    /// If the system cannot write it. An older file of that name is then as it was.
+    /// If the system cannot write the file. An older file of that name then stays unchanged.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         self.file.get_ref().sync_all()?;

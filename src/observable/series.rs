@@ -41,7 +41,7 @@ pub struct Series<Q: Observable> {
     values: Vec<Q::Value>,
     #[cfg_attr(feature = "serde", serde(skip))]
     system: System,
-    /// The reason why this run cannot be added.
+    /// The reason why the samples of this run cannot be added to the series.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }

@@ -137,7 +137,7 @@ impl Mover {
             + self.moment_of_inertia * self.angular_velocity * self.angular_velocity)
     }
 
-    /// Returns what this disk adds to the rates.
+    /// Returns the contribution of this disk to the rates.
     fn rates(&self) -> Moments {
         let Self { velocity, mass, .. } = *self;
         of_tensor(mass * velocity, velocity, self.energy() * velocity)

@@ -20,7 +20,7 @@ pub struct Replayed {
     pub collision: Collision,
 }
 
-/// A run taken collision by collision, each with the ids of its disks.
+/// A run that advances by one collision at a time, and identifies the disks of each collision by their ids.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

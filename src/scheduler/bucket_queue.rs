@@ -112,7 +112,8 @@ impl BucketQueue {
         self.due[entry.disk] == entry.due()
     }
 
-    /// Writes down the time of a disk.
+    /// Adds a disk to the bucket of its time, or to the heap if the bucket is open already. A disk that is
+    /// due after the page is added nowhere.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
         let bucket = self.page.bucket(due);

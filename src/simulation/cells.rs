@@ -212,7 +212,7 @@ impl Cells {
         &self.grid
     }
 
-    /// Returns the number of cells of the smallest class, of those that hold disks, and of their disks.
+    /// Returns three counts for the smallest class: its cells, its occupied cells, and its disks.
     pub(super) fn occupation(&self) -> [usize; 3] {
         let small = (0..self.places.len()).filter(|&disk| !self.is_large(disk));
         let mut taken: Vec<usize> = small.map(|disk| self.grid.index(self.places[disk])).collect();
@@ -228,7 +228,7 @@ impl Cells {
         size_of_val(self.places.as_slice()) + self.contents.bytes() + layers
     }
 
-    /// Writes a disk of any class into its cell, or takes it out of there.
+    /// Writes a disk of any class into its cell, or removes it from the cell.
     fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
             None => self.change_cell(disk, change),
@@ -236,7 +236,8 @@ impl Cells {
         }
     }
 
-    /// Does the same for a disk of the smallest class, also in the ghosts that mirror its cell.
+    /// Writes a disk of the smallest class into its cell and the ghosts that mirror the cell, or removes it
+    /// from them.
     #[inline(always)]
     fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
@@ -321,8 +322,8 @@ impl Cells {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
-        // Where two images cannot be told apart, a disk seen from the last cell may be met at another image
-        // now, so all are taken again.
+        // Where two images of a disk cannot be distinguished, a disk within reach of the last cell may now be
+        // met at another image, so all disks within reach are gathered again.
         layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
     }
 
@@ -333,7 +334,8 @@ impl Cells {
         self.ahead_of(self.places[disk], exit, found)
     }
 
-    /// Does the same for a disk that has yet to leave its cell by `exit`.
+    /// Writes to `found` the same disks as [`Self::ahead`], for a disk that has yet to leave its cell by
+    /// `exit`.
     #[inline]
     pub(super) fn ahead_of_next(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
         self.ahead_of(self.next_place(disk, exit), exit, found)

@@ -103,9 +103,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns the error by which the gap between a disk and its partner may differ from zero.
     ///
-    /// Places are rounded relative to their distance from the origin, and to the way since the epoch. The
-    /// time of a touch is rounded as absolute times are, since some walls know no others. In this time, the
-    /// disk goes on, and so does the wall.
+    /// Positions are rounded relative to their distance from the origin, and to the distance traveled since
+    /// the epoch. The time of a touch is rounded as absolute times are, since some walls know no others. In
+    /// this time, the disk goes on, and so does the wall.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);

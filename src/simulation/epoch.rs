@@ -78,8 +78,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Makes new cells for the present disks, and for one of a `further` diameter, and predicts all events
-    /// anew. Returns whether the domain has room for such cells; if not, everything stays as it was.
+    /// Makes new cells for the present disks and for a disk of the diameter `further`, and predicts all
+    /// events anew. Returns false, and changes nothing, if the domain has no room for such cells.
     pub(super) fn renew_cells(&mut self, size: CellSize, further: Option<f64>) -> bool {
         let (bodies, now) = (&self.bodies, self.clock.now);
         let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.radius(disk)));

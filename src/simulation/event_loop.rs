@@ -170,7 +170,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::WallCollision { disk, wall })
     }
 
-    /// Ends the flights anew that may meet a wall which now moves otherwise. Their partners stay the same.
+    /// Predicts anew the ends of all flights that may meet this wall, whose motion has changed. The predicted
+    /// partners of the disks stay the same.
     #[cold]
     #[inline(never)]
     fn end_flights_that_may_meet(&mut self, wall: usize) {

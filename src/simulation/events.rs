@@ -30,7 +30,7 @@ pub enum RunEnd {
     Time,
     /// An observer stopped the run; see [`Observer::verdict`](crate::observable::Observer::verdict).
     Observer,
-    /// The run had all the collisions that it may have; see
+    /// The run reached its largest number of collisions; see
     /// [`Limits::with_most_collisions`](super::Limits::with_most_collisions).
     Collisions,
     /// The run took all the time that it may take; see
@@ -70,7 +70,7 @@ pub struct Counters {
     pub repredictions: u64,
     /// Searches for a wall that found none up to their horizon, and were taken up again.
     pub horizons: u64,
-    /// Changes of the size of the neighbor cells. All events are then predicted anew.
+    /// Changes of the size of the neighbor cells. Each change predicts all events anew.
     pub cell_resizes: u64,
     /// Largest overlap of two disks at a collision. A larger one than rounding ends the run.
     pub max_overlap: f64,

@@ -8,9 +8,9 @@ use super::{Counters, RunEnd};
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two looks at the wall clock and at the flag of another thread. They are many
-/// enough that the looks cost next to nothing, and few enough that a limit is noticed immediately, even if
-/// each event takes all the steps that a search for a moving wall may take.
+/// Number of events between two checks of the wall clock and of the flag of another thread. The number is
+/// large enough that the checks cost next to nothing, and small enough that a limit is noticed immediately,
+/// even if each event takes all the steps that a search for a moving wall may take.
 const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a

@@ -21,10 +21,9 @@ pub(super) struct Lookahead {
 }
 
 impl Lookahead {
-    /// Requests the data of the next events from memory. The slice `found` is room for the neighbors of a
-    /// disk.
+    /// Prefetches the data of the next events. The slice `found` is a buffer for the neighbors of a disk.
     ///
-    /// The work pays only if the caches do not hold the system, since it takes many instructions.
+    /// Prefetching pays only for systems too large for the caches, since it takes many instructions.
     #[inline(never)]
     pub(super) fn look<S: EventScheduler + ?Sized>(
         &mut self,

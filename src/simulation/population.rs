@@ -56,7 +56,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let mut bodies = self.bodies.clone();
         bodies.insert(&new, self.clock.now);
         check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
-        // The place of a fast disk at a far epoch would lack digits, so the epoch moves first.
+        // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.insert(&new, self.clock.now);
         (self.wall_count, self.cells) = (wall_count, cells);

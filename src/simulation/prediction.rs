@@ -43,8 +43,8 @@ impl Pairs {
     ///
     /// The method is stable event detection (Bannerman et al. 2014). A pair that touches or overlaps by
     /// rounding collides immediately while it approaches, and never while it recedes. If an overlap of 1e-16
-    /// were a reason to wait for the other root, the disks would pass through each other. If it were a
-    /// collision in any case, a pair that has just collided would collide forever.
+    /// were a reason to wait for the other root, the disks would pass through each other. If every such
+    /// overlap were a collision, a pair that has just collided would collide forever.
     #[inline]
     fn wait(&self) -> [f64; LANES] {
         let mut wait = [0.0; LANES];

@@ -86,8 +86,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             ),
             stopped => stopped.map(|_| RunEnd::Observer),
         };
-        // After fewer events than disks, a look at all disks would cost more than the run. A scheduler that
-        // names none at all is noticed when an epoch is over.
+        // After fewer events than disks, a check of all disks would cost more than the run. A scheduler that
+        // names no disk at all is noticed when an epoch is over.
         let is_long = self.counters.events() - events >= self.len() as u64
             || self.time() - start >= self.clock.epoch_length;
         let is_due = ended.is_ok() && is_long;
@@ -213,8 +213,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Reached::Time)
     }
 
-    /// Looks at the limits and at the progress of the run, before the next event. Returns the limit that was
-    /// reached, if one was.
+    /// Checks the limits and the progress of the run before the next event. Returns the limit that the run
+    /// has reached, if any.
     #[cold]
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {

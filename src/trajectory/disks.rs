@@ -87,7 +87,7 @@ fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     Err(ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found))
 }
 
-/// The values of a row by their slots.
+/// The values of a row, indexed by slot.
 type Slots = [Option<f64>; SLOTS];
 
 /// Returns the values of a row by their slots, if no two columns contradict each other.
@@ -159,7 +159,7 @@ impl Row<'_> {
         self.slots[quantity as usize + component]
     }
 
-    /// Returns the first of two answers, if both are there and are alike, or else the one that is there.
+    /// Returns the first of two values if they agree, or the only one that is present.
     fn either(
         &self,
         what: &str,

@@ -57,8 +57,8 @@ impl Member {
 
 /// Finds the whole frames of a file, and adds them to the member.
 ///
-/// A frame can end only at the bytes of a sync flush. It does end there if everything since the last frame is
-/// exactly one frame of the format.
+/// A frame can end only at the bytes of a sync flush. A sync flush ends a frame if the bytes since the last
+/// frame are exactly one frame of the format.
 pub(super) fn frames(
     member: &mut Member,
     input: &mut impl BufRead,

@@ -118,7 +118,7 @@ pub(super) fn lossy(bytes: &[u8]) -> String {
     String::from_utf8_lossy(&line[..line.len().min(240)]).trim().to_owned()
 }
 
-/// The lines of a [`Text`], one after another.
+/// An iterator over the lines of a [`Text`].
 #[derive(Debug)]
 pub(super) struct Lines<'a> {
     rest: &'a str,

@@ -97,7 +97,7 @@ impl Recorder {
     /// It suits a run that starts itself again after a kill, which may have come before the first frame.
     ///
     /// # Errors
-    /// The same as for [`create`](Self::create) and [`append`](Self::append).
+    /// The errors of [`create`](Self::create) and [`append`](Self::append).
     pub fn create_or_append(
         path: impl AsRef<Path>,
         format: impl Into<FileFormat>,

@@ -75,7 +75,7 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// Creates the approach of a surface that has this height and velocity at `time`, and this constant
+    /// Creates the approach of a surface from its height and velocity at `time` and its constant
     /// acceleration.
     #[inline]
     pub const fn new(time: f64, height: f64, velocity: f64, acceleration: f64) -> Self {
@@ -120,7 +120,7 @@ impl Approach {
 /// # Searches that do not come to an end
 /// A search invents no touch. It answers [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
 /// gap is known to be open:
-/// - After 256 steps. The caller may take up the search from there.
+/// - After 256 steps. The caller may resume the search from that time.
 /// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends
 ///   before it begins, or where a number is not finite. A search that starts there gets no further. A run
 ///   ends with an error at that time.

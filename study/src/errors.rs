@@ -94,7 +94,7 @@ pub enum PlanError {
     Ambiguous {
         /// The name.
         parameter: String,
-        /// The parameters that the name may stand for.
+        /// The parameters for which the short name may stand.
         known: Vec<String>,
     },
     /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order,
@@ -157,7 +157,7 @@ pub enum StudyError {
     /// The study has no such ramp.
     #[error("there is no ramp {ramp}: the study has {ramps}, counted from 0")]
     NoSuchRamp {
-        /// The index that was asked for.
+        /// The requested index.
         ramp: usize,
         /// The number of ramps.
         ramps: usize,
@@ -165,7 +165,7 @@ pub enum StudyError {
     /// The grid of the study has no such point.
     #[error("there is no point {point}: the study has {points}, counted from 0")]
     NoSuchPoint {
-        /// The index that was asked for.
+        /// The requested index.
         point: usize,
         /// The number of points.
         points: usize,
@@ -177,7 +177,7 @@ pub enum StudyError {
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// The answer of the system.
+        /// The error that the system returned.
         source: io::Error,
     },
     /// A file cannot be locked: some file systems of networks have no locks.
@@ -188,7 +188,7 @@ pub enum StudyError {
     NoLock {
         /// The file.
         path: PathBuf,
-        /// The answer of the system.
+        /// The error that the system returned.
         source: io::Error,
     },
     /// A table would take the place of another file.
@@ -269,7 +269,7 @@ pub enum StudyError {
     Build {
         /// Index of the ramp.
         ramp: usize,
-        /// Index of the value in it.
+        /// Index of the value in the ramp.
         value: usize,
         /// The reason.
         source: ExperimentError,
@@ -291,7 +291,7 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
 }
 
 impl PlanError {
-    /// Returns the error of a parameter that cannot vary in this way.
+    /// Returns the error of a parameter that cannot vary, or not with these values.
     pub(super) fn varied(parameter: &str, reason: impl Into<String>) -> Self {
         Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
     }
@@ -327,9 +327,9 @@ impl StudyError {
 pub struct Difference {
     /// The name of the field, after the names of the groups that contain it.
     pub field: String,
-    /// The value in the plan of the folder.
+    /// The field's value in the plan of the folder.
     pub old: Option<String>,
-    /// The value in the plan that was given.
+    /// The field's value in the given plan.
     pub new: Option<String>,
 }
 

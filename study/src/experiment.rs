@@ -191,8 +191,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns a companion, an observer that rides along and is not saved: a recorder, a closure, a channel.
     ///
-    /// It sees the whole value, its settling too, and is made anew when a value goes on after an
-    /// interruption. Its verdict counts like the observer's, so it must follow from the run alone.
+    /// The companion sees the whole value, including its settling. A value that continues after an
+    /// interruption gets a new companion. A companion's verdict counts like the observer's, so the verdict
+    /// must follow from the run alone.
     ///
     /// # Errors
     /// If it cannot be made, such as a file that cannot be written.
@@ -204,11 +205,11 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Changes a simulation before each step of a value: it moves walls, opens gates, adds or removes inlets
     /// and disks.
     ///
-    /// By default it changes nothing. What it does must follow from its arguments. The observer may keep what
-    /// [`boundary_in`](Self::boundary_in) needs.
+    /// By default it changes nothing. The changes must follow from the arguments alone. The observer may keep
+    /// what [`boundary_in`](Self::boundary_in) needs.
     ///
     /// # Errors
-    /// If it cannot. The value has then failed, and the study goes on.
+    /// If the simulation cannot be prepared. The value has then failed, and the study continues.
     fn prepare(
         &self,
         step: &Interval,
@@ -236,7 +237,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Returns further tables, of profiles for example, besides the tables of values and samples.
+    /// Returns the tables that the study writes besides those of values and samples, such as tables of
+    /// profiles.
     fn tables() -> Vec<Table<Self>> {
         Vec::new()
     }

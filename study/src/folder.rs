@@ -65,7 +65,7 @@ impl Folder {
         self.root.join(PLAN)
     }
 
-    /// Returns the file of a value half done.
+    /// Returns the path of the file that keeps an unfinished value.
     pub(super) fn partial(&self, ramp: usize, value: usize) -> PathBuf {
         self.root.join(UNFINISHED).join(format!("{ramp:04}-{value:04}"))
     }

@@ -58,8 +58,8 @@ impl<E: Experiment> Study<E> {
     /// The same command thus starts a study and continues it, also in several processes at the same time.
     ///
     /// # Errors
-    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
-    /// and no study, or cannot be read or written.
+    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), holds other
+    /// files but no study, or cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
     }
@@ -124,7 +124,8 @@ impl<E: Experiment> Study<E> {
         Ok(Self { folder, store, claims, plan, text, hash, provenance, maker })
     }
 
-    /// Puts the plan into the folder, if it passes a check; returns false if the folder has a plan.
+    /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
+    /// plan.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
         let provenance = Provenance::here(&self.plan, &self.hash, "");
         self.folder.create(&self.text, &provenance, || check(&self.plan))

@@ -121,10 +121,9 @@ impl<E: Experiment> Study<E> {
         Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
     }
 
-    /// Iterates over all values at all points of the grid that have a finished repeat, and reads them one by
-    /// one.
+    /// Reads, one by one, all values that have a finished repeat, at all points of the grid.
     ///
-    /// The values that a refinement adds differ between repeats, and are not among them.
+    /// Values that a refinement adds are left out, since they differ between repeats.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
         let error = self.store.refreshed().err();
         let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));

@@ -69,7 +69,7 @@ impl Arc {
         if place.distance(self.center) < self.radius { Side::Left } else { Side::Right }
     }
 
-    /// Returns the gap on one side as a polynomial of the time. It is a difference of two squared distances,
+    /// Returns the gap on one side as a polynomial in time. It is a difference of two squared distances,
     /// which has the sign of the gap.
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let (r, v, a) = (path.place - self.center, path.velocity, path.acceleration);

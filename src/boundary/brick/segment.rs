@@ -46,7 +46,7 @@ impl Segment {
         if self.direction.perp_dot(place - self.from) >= 0.0 { Side::Left } else { Side::Right }
     }
 
-    /// Returns the gap on one side as a polynomial of the time.
+    /// Returns the gap on one side as a polynomial in time.
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let height = path.along(self.from, self.normal(side));
         let gap = height.negated().widened(path.radius, path).negated();

@@ -1,4 +1,4 @@
-//! A flight under trial, from its start to its touch.
+//! The check of one flight, from its start to its touch.
 
 use glam::DVec2;
 

@@ -45,7 +45,7 @@ impl<'a> Trial<'a> {
         Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, state, grazes: 0, touches }
     }
 
-    /// Returns the size of the domain. If the domain is open above, this is its width.
+    /// Returns the larger side of the domain, or its width if the domain is open above.
     pub(super) fn length(&self) -> f64 {
         let height = self.domain.height();
         if height.is_finite() { self.domain.width().max(height) } else { self.domain.width() }

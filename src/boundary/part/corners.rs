@@ -21,9 +21,9 @@ struct Joint {
 impl Joint {
     /// Returns whether a disk can touch the corner.
     fn is_exposed(&self) -> bool {
-        // Disks are on the left of a brick, so a left turn is one toward them. A free end, or a place where
-        // more than two bricks meet, counts as exposed: a point too many costs a little time, but one too few
-        // would let disks through.
+        // Disks are on the left of a brick, so a left turn is a turn toward the disks. A free end, or a place
+        // where more than two bricks meet, counts as exposed: an unnecessary point costs a little time, but a
+        // missing point would let disks through.
         match (self.coming.as_slice(), self.going.as_slice()) {
             ([coming], [going]) if !self.is_thin => coming.perp_dot(*going) <= CLEARLY,
             _ => true,

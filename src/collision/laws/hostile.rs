@@ -99,7 +99,7 @@ fn extreme_contacts() -> impl Iterator<Item = Contact> {
         })
     });
     // The number of partners has no factor in common with the numbers of masses and times, so each pair of
-    // partners meets all of these.
+    // partners meets all masses and all times.
     contacts.zip(PARTNERS.into_iter().cycle()).map(|(contact, partners)| between(contact, partners))
 }
 

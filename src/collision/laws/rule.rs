@@ -59,7 +59,8 @@ impl Default for Promises {
 }
 
 impl Promises {
-    /// Creates the promise that a collision gains no energy. It says nothing about the tangential direction.
+    /// Creates the promise that a collision gains no energy. It promises nothing about the tangential
+    /// impulse.
     pub const fn new() -> Self {
         Self {
             energy_gain: false,

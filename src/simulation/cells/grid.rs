@@ -99,8 +99,8 @@ impl Grid {
         self.layout.cell_size
     }
 
-    /// Returns the number of cells in a column, ring included. Neighbors in a row are this far apart in
-    /// memory.
+    /// Returns the number of cells in a column, ring included. In memory, neighbors in a row are this number
+    /// of cells apart.
     #[inline]
     pub(in crate::simulation) fn stride(&self) -> usize {
         self.stride as usize
@@ -129,7 +129,7 @@ impl Grid {
         }
     }
 
-    /// Requests from memory what [`Self::region`] needs, since wide systems have many columns.
+    /// Prefetches the column edges that [`Self::region`] needs, since wide systems have many columns.
     #[inline]
     pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
         prefetch(&self.column_edges, place.column as usize);

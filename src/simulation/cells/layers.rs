@@ -186,7 +186,7 @@ impl Layers {
         self.visitors[0].gather_cell(cell, found, count)
     }
 
-    /// Requests from memory what [`Self::gather_visitors`] needs.
+    /// Prefetches the data that [`Self::gather_visitors`] needs.
     pub(super) fn prefetch_visitors(&self, cell: usize) {
         self.visitors[0].prefetch(cell);
     }

@@ -174,7 +174,8 @@ impl Reach {
         (columns.first..columns.behind()).map(move |k| if k >= period { k - period } else { k })
     }
 
-    /// Returns the homes of a column within reach of a place: those below the hole, and those above it.
+    /// Returns the homes of a column within reach of a place: the homes below the hole, and the homes above
+    /// it.
     #[inline]
     fn rows_of(&self, place: Place, column: u32) -> [Span; 2] {
         let [columns, hole_columns] = self.columns[place.column as usize - 1];

@@ -130,7 +130,7 @@ fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
         && pitch.is_finite()
 }
 
-/// Returns whether a place is one of the cells, and not of the ring.
+/// Returns whether a place belongs to a cell of the domain, not to the ring around the cells.
 fn is_cell(layout: &Layout, place: Place) -> bool {
     (1..=layout.columns).contains(&place.column) && (1..=layout.rows).contains(&place.row)
 }
@@ -251,7 +251,7 @@ fn ends_where_it_can(
 }
 
 /// Returns whether a disk touches its partner when it collides with it. An outdated prediction passes, since
-/// it is made anew when it comes up.
+/// the engine replaces it when its event is due.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due.is_finite()

@@ -12,7 +12,7 @@ const PART: &str = "driving";
 const KICKS: usize = 200;
 const DISKS: usize = 16;
 
-/// Number of kicks after which a run is cut.
+/// Number of kicks after which the check interrupts a run.
 const CUT: usize = 7;
 
 /// Allowed rounding of a momentum, relative to the sum of all magnitudes.

@@ -116,7 +116,7 @@ impl Bodies {
         }
     }
 
-    /// Creates bodies as they were saved. Disks that are all alike have a single model.
+    /// Creates bodies from saved data. Disks that are all alike have a single model.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
         models: &[Disk],
@@ -221,8 +221,8 @@ impl Bodies {
         }
     }
 
-    /// Changes the motion of `disk` by a collision at this time offset. Its place at that time stays as it
-    /// was.
+    /// Changes the motion of `disk` by a collision at this time offset. Its position at that time stays
+    /// unchanged.
     #[inline]
     pub(in crate::simulation) fn kick(&mut self, disk: usize, change: &Body, offset: f64) {
         self.push(disk, change.velocity, offset);
@@ -232,7 +232,7 @@ impl Bodies {
         spin.last_collision = offset;
     }
 
-    /// Changes the velocity of `disk` at this time offset. Its place at that time stays as it was.
+    /// Changes the velocity of `disk` at this time offset. Its position at that time stays unchanged.
     #[inline]
     pub(in crate::simulation) fn push(&mut self, disk: usize, velocity: DVec2, offset: f64) {
         let trajectory = &mut self.particles[disk].trajectory;
@@ -276,7 +276,7 @@ impl Bodies {
         )
     }
 
-    /// Returns all disks as the user sees them.
+    /// Returns all disks at this time offset, as they appear in the public API.
     pub(in crate::simulation) fn disks(&self, offset: f64) -> Vec<Disk> {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }

@@ -39,7 +39,7 @@ pub(in crate::simulation) struct Guard {
     pub(in crate::simulation) slow: u32,
     /// Number of those, at their end, in which it advanced as much as in the window before.
     pub(in crate::simulation) alike: u32,
-    /// Simulated time that the last window took.
+    /// Simulated time that the last window covered.
     pub(in crate::simulation) elapsed: f64,
 }
 

@@ -4,7 +4,7 @@ use crate::disk::LARGEST_ID;
 use crate::quantity::accept;
 use crate::{Disk, ParameterError};
 
-/// The id of each disk. Ids are given from 1 on, and none is given twice.
+/// The id of each disk. Ids count from 1, and no id is used twice.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::simulation) struct Identities {

@@ -119,7 +119,7 @@ pub(super) const fn width(kind: u8) -> u64 {
     }
 }
 
-/// Returns the names of chunks, each of 64 bytes in the first version, and else one after another.
+/// Returns the names of chunks. In version 1 each name fills 64 bytes; in later versions a zero byte ends it.
 fn read_names(bytes: &[u8], version: u16) -> Vec<String> {
     let name = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned();
     let names: Vec<String> = if version == 1 {

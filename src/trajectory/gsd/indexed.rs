@@ -13,7 +13,7 @@ use crate::trajectory::media::{self, is_gzip};
 use crate::trajectory::sink::{Layout, Sink};
 use crate::trajectory::{Frame, RecordError};
 
-/// Entries for which the first index has room. An index that is full is followed by one of twice its size.
+/// Entries for which the first index has room. A full index is followed by an index of twice its size.
 const ROOM: usize = 1024;
 
 /// Number of the chunk with the time of a frame.
@@ -29,8 +29,8 @@ pub(in crate::trajectory) struct Indexed {
     room: usize,
     entries: Vec<u8>,
     places: Vec<Range<u64>>,
-    /// True if the file was cut: its index lists frames that it does not have, or its header names an index
-    /// that it does not have.
+    /// True if the file was cut: its index lists frames, or its header names an index, that the file does not
+    /// contain.
     is_cut: bool,
 }
 
@@ -80,7 +80,7 @@ impl Indexed {
         file.push(bytes, &[])?;
         let (entries, end) = entries(shape, start);
         let place = self.location + self.entries.len() as u64;
-        // A frame that was not finished may have left more entries than this one has.
+        // An unfinished frame may have left more entries than this frame has.
         let mut others = entries[ENTRY..].to_vec();
         others.resize((CHUNKS.len() - 1) * ENTRY, 0);
         file.medium.write_at(place + ENTRY as u64, &others)?;
@@ -193,7 +193,8 @@ impl Layout for Indexed {
     }
 }
 
-/// Checks that a file is of this version, and that its index is of a size that this version makes.
+/// Checks that a file has the version that this crate writes, and that the size of its index is one that this
+/// crate makes.
 fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     if head == header(location, room) && (room / ROOM as u64).is_power_of_two() {
         return Ok(());

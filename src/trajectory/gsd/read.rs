@@ -29,7 +29,7 @@ pub(in crate::trajectory) fn frames<'a>(mut input: impl BufRead + 'a) -> Frames<
     }
 }
 
-/// Returns the frames of a file, of which only the one that is wanted is read.
+/// Returns the frames of a file, each of which is read only on request.
 pub(in crate::trajectory) fn frames_of_file<'a>(input: impl Read + Seek + 'a) -> Frames<'a> {
     let archive = match Archive::open(input) {
         Ok(archive) => archive,
@@ -80,7 +80,8 @@ impl<R: Read + Seek> View<'_, R> {
         if is_own { Err(self.wrong(&format!("the chunk `{name}` has {found}"))) } else { Ok(None) }
     }
 
-    /// Returns a chunk of this number of numbers.
+    /// Returns the numbers in a chunk that must hold `COUNT` of them, or `None` if the frame has no such
+    /// chunk.
     fn numbers<const COUNT: usize>(&mut self, name: &str) -> Result<Option<[f64; COUNT]>, ReadError> {
         let Some(chunk) = self.find(name)? else { return Ok(None) };
         if chunk.rows.saturating_mul(chunk.columns) != COUNT {

@@ -123,7 +123,8 @@ fn entry(folder: &str, number: usize, time: f64) -> String {
     line(0, "disks") + &line(1, "box")
 }
 
-/// Returns the times of the whole frames in a file of times, and the length of the text up to the last one.
+/// Returns the times of the complete frames that a file of times lists, and the length of the text up to the
+/// end of the last complete entry.
 fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
     let (mut times, mut length) = (Vec::new(), HEAD.len());
     let Some(mut rest) = text.strip_prefix(HEAD) else { return (times, 0) };

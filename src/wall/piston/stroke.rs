@@ -168,7 +168,7 @@ impl WallMotion for Stroke {
     }
 }
 
-/// The swing of a piston on a spring: `a cos θ + b sin θ` about the middle.
+/// The oscillation of a piston on a spring: `a cos θ + b sin θ` about the middle.
 #[derive(Clone, Copy)]
 struct Swing {
     middle: f64,

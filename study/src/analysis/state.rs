@@ -23,7 +23,7 @@ pub enum ConvectiveState {
     TwoRollsUp,
     /// Two rolls, down in the middle: Ψ₂ < 0.
     TwoRollsDown,
-    /// A compact layer of disks on a gas.
+    /// A compact layer of disks that floats on a gas.
     Collapsed,
 }
 

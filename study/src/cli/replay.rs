@@ -15,10 +15,10 @@ use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
 use crate::{Experiment, Run};
 
-/// Number of collisions that are written, unless the command line says more.
+/// Default number of collisions to write.
 const FEW: usize = 10;
 
-/// Number of collisions between two looks at the signals.
+/// Number of collisions between two checks for signals.
 const BATCH: usize = 1024;
 
 #[derive(Debug, clap::Args)]
@@ -48,7 +48,7 @@ pub(super) struct Wishes {
     json: bool,
 }
 
-/// Runs a value again, and writes what is wanted. A file that does not become whole is removed.
+/// Runs a value again, and writes the requested collisions or state. An incomplete file is removed.
 pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
     let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
     wishes.check(&source)?;
@@ -72,7 +72,7 @@ pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
 }
 
 impl Wishes {
-    /// Refuses what the run cannot have.
+    /// Returns an error if the run has no time after `--from`, or cannot have the disk of `--disk`.
     fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<E>) -> Result<(), PlanError> {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
         match (self.from, self.disk.filter(|id| !is_there(id))) {

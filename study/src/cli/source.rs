@@ -15,7 +15,7 @@ use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
 use crate::seed::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Study};
 
-/// Wall-clock time between two looks at the signals.
+/// Wall-clock time between two checks for signals.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// The value of a plan or a study, and the time until which it runs.

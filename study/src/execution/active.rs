@@ -28,7 +28,7 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) folder: &'a Path,
 }
 
-/// An unfinished value as data: its place, the work so far, its state and its driving.
+/// The saved data of an unfinished value: its origin, the work so far, the state of its run and its driving.
 pub(super) type Partial<E> =
     (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint, Option<Vec<u8>>);
 
@@ -326,8 +326,8 @@ impl<E: Experiment> Active<'_, E> {
         self.into_record(Outcome::Completed, end, state)
     }
 
-    /// Returns the record of a value that ended early. After one that was not stopped by its observer, the
-    /// next value starts from the state in which this one started.
+    /// Returns the record of a value that ended early. Unless the observer stopped the value, the next value
+    /// starts from the state in which this value started.
     pub(super) fn ended(self, early: Early) -> Result<Record<E>, StudyError> {
         let time = self.run.time();
         let outcome = match early {

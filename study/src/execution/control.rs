@@ -76,14 +76,14 @@ impl<'a> Control<'a> {
         Self { interrupt: Some(interrupt), ..self }
     }
 
-    /// Returns the same control, which takes over the values that earlier studies in these folders have done.
+    /// Returns the same control with reuse of the values that earlier studies in these folders have finished.
     ///
-    /// A study grows into a new folder in this way, and the parts of a sweep become one study. The plans may
-    /// differ in the values of their axes and in repeats. A ramp may have more values at its end. With more
-    /// samples, a value goes on where it ended, if its record keeps the state
+    /// In this way, a study grows into a new folder, or the parts of a sweep become one study. The plans may
+    /// differ in the values of their axes and in repeats. A ramp may have more values at its end. If this
+    /// plan has more samples, a value continues from its end, provided that its record keeps the state
     /// ([`Plan::with_end_states`](crate::Plan::with_end_states)). Anything else that differs is an error. The
-    /// study gets the same bytes as without the earlier ones. Values of code that was accepted there are done
-    /// again.
+    /// study gets the same bytes as without the earlier ones. Values from other code that an earlier study
+    /// accepted are computed again.
     #[doc(alias("grow", "merge", "extend"))]
     pub fn with_earlier_studies(self, folders: &'a [PathBuf]) -> Self {
         Self { earlier: folders, ..self }
@@ -111,7 +111,7 @@ impl<'a> Control<'a> {
         Ok(Self { most_seconds: Some(positive("most seconds for a value", seconds)?), ..self })
     }
 
-    /// Returns the same control, which does not wait for ramps that other processes run.
+    /// Returns the same control without waiting for ramps that other processes run.
     ///
     /// A run then returns as soon as only such ramps are left. [`Summary::elsewhere`] names them, since their
     /// processes may yet be killed.
@@ -127,7 +127,7 @@ impl<'a> Control<'a> {
     }
 
     /// Returns the same control, which also reads the records of finished ramps, and runs damaged or lost
-    /// ones again. It reads the whole study.
+    /// ones again. The verification reads the whole study.
     pub fn with_verification(self) -> Self {
         Self { verifies: true, ..self }
     }

@@ -10,7 +10,7 @@ use crate::{Difference, Experiment, Plan, PlanError, Record, Study, StudyError};
 /// Earlier studies, each with its ramps by their seeds.
 pub(super) struct Earlier<E: Experiment>(Vec<(Study<E>, HashMap<u64, usize>)>);
 
-/// Ramps of earlier studies whose values so far agree with a ramp of this study.
+/// The ramps of earlier studies that agree with a ramp of this study in all values so far.
 pub(super) struct SameRamps<'a, E: Experiment>(Vec<(&'a Study<E>, usize)>);
 
 impl<E: Experiment> Earlier<E> {

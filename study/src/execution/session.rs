@@ -12,10 +12,10 @@ use crate::json::Object;
 use crate::store::{Entry, Marks};
 use crate::{Control, Experiment, Progress, Study, StudyError, Summary};
 
-/// Longest time until a thread checks whether it must stop.
+/// Longest time between two checks of a thread for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
 
-/// A run of a study.
+/// The state that the threads of one [`Study::run`] share.
 pub(super) struct Session<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) control: &'a Control<'a>,

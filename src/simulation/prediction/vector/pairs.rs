@@ -102,9 +102,9 @@ impl Search {
     }
 }
 
-/// Returns the x of four trajectories, their y, and the same of their velocities.
+/// Returns the x and y of the positions of four trajectories, then the x and y of their velocities.
 ///
-/// Position and velocity are read one by one: the last collision wrote them so.
+/// Position and velocity are read separately, because the last collision wrote them separately.
 #[target_feature(enable = "avx512vl")]
 #[inline]
 fn columns(a: &Trajectory, b: &Trajectory, c: &Trajectory, d: &Trajectory) -> [__m256d; 4] {
@@ -222,8 +222,8 @@ fn improve_both<const IS_PERIODIC: bool>(
     let search = |disk: usize| Search::new(&bodies.particles[disk].trajectory, Earliest::NONE);
     let (mut first, mut second) = (search(disks[0]), search(disks[1]));
     for turn in 0..one.len().max(two.len()) {
-        // The shorter list stays at its last four: a second prediction of a pair changes nothing. Neither
-        // list is empty, since each has the disk itself.
+        // The shorter list repeats its last four pairs, since a second prediction of a pair changes nothing.
+        // Neither list is empty, since each has the disk itself.
         first.improve::<IS_PERIODIC>(bodies, &one[turn.min(one.len() - 1)], common);
         second.improve::<IS_PERIODIC>(bodies, &two[turn.min(two.len() - 1)], common);
     }
