@@ -280,8 +280,8 @@ pub trait Boundary {
 
     /// Returns whether a disk with its center in `region` can touch a wall at any time.
     ///
-    /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach
-    /// to infinity beyond it.
+    /// The engine calls [`first_touch`](Self::first_touch) only in such regions. Regions at the edge of the
+    /// domain reach to infinity beyond it.
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
 
     /// Returns the first touch of this flight, not later than `until`.

@@ -9,8 +9,8 @@ use crate::violation::require;
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
 /// others. A custom part makes its fingerprint from its name and from all numbers on which its answers
-/// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be
-/// distinguished. The checks of fingerprints, such as
+/// depend. A part without a name and numbers, such as a closure, has no fingerprint, and two such parts
+/// cannot be distinguished. The checks of fingerprints, such as
 /// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare two parts
 /// with their answers: parts that differ in a number must differ, and equal parts agree. The hash is FNV-1a
 /// with 64 bits, over bytes in a fixed order, so it is the same on every platform.
@@ -49,7 +49,7 @@ impl Fingerprint {
         self.bytes(text.as_bytes()).bytes(&(text.len() as u64).to_le_bytes())
     }
 
-    /// Adds the fingerprint of a part that this one contains.
+    /// Adds the fingerprint of a part that this part contains.
     pub const fn part(self, part: Self) -> Self {
         self.bytes(&part.0.to_le_bytes())
     }

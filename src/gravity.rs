@@ -36,8 +36,8 @@ impl Gravity {
     /// No gravity.
     pub const NONE: Self = Self { rightward: 0.0, downward: 0.0 };
 
-    /// Returns gravity of this strength in a box that is turned clockwise by `angle`, in radians: the floor
-    /// descends to the right.
+    /// Returns the gravity of this strength in a box that is turned clockwise by `angle`, in radians, so that
+    /// the floor descends to the right.
     ///
     /// # Errors
     /// If the angle is beyond a right angle in magnitude: it was probably meant in degrees, and gravity would

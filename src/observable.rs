@@ -48,9 +48,8 @@
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
 //! # Custom observers
-//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`]
-//! is a clock. In a plain test, [`laws::check`]
-//! checks the contract of an observer.
+//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. Other observers can use
+//! [`SampleTimes`] as their clock. In a plain test, [`laws::check`] checks the contract of an observer.
 //!
 //! ```
 //! use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, laws};

@@ -61,7 +61,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///   slow.
 ///
 /// # Schedulers that break the contract
-/// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
+/// The engine compares each result with the event that it keeps: a disk that does not exist, or a time other
 /// than the last one set for it, ends the run with an error. If a scheduler loses a `set` and never names an
 /// event that is due, the engine notices when the epoch ends, or at the end of a run with at least as many
 /// events as disks, and ends the run with an error. Checking all disks more often would cost time, so the
@@ -111,11 +111,11 @@ pub trait EventScheduler {
     /// Appends the disks whose events are due soon and that have not been named yet, if the scheduler knows
     /// them.
     ///
-    /// The answer is a hint: the engine fetches early what these events will need from memory. The call
-    /// changes neither the order of events nor the disks that `disks` holds already. Disks may be missing, or
-    /// be named twice or in any order. The engine ignores disks that do not exist. The default names none. A
-    /// scheduler that wraps another passes the call on: among 10⁵ disks, it would take half as long again
-    /// otherwise.
+    /// The list is a hint: the engine prefetches the data that these events will need. The call changes
+    /// neither the order of events nor the disks that `disks` holds already. Disks may be missing, or be
+    /// named twice or in any order. The engine ignores disks that do not exist. The default names no disk. A
+    /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes half as long
+    /// again.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

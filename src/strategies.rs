@@ -324,8 +324,8 @@ pub fn vessel() -> impl Strategy<Value = Vessel> {
     )
 }
 
-/// Returns up to this number of disks that do not overlap, of several kinds, with radii from 0.05 to 0.5 and
-/// masses over six decades, in rows from the origin on.
+/// Returns a strategy for lists of up to `most` disks that do not overlap, of several kinds, with radii from
+/// 0.05 to 0.5 and masses over six decades, in rows from the origin on.
 ///
 /// ```
 /// use proptest::prelude::*;

@@ -173,8 +173,8 @@ impl fmt::Display for Domain {
     }
 }
 
-/// The upper edge in files. Some text formats have no infinite numbers, so text files hold `None` for an open
-/// top.
+/// How files store the upper edge. Some text formats have no infinite numbers, so text files hold `None` for
+/// an open top.
 #[cfg(feature = "serde")]
 mod open_top {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -219,7 +219,8 @@ impl Region {
         Self { min, max }
     }
 
-    /// Returns whether a place is in the rectangle. The right and the upper edge belong to its neighbors.
+    /// Returns whether a point is in the rectangle. The right and the upper edges belong to the neighbors of
+    /// the rectangle.
     pub(crate) fn contains(&self, place: DVec2) -> bool {
         place.cmpge(self.min).all() && place.cmplt(self.max).all()
     }

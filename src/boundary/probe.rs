@@ -33,7 +33,7 @@ impl Probe {
         Self { position, radius, kind: Kind::DEFAULT, time }
     }
 
-    /// Creates a probe with the place, radius and kind of a disk.
+    /// Creates a probe with the position, radius and kind of a disk.
     #[inline]
     pub const fn of(disk: &Disk, time: f64) -> Self {
         Self { position: disk.position(), radius: disk.radius(), kind: disk.kind(), time }

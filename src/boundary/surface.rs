@@ -63,7 +63,7 @@ impl<'a> Surface<'a> {
         Self { response, ..self }
     }
 
-    /// Returns the same surface of another kind.
+    /// Returns the same surface with another kind.
     #[must_use]
     #[inline]
     pub const fn with_kind(self, kind: Kind) -> Self {
@@ -115,8 +115,8 @@ pub enum Response<'a> {
     Thermal(Thermal),
     /// The wall takes the disk out of the run.
     ///
-    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin: the
-    /// wall receives all of the momentum.
+    /// Observers see a last collision, after which the disk has the velocity of the wall and no spin: the
+    /// wall receives all of the relative momentum.
     Absorbing,
 }
 

@@ -108,7 +108,7 @@ impl Contact {
         self.normal_mass
     }
 
-    /// Returns the effective mass μ_t of the tangential direction, rotation included.
+    /// Returns the effective mass μ_t of the tangential direction, which includes rotation.
     #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass

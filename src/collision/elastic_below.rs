@@ -42,7 +42,7 @@ impl<R> ElasticBelow<R> {
     /// Creates the remedy over `rule`: collisions below this closing speed are elastic and frictionless.
     ///
     /// # Errors
-    /// If the speed is not finite and positive. To have no such speed, use the rule alone.
+    /// If the speed is not finite and positive. For no limit, use the rule without this remedy.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         positive("speed of elastic collisions", speed)?;
         Ok(Self { rule, speed, tangential_response: TangentialResponse::default() })

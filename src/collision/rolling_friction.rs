@@ -43,7 +43,7 @@ pub struct RollingFriction<R> {
 }
 
 impl<R> RollingFriction<R> {
-    /// Creates rolling friction of this coefficient μ_r over `rule`.
+    /// Creates a rule that adds rolling friction with the coefficient μ_r to `rule`.
     ///
     /// # Errors
     /// If the coefficient is not finite, or negative.

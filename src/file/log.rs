@@ -1,4 +1,4 @@
-//! Logs: files that grow by whole pieces, each with a head, a checksum and contents.
+//! Logs: files that grow by complete pieces, each with a header, a checksum and contents.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -6,10 +6,10 @@ use std::path::Path;
 
 use super::{Damage, Growing, Seal};
 
-/// First bytes of every piece, by which the next one is found after a damage.
+/// First bytes of every piece, by which the next piece is found after damage.
 const MARK: [u8; 4] = *b"\xabPC\n";
 
-/// Number of bytes of the head of a piece.
+/// Number of bytes in the header of a piece.
 pub const HEAD: usize = 16;
 
 /// Bytes before the contents: mark, head, length, check of these, checksum of the contents.

@@ -53,7 +53,7 @@ pub fn random<B: Boundary + ?Sized>(
 
 /// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`.
 ///
-/// Everything else is as in [`random`].
+/// In all other respects, the function works like [`random`].
 ///
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one

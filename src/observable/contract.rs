@@ -81,7 +81,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// # What an observer guarantees
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is wanted.
 /// 2. After a sample, `next_sample` names a later time than the sample's.
-/// 3. After `on_start`, `next_sample` names no time before the start, except by rounding.
+/// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
 ///    these calls, and would notice another change too late.
 /// 5. Samples do not depend on how a run is cut: if a run starts at the time at which the last one ended,

@@ -179,10 +179,10 @@ impl<'a> Snapshot<'a> {
         (0..self.wall_count).filter_map(moved).collect()
     }
 
-    /// Returns the area of the places in `region` at which the center of a disk of this radius is free;
-    /// `None` if it is not known.
+    /// Returns the area of the part of `region` in which the center of a disk of this radius is free, or
+    /// `None` if the boundary does not know the area.
     ///
-    /// With a radius of 0, it is the area that matter can fill.
+    /// With a radius of 0, the result is the area that matter can fill.
     pub fn area(&self, region: &Region, radius: f64) -> Option<f64> {
         self.walls.and_then(|walls| walls.boundary.area(region, radius, walls.time))
     }
@@ -200,7 +200,7 @@ impl<'a> Snapshot<'a> {
         Some(if share > WHOLE { 1.0 } else { share })
     }
 
-    /// Returns whether no wall ever comes into a region in which disks are free.
+    /// Returns whether a region is free of walls at all times, and not inside one.
     pub(crate) fn is_clear(&self, region: &Region) -> bool {
         let middle = region.min + 0.5 * (region.max - region.min);
         // Four walls are those at the sides and ends of the domain.

@@ -88,7 +88,7 @@ pub struct Stress {
     kinetic: Tensor,
     collisional: Tensor,
     total: Tensor,
-    /// The reason why nothing can be measured in this run.
+    /// The reason why the stress cannot be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }

@@ -49,8 +49,8 @@ pub trait Table {
     /// Writes the table as comma-separated values: a line of headings, such as `center_y [length]`, and a
     /// line for each row.
     ///
-    /// The heading of a pure number has no unit. Numbers read back to the same bits. An undefined number is
-    /// `NaN`.
+    /// The heading of a pure number has no unit. Reading the numbers back gives the same bits. An undefined
+    /// number is `NaN`.
     ///
     /// ```
     /// use granular_edmd::boundary::Domain;

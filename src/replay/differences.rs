@@ -133,7 +133,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     }
 }
 
-/// Returns the disk or wall that this disk has met: the id of the disk, or else the wall.
+/// Returns the partner with which this disk collided: the id of a disk, or else a wall.
 fn partner_of(replayed: &Replayed, id: u64) -> (Option<u64>, Option<Partner>) {
     match replayed.partner_id {
         Some(partner) => (Some(if partner == id { replayed.id } else { partner }), None),

@@ -124,8 +124,8 @@ impl Marks {
         self.times[..self.count].windows(2).map(|pair| (pair[0], pair[1]))
     }
 
-    /// Returns the times at which a polynomial changes its sign, if its derivative changes its sign at these
-    /// marks.
+    /// Returns the times at which a polynomial changes its sign. `self` holds the times at which its
+    /// derivative does.
     ///
     /// Between two marks the polynomial is monotonic, so it changes its sign at most once. No change can be
     /// missed, however close two of them are.

@@ -20,7 +20,7 @@ use crate::{Disk, Gravity, ParameterError};
 /// Smallest speed but 0. The squares of slower disks would vanish, and with them their collisions.
 const SLOWEST: f64 = 1e-100;
 
-/// Largest number of walls of a boundary.
+/// Largest number of walls that a boundary may have.
 const MOST_WALLS: usize = 1 << 16;
 
 /// The inputs of a simulation that is being built; see [`Simulation::builder`].

@@ -274,8 +274,8 @@ impl Cells {
     /// Returns the room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        // A search finds each disk at most once. With layers, the search of a large disk may find all of
-        // them; the room of nine cells is then for the free slots that are copied behind the last disk.
+        // A search finds each disk at most once. With layers, the search of a large disk may find all disks;
+        // the room of nine cells is then for the free slots that are copied behind the last disk.
         if self.layers.is_some() { self.places.len() + self.contents.room(9) } else { self.contents.room(9) }
     }
 

@@ -1,4 +1,4 @@
-//! Changes for all disks at once: a new epoch, cells of another size, new predictions of all events.
+//! Changes that affect all disks together: a new epoch, cells of another size, new predictions of all events.
 
 use super::Simulation;
 use super::cells::{CellSize, Cells, SPARE_DISKS};
@@ -58,7 +58,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.reset_scheduler();
     }
 
-    /// Changes to larger or smaller cells, if those suit the events since the epoch last moved.
+    /// Changes to larger or smaller cells, if another size suits the events since the epoch last moved.
     ///
     /// The choice depends on the state alone, so it is the same on every run. After a change, all events are
     /// predicted anew from the present.

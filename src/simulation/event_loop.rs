@@ -4,8 +4,8 @@
 //! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
 //! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
 //! The arithmetic of predictions is in `prediction.rs`, and epochs are in `epoch.rs`. If rounding leaves
-//! partners approaching after a collision, `parting.rs` makes them part. All answers of the parts are checked
-//! in `checking.rs`. None of these files calls back into the event loop.
+//! partners approaching after a collision, `parting.rs` makes them part. All results of rules, boundaries and
+//! schedulers are checked in `checking.rs`. None of these files calls back into the event loop.
 
 use glam::DVec2;
 
@@ -229,8 +229,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
-        // The answer is no for a velocity that is not a number. Spins need no test: an impulse that makes the
-        // spin NaN makes the velocity NaN, too.
+        // The result is false for a velocity that is not a number. Spins need no test: an impulse that makes
+        // the spin NaN makes the velocity NaN, too.
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
 
@@ -257,8 +257,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Begins a shorter epoch for disks of these velocities in the free-fall frame.
     ///
-    /// The place of a fast disk at the epoch would be so far away that it would lack digits. For this reason,
-    /// the epoch moves before the kick and not after it.
+    /// After the kick, the position of a fast disk at the old epoch would be so far away that it would lack
+    /// digits. The epoch therefore moves before the kick.
     #[cold]
     #[inline(never)]
     pub(super) fn begin_epoch_at(&mut self, velocities: impl Iterator<Item = DVec2>) -> Outcome<()> {

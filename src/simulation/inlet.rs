@@ -39,7 +39,7 @@ use crate::{Disk, Kind, ParameterError};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Inlet {
-    /// Lower left and upper right corner of the rectangle.
+    /// Lower left and upper right corners of the rectangle that holds the new centers.
     places: [DVec2; 2],
     source: Source,
     pub(super) times: SampleTimes,
@@ -47,7 +47,7 @@ pub struct Inlet {
     pub(super) waiting: VecDeque<Disk>,
 }
 
-/// The disks that come in.
+/// The disks that enter through the inlet.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Source {
@@ -66,13 +66,13 @@ impl Inlet {
     /// Creates an inlet that lets in one disk at each of these times: a copy of one of the models, drawn at
     /// random.
     ///
-    /// Its center is in the rectangle between the two places, the lower left and the upper right corner. The
-    /// copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models have
-    /// no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws, for
-    /// example.
+    /// Its center is in the rectangle with the corners `places`: first the lower left, then the upper right.
+    /// The copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models
+    /// have no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws,
+    /// for example.
     ///
     /// # Errors
-    /// If there are no models, or the places are not finite or not in this order.
+    /// If there are no models, or the corners are not finite or not in this order.
     pub fn new(
         places: [DVec2; 2],
         models: impl IntoIterator<Item = Disk>,
@@ -82,13 +82,13 @@ impl Inlet {
         Self::of(places, Source::New(models.into_iter().collect()), times, seed)
     }
 
-    /// Creates an inlet that puts back what sinks have taken out, at each of these times.
+    /// Creates an inlet that puts back the disks that sinks have removed, at each of these times.
     ///
     /// A disk comes back at the given velocity and without a spin, and keeps its radius, mass, inertia and
-    /// kind. Of several such inlets, the one with the fewest disks that wait gets the next.
+    /// kind. If there are several such inlets, the inlet with the fewest waiting disks gets the next disk.
     ///
     /// # Errors
-    /// If the velocity is not one that a disk may have, or the places are not finite or not in this order.
+    /// If a disk cannot have the velocity, or the corners are not finite or not in this order.
     pub fn refill(
         places: [DVec2; 2],
         velocity: DVec2,

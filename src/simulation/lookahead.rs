@@ -23,7 +23,7 @@ pub(super) struct Lookahead {
 impl Lookahead {
     /// Prefetches the data of the next events. The slice `found` is a buffer for the neighbors of a disk.
     ///
-    /// Prefetching pays only for systems too large for the caches, since it takes many instructions.
+    /// Prefetching is worthwhile only for systems too large for the caches, since it takes many instructions.
     #[inline(never)]
     pub(super) fn look<S: EventScheduler + ?Sized>(
         &mut self,

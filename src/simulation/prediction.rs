@@ -32,7 +32,7 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Returns the time until each pair touches; infinite for never.
+    /// Returns the time until each pair touches, or infinity if it never does.
     ///
     /// With the separation r, the relative velocity v and the contact distance σ, the pair touches at the
     /// smaller root of v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two
@@ -111,8 +111,8 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Returns whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic
-/// would round differently, and a pair that seems to part here could be predicted to collide.
+/// Returns whether two disks approach each other, in exactly the arithmetic of [`earliest_collision`]. Other
+/// arithmetic would round differently, and a pair that seems to part here could be predicted to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, periods: DVec2, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());

@@ -93,8 +93,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let is_due = ended.is_ok() && is_long;
         let ended = if is_due { self.check_all(self.clock.now).and(ended) } else { ended };
         observer.on_end(&self.snapshot());
-        // A verdict to stop comes too late now. A failure, of a last write for example, must still be
-        // reported.
+        // At this point, a verdict to stop has no effect. A failure, of a last write for example, must still
+        // be reported.
         let last = self.verdict_of(observer);
         ended.and_then(|end| last.map(|_| end))
     }
@@ -105,7 +105,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// The observer sees only the collision: `on_start`, `on_sample` and `on_end` are not called, so the
     /// observer's clock stands still. If the observer fails, the step returns an error. A verdict to stop has
-    /// no effect, since the caller takes each step.
+    /// no effect, since the caller decides on each step.
     ///
     /// ```
     /// # use granular_edmd::glam::DVec2;
@@ -218,7 +218,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {
-        // Whatever ends the run here, the next one looks before its first event.
+        // However the run ends here, the next run checks its limits before its first event.
         self.clock.events_to_look = 1;
         if let Some(end) = watch.reached(&self.counters) {
             return Ok(Some(end));

@@ -15,13 +15,14 @@ const SLOW: f64 = 1e-9;
 /// Number of windows in which a run without losses may hardly advance.
 const PATIENCE: u32 = 64;
 
-/// Number of windows, each like the one before, after which such a run is stuck.
+/// Number of consecutive equal windows after which a run without losses is stuck.
 const STUCK: u32 = 2;
 
-/// Time, relative to an epoch, over which the velocity of a wall is compared with the way of its surface.
+/// Time, relative to an epoch, over which the reported velocity of a wall is compared with the mean velocity
+/// of its surface.
 const MOMENT: f64 = 1e-6;
 
-/// Relative difference of these two that is rounding.
+/// Largest relative difference of these velocities that counts as rounding.
 const ALIKE: f64 = 1e-3;
 
 /// Share of the energy, or of the closing speed, that is rounding.

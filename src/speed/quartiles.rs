@@ -14,7 +14,7 @@ use std::fmt;
 pub struct Quartiles {
     /// A quarter of the values is below.
     pub low: f64,
-    /// Half of the values is below.
+    /// Half of the values are below this one.
     pub median: f64,
     /// A quarter of the values is above.
     pub high: f64,

@@ -1,4 +1,4 @@
-//! Means of correlated numbers with their errors, without keeping the numbers.
+//! Means and errors of correlated numbers, without keeping the numbers.
 
 use super::plateau::{BlockError, plateau};
 use super::{Estimate, RunningMean};
@@ -74,7 +74,7 @@ impl BlockedMean {
         self.ungrouped().sum()
     }
 
-    /// Returns mean and variance of the numbers themselves, without regard to their correlation.
+    /// Returns the mean and the variance of the single numbers, regardless of their correlation.
     pub fn ungrouped(&self) -> RunningMean {
         self.0.first().map_or_else(RunningMean::default, |level| level.blocks)
     }

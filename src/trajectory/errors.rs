@@ -23,7 +23,7 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// A file cannot be used.
+    /// A file cannot be opened, read or written.
     #[error("cannot {action} {}", path.display())]
     Io {
         /// The action that failed.
@@ -91,7 +91,7 @@ impl From<RecordError> for ObserverError {
 }
 
 impl RecordError {
-    /// Returns a function that adds the action and the file to an error of the system.
+    /// Returns a function that turns an error of the system into this error, with the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
@@ -146,7 +146,7 @@ pub enum ReadError {
     End {
         /// Number of the last line.
         line: usize,
-        /// The thing that is missing.
+        /// The name of the missing item.
         what: String,
     },
     /// A field of a line is not of the form that it must have.
@@ -154,7 +154,7 @@ pub enum ReadError {
     Unexpected {
         /// Number of the line.
         line: usize,
-        /// The thing that is wrong.
+        /// The name of the wrong item.
         what: String,
         /// The condition that it should have met.
         requirement: String,
@@ -166,7 +166,7 @@ pub enum ReadError {
     Missing {
         /// Number of the line.
         line: usize,
-        /// The thing that is missing.
+        /// The name of the missing item.
         what: String,
     },
     /// The numbers of a line do not make a disk.

@@ -113,7 +113,8 @@ impl Format for ExtendedXyz {
     }
 }
 
-/// Writes the number of gravity that points down, or else the acceleration.
+/// Writes one number, the strength, if gravity points down, and both components of the acceleration
+/// otherwise.
 fn write_gravity(out: &mut dyn Write, gravity: Gravity) -> io::Result<()> {
     if gravity.rightward() == 0.0 {
         return write!(out, "{:?}", gravity.downward());

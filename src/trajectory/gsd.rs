@@ -68,7 +68,8 @@ const CHUNKS: [(&str, u8, u32, Rows); 24] = [
     ("log/walls/phase", F64, 1, Rows::Walls),
 ];
 
-/// The shape of a frame: its number, its disks, the number of kinds up to the largest, and its moving walls.
+/// The shape of a frame: its number in the file, and its numbers of disks, of kinds (the largest kind plus
+/// one), and of moving walls.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
     number: usize,

@@ -93,7 +93,7 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Returns whether the last line has no line break, so that its last number may be torn.
+    /// Returns whether the last line lacks a line break, in which case its last number may be incomplete.
     pub(super) fn is_torn(&self) -> bool {
         self.bytes.last().is_some_and(|&last| last != b'\n')
     }

@@ -70,7 +70,7 @@ impl Layout for OneFile {
 }
 
 impl Packing {
-    /// Makes the compressor of a file, if this program can compress.
+    /// Creates the compressor of a file; `None` in a build without compression.
     #[cfg(feature = "gzip")]
     const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
     #[cfg(not(feature = "gzip"))]

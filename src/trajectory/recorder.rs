@@ -11,10 +11,10 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 ///
 /// Each frame is made whole in memory, then written. If that fails, for example because the file system is
 /// full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole
-/// frame. The next run with the same recorder takes the frame that was missed.
+/// frame. The next run with the same recorder records the missed frame.
 ///
 /// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind. Files hold the
-/// box and the walls that move ([`Snapshot::moving_walls`]). Files for ParaView also hold the other walls
+/// box and the moving walls ([`Snapshot::moving_walls`]). Files for ParaView also hold the other walls
 /// ([`Snapshot::wall_lines`]).
 ///
 /// # Going on in a file

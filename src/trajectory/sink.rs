@@ -37,7 +37,7 @@ impl Sink {
         Self { file, times: Vec::new(), layout: Box::new(layout), bytes: Vec::new() }
     }
 
-    /// Returns the same sink with the frames that the file has, of which there must be one.
+    /// Returns the same sink with the times of the frames in its file, or an error if the file has no frame.
     pub(super) fn with_frames(self, times: Vec<f64>) -> Result<Self, RecordError> {
         if times.is_empty() {
             Err(RecordError::NoFrame { path: self.file.path })

@@ -10,14 +10,14 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const LEAST_ROOM: f64 = 1e-3;
 
 /// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
-/// within a few periods, each of which takes a few tens of steps. A search that has taken more gives its
-/// caller a chance to look at other things, and goes on from there later.
+/// within a few periods, each of which takes a few tens of steps. A search that has taken more steps returns
+/// to its caller, which resumes the search later.
 const MOST_STEPS: u32 = 256;
 
-/// The answer of a search for the first touch: the touch, or how far the way is free.
+/// The result of a search for the first touch: the touch, or the time up to which there is none.
 ///
 /// In [`wall`](crate::wall), a touch is its time. In [`boundary`](crate::boundary), it is a
-/// [`Touch`](crate::boundary::Touch). An `Option` turns into an answer with `into`:
+/// [`Touch`](crate::boundary::Touch). An `Option` becomes a result with `into`:
 ///
 /// ```
 /// use granular_edmd::wall::FirstTouch;
@@ -163,7 +163,7 @@ struct Search<'a, M: ?Sized> {
     reach: (f64, f64),
 }
 
-/// The gap and the wall at one time.
+/// The gap and its rate at one time, with bounds that hold until the end of the wall's piece.
 #[derive(Clone, Copy)]
 struct Look {
     gap: f64,
@@ -272,9 +272,10 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the acceleration of the gap during a fall through the rounding, within the piece.
+    /// Returns the mean acceleration of the gap while it falls through its rounding, within the piece.
     ///
-    /// The acceleration comes from the change of the rate, since the motion itself only gives bounds for it.
+    /// The acceleration comes from the change of the rate, since the motion only gives bounds of the
+    /// acceleration.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
         let fall = (-2.0 * first.tolerance / first.pull).sqrt();
         let soon = (start + fall.min(0.5 * (first.until - start))).max(start.next_up());
@@ -284,8 +285,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
     /// The room is the sum of the gap and its rounding, so that each step advances, and the last one ends
-    /// where the gap is closed by rounding. A gap that is closed by more than that gets almost no room, so
-    /// that no surface goes much deeper into a wall than it already is.
+    /// where the gap is closed by rounding. A gap that is negative by more than its rounding gets almost no
+    /// room, so that no surface goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }

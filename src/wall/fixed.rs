@@ -1,4 +1,4 @@
-//! Walls that do not move.
+//! The motion of a wall at rest.
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;

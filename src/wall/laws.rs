@@ -45,10 +45,10 @@ const LATE: i32 = 40;
 /// The check samples each piece that begins between the phases. The state must be finite and within the
 /// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
 /// the integral of the velocity. Pieces must advance, and the wall may jump only where one ends, away from
-/// the disks, and if the motion says so. The motion must repeat after its period, and answer alike when it is
-/// asked again. The check can miss a fault that is narrower than a five-hundredth of a piece, so check a
-/// motion with one long piece in several short intervals. It refuses an interval of more than ten thousand
-/// pieces. The page "Validation" says which planted faults it finds.
+/// the disks, and if the motion says so. The motion must repeat after its period, and return the same values
+/// when it is called again. The check can miss a fault that is narrower than a five-hundredth of a piece, so
+/// check a motion with one long piece in several short intervals. It refuses an interval of more than ten
+/// thousand pieces. The page "Validation" says which planted faults it finds.
 ///
 /// # Errors
 /// The first violation that the check finds.

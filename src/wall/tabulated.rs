@@ -38,7 +38,7 @@ pub struct Tabulated {
     /// Smallest and largest displacement.
     #[cfg_attr(feature = "serde", serde(skip))]
     reach: (f64, f64),
-    /// Two arcs from each row to the next, then the rest.
+    /// Two arcs from each row to the next, then the arc at rest after the last row.
     #[cfg_attr(feature = "serde", serde(skip))]
     arcs: Vec<Arc>,
 }

@@ -291,7 +291,7 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
 }
 
 impl PlanError {
-    /// Returns the error of a parameter that cannot vary, or not with these values.
+    /// Returns the error of a parameter that cannot vary, for the given reason.
     pub(super) fn varied(parameter: &str, reason: impl Into<String>) -> Self {
         Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write};
 
-/// An object that grows field by field.
+/// A JSON object to which fields are added one by one.
 #[derive(Debug, Default)]
 pub(super) struct Object(Vec<(&'static str, String)>);
 

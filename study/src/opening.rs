@@ -196,7 +196,7 @@ impl<E: Experiment> Study<E> {
         Origin { study: *self.hash.as_bytes(), maker: self.maker.clone(), ramp, value, seed }
     }
 
-    /// Checks that a file belongs to this study and this place in it, and that the study takes it.
+    /// Checks that a file belongs to this value of this study, and comes from code that the study accepts.
     pub(super) fn check_origin(
         &self,
         found: &Origin,
@@ -216,7 +216,7 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::Changed { path: path.to_owned(), part: "revision" })
     }
 
-    /// Returns whether code with the same results as this program made a file.
+    /// Returns whether a file comes from code with the same results as this program.
     pub(super) fn is_ours(&self, found: &Origin) -> bool {
         found.maker.key() == self.maker.key()
     }

@@ -35,8 +35,8 @@ use refinement::{Seen, Step};
 /// plan has the same ramps, and so do the parts of a sweep
 /// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight
 /// bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the
-/// same way from the plan's seed, and the name and value of each parameter of the sweep. In the index of a
-/// ramp, the repeat counts fastest.
+/// same way from the plan's seed, and the name and value of each parameter of the sweep. Successive indices
+/// of ramps first run through the repeats of a point.
 ///
 /// ```
 /// use granular_edmd_study::{Plan, Scalar, vibrated_box::VibratedBox};

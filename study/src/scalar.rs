@@ -48,7 +48,7 @@ impl Scalar {
     /// Returns the same value in the type of `other`, if nothing is lost: 1.0 becomes the integer 1, for
     /// example.
     pub(super) fn like(self, other: &Self) -> Self {
-        /// Up to this size, all whole numbers are doubles.
+        /// Largest magnitude up to which a double represents all whole numbers.
         const EXACT: f64 = 9_007_199_254_740_992.0;
         match (other, self) {
             (Self::Integer(_), Self::Number(number)) if number.abs() <= EXACT && number.trunc() == number => {

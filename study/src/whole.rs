@@ -98,7 +98,7 @@ pub(crate) fn remove(path: &Path) -> Result<(), StudyError> {
     if_there("remove", path, fs::remove_file(path)).map(drop)
 }
 
-/// Returns what the system answers about a file or folder; `None` if there is none of this name.
+/// Returns the system's result for a file or folder, or `None` if nothing with this name exists.
 pub(crate) fn if_there<T>(
     action: &'static str,
     path: &Path,

@@ -1,4 +1,4 @@
-//! Checks of walls that react to blows.
+//! Checks of walls that react to impacts.
 
 use glam::DVec2;
 
@@ -7,10 +7,10 @@ use crate::Violation;
 use crate::boundary::{Boundary, Impact, Reaction, Touch};
 use crate::violation::require;
 
-/// Speeds that blows give to a wall, in units of the typical speed.
+/// Speeds that the tested impacts give to a wall, in units of the typical speed.
 const BLOWS: [f64; 5] = [1e-6, 1e-3, 5e-2, 2.0, 2.0];
 
-/// Largest error of a velocity after a blow, relative to the change and to the typical speed.
+/// Largest error of a velocity after an impact, relative to the change and to the typical speed.
 const EXACT: f64 = 1e-8;
 const ROUNDING: f64 = 1e-12;
 

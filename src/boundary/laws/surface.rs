@@ -19,8 +19,8 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
-/// Largest errors of a normal: of its squared length, of its direction if another wall is as near, and of its
-/// direction else, of a speed and of a curvature.
+/// Largest errors: `UNIT` of a normal's squared length, `SLOPE` of its direction if another wall is as near,
+/// `EXACT` of its direction otherwise, of a speed and of a curvature.
 const UNIT: f64 = 1e-9;
 const SLOPE: f64 = 0.2;
 const EXACT: f64 = 5e-8;

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::boundary::brick::Brick;
 
-/// Sine of the smallest angle at which two bricks, turned toward the disks, shield their corner. A disk there
-/// touches both bricks and never the corner itself, so the corner needs no point.
+/// Sine of the smallest angle at which two bricks, turned toward the disks, shield their corner. A disk at
+/// such a corner touches both bricks and never the corner itself, so the corner needs no point.
 const CLEARLY: f64 = 1e-6;
 
 /// The bricks that meet at a place, by the directions in which they arrive and leave.

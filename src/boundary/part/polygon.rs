@@ -35,7 +35,7 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
     pairs(&points).map(side).collect()
 }
 
-/// Returns the points in pairs: the ends of each side.
+/// Returns the two ends of each side.
 fn pairs(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
     points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
 }

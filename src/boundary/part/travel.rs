@@ -30,13 +30,14 @@ pub(super) struct Along {
     pub(super) motion: Motion,
 }
 
-/// Turning about a point, which moves with the part.
+/// The rotation of a part about a point, which moves with the part.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::boundary) struct Turning {
     pub(in crate::boundary) about: DVec2,
     pub(in crate::boundary) angular_velocity: f64,
-    /// True if all bricks are circles about the point, so only the surface turns. Files do not tell.
+    /// True if all bricks are circles about the point, so that only the surface velocity shows the rotation.
+    /// Files do not hold this flag.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) is_round: bool,
 }
@@ -228,8 +229,8 @@ impl Travel {
         self.reach().1 - self.reach().0
     }
 
-    /// Returns how long it takes, at most `wait`, until a disk on this path in the frame at rest enters the
-    /// strip that a brick of the part sweeps: all places at which the disk touches the brick at some phase.
+    /// Returns the time, at most `wait`, until a disk on this path in the frame at rest enters the strip that
+    /// a brick of the part sweeps: all positions at which the disk touches the brick at some phase.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         brick: &Brick,

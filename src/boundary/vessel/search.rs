@@ -94,7 +94,7 @@ impl Vessel {
         Touch::new(time, entry.wall as usize + self.container.wall_count())
     }
 
-    /// Searches for the first touch of some moving bricks, in rounds, up to `until` or the touch of another
+    /// Searches for the first touch of the bricks `moving`, in rounds, up to `until` or the touch of another
     /// wall.
     fn search(
         &self,
@@ -126,11 +126,11 @@ impl Vessel {
         }
     }
 
-    /// Returns the touch of the patch that lies in a touched wall at the place of the touch, or the touch as
-    /// it is.
+    /// Returns the touch of the patch at this point of the touched wall, or the unchanged touch if there is
+    /// no patch.
     ///
     /// A sink in a wall, a belt or a thermal section is usually built as a part on the line of the wall.
-    /// Rounding would decide which of both is touched first.
+    /// Without this rule, rounding would decide whether the part or the wall is touched first.
     pub(super) fn on_patch(&self, touch: Touch, flight: &Flight) -> Touch {
         let (place, radius, count) =
             (flight.position(touch.time), flight.radius(), self.container.wall_count());

@@ -1,6 +1,6 @@
 //! Piles of disks, which grow at one end and are read as a whole.
 
-/// Number of disks in a block. With the link to another block they fill four cache lines.
+/// Number of disks in a block. The disks and the link to another block fill four cache lines.
 const ROOM: usize = 63;
 
 /// The link of a block without a successor.

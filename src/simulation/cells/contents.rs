@@ -4,8 +4,8 @@ use super::block::{Block, CROWDED, SLOTS};
 use super::crowd::Crowds;
 use crate::prefetch::prefetch;
 
-/// Room in which three blocks are written. A block counts up to 7 as far as the compiler knows, so the third
-/// one begins before slot 16.
+/// Size of the slice to which three blocks are written. As far as the compiler knows, a block holds up to 7
+/// disks, so the third block begins before slot 16.
 const WINDOW: usize = 16 + SLOTS;
 
 /// The disks of each cell, by the index of the cell.
@@ -118,22 +118,23 @@ impl Contents {
         [0, step, 2 * step].iter().fold(count, |count, cell| self.gather_cell(first + cell, found, count))
     }
 
-    /// Appends the disks of cells that follow each other to the first `count` of those found.
+    /// Appends the disks of consecutive cells to `found`, behind its first `count` entries. Returns the new
+    /// count.
     #[inline]
     pub(super) fn gather_run(&self, first: usize, cells: usize, found: &mut [u32], count: usize) -> usize {
         let blocks = &self.blocks[first..first + cells];
         blocks.iter().fold(count, |count, block| self.gather_block(block, found, count))
     }
 
-    /// Appends the disks of one cell to the first `count` of those found.
+    /// Appends the disks of one cell to `found`, behind its first `count` entries. Returns the new count.
     #[inline(always)]
     pub(super) fn gather_cell(&self, cell: usize, found: &mut [u32], count: usize) -> usize {
         self.gather_block(&self.blocks[cell], found, count)
     }
 
-    /// Appends the disks of a cell. All slots are copied, and the next block overwrites those behind the last
-    /// slot that is taken. The code branches on whether the cell is crowded, which is rare, but not on how
-    /// many slots are taken.
+    /// Appends the disks of a cell. All slots are copied, and the next block overwrites the slots behind the
+    /// last disk. The code branches on whether the cell is crowded, which is rare, but not on how many slots
+    /// are taken.
     #[inline(always)]
     fn gather_block(&self, block: &Block, found: &mut [u32], count: usize) -> usize {
         found[count..count + SLOTS].copy_from_slice(&block.slots());

@@ -51,7 +51,7 @@ fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, 
     }
 }
 
-/// Returns the bounds with `count` of them inverted, from `first` on.
+/// Returns a copy of the bounds with `count` of them inverted, beginning at `first`.
 fn changed(bounds: &[bool], first: usize, count: usize) -> Vec<bool> {
     let is_changed = |k: usize| (first..first + count).contains(&k);
     bounds.iter().enumerate().map(|(k, &is_bound)| is_bound != is_changed(k)).collect()

@@ -58,8 +58,8 @@ impl Grid {
 
     /// Creates the grid of this layout with cells that keep no disks beyond their edges.
     ///
-    /// Layers of larger disks have such grids. Their reaches are computed from the edges, and a margin would
-    /// make every one of them larger.
+    /// The layers of larger disks use such grids. Reaches are computed from the edges, so a margin would
+    /// enlarge every reach.
     pub(in crate::simulation) fn without_margin(domain: &Domain, layout: Layout) -> Self {
         Self::new(domain, layout, f64::INFINITY)
     }

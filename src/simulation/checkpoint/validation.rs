@@ -25,7 +25,7 @@ const SLACK: f64 = 1e-3;
 /// large, since a collision may have made epochs shorter after the search.
 const MOST_EPOCHS: f64 = 1e6;
 
-/// The fault of cells that do not suit the domain or the disks.
+/// The message about cells that do not suit the domain or the disks.
 pub(super) const MISFIT: &str = "its neighbor cells are not those of the domain";
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {

@@ -31,7 +31,7 @@ pub struct FailedCollision {
     pub wall: Option<String>,
     /// The present.
     pub time: f64,
-    /// The contact about which the engine asked the rule.
+    /// The contact that the engine passed to the rule.
     pub contact: Contact,
     /// The impulse with which the rule answered.
     pub impulse: Impulse,

@@ -89,7 +89,7 @@ pub(in crate::simulation) struct Bodies {
     /// The count of collisions with which the next new disk begins, larger than the count of any disk whose
     /// index it may get.
     pub(in crate::simulation) fresh_count: u32,
-    /// True if disks have come or gone since the typical diameter was measured.
+    /// True if disks were added or removed since the typical diameter was measured.
     pub(super) has_changed: bool,
 }
 

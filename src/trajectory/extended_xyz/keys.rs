@@ -152,7 +152,8 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// Returns the first word of a text, without its quotes or brackets, and the rest; `None` if it does not end.
+/// Returns the first word of a text, without its quotes or brackets, and the rest of the text, or `None` if
+/// the word does not end.
 fn word(text: &str, ends: impl Fn(char) -> bool) -> Option<(&str, &str)> {
     let open = text.chars().next().unwrap_or(' ');
     let close = match open {

@@ -65,7 +65,7 @@ impl<R: Read + Seek> Archive<R> {
         self.entries.last().map_or(0, |last| number(last, 0).saturating_add(1))
     }
 
-    /// Reads a chunk of a frame, if it is there.
+    /// Reads a chunk of a frame. Returns `None` if the frame does not have the chunk.
     pub(super) fn chunk(&mut self, frame: u64, name: &str) -> Result<Option<Chunk>, ReadError> {
         let Some(wanted) = self.names.iter().position(|known| known == name) else { return Ok(None) };
         let start = self.entries.partition_point(|entry| number(entry, 0) < frame);

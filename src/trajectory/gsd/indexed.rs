@@ -234,8 +234,8 @@ fn shape_at(entries: &[u8], frame: usize) -> Shape {
     Shape { number: frame, disks: rows(5), kinds: rows(4), walls: rows(20) }
 }
 
-/// Returns the entries of a frame whose chunks begin at this place, and the place after the chunks. Chunks
-/// without rows have no entry.
+/// Returns the entries of a frame whose chunks begin at byte `start`, and the position after the last chunk.
+/// Chunks without rows have no entry.
 fn entries(shape: Shape, start: u64) -> (Vec<u8>, u64) {
     let (mut entries, mut location) = (Vec::new(), start);
     for (id, &(_, kind, columns, rows)) in (0_u16..).zip(&CHUNKS) {

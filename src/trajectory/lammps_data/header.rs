@@ -42,7 +42,7 @@ impl<'a> Header<'a> {
         Ok((header, None))
     }
 
-    /// Reads a line of the header.
+    /// Reads one line of the header into the fields.
     fn take(&mut self, text: &'a str, line: usize) -> Result<(), ReadError> {
         let words: Vec<&'a str> = text.split_whitespace().collect();
         let ends = |low: &str, high: &str| -> Result<_, ReadError> {

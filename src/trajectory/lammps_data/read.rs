@@ -110,7 +110,7 @@ impl<'a> Sections<'a> {
         velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
     }
 
-    /// Returns the disks. Only those of a periodic box pass its sides.
+    /// Returns the table of the disks. Only in a periodic box may disks cross the sides.
     fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
         let mut names: Vec<&str> = self.columns.0.split_whitespace().collect();
         let (kind, size) = (names.iter().position(|&name| name == "type"), names.len());
@@ -187,7 +187,8 @@ fn id(row: &str, line: usize) -> Result<u64, ReadError> {
 }
 
 /// Returns the columns of the style that the comment behind `Atoms` names, and whether it names the style
-/// `sphere`. The names of the columns may follow the style. LAMMPS writes `hybrid` alone.
+/// `sphere`. The comment may list the names of the columns after the style. LAMMPS writes the style `hybrid`
+/// without names.
 fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {
     let style = name.split_once('#').map_or("", |(_, style)| style.trim());
     let words: Vec<&str> = style.split_whitespace().collect();

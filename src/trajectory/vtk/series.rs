@@ -1,4 +1,4 @@
-//! A series of files, and the file of their times.
+//! A series of files, one for each frame, and the file that lists their times.
 
 use std::fs::{self, File};
 use std::io::{self, Write};

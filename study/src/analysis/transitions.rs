@@ -152,7 +152,7 @@ fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
     across
         .map(|pair| Transition {
             line,
-            // Halved before they are added, since the sum of two large values may overflow.
+            // The values are halved before they are added, since the sum of two large values may overflow.
             value: 0.5 * pair[0].0 + 0.5 * pair[1].0,
             error: 0.5 * pair[1].0 - 0.5 * pair[0].0,
             rising: pair[1].1,

@@ -21,12 +21,13 @@ const RAMPS: usize = 4;
 /// The standard states, in the order in which they are measured.
 const NAMES: [&str; 7] = ["dilute", "dense", "gas at 0.1", "gas at 0.3", "gas at 0.65", "mixture", "vessel"];
 
-/// The standard table: what a collision takes in each of the standard states.
+/// The standard table: the time per collision in each standard state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Table {
     circumstances: Circumstances,
-    /// Number of collisions in a stretch. In short ones, caches that fill take a part of the time.
+    /// Number of collisions in a measured interval. In short intervals, filling the caches takes a part of
+    /// the time.
     collisions: u64,
     states: Vec<State>,
 }
@@ -39,13 +40,13 @@ struct State {
     events_per_collision: f64,
 }
 
-/// Ratio by which the times of the same program drift from sitting to sitting, even if each sitting scatters
-/// less. A [`Comparison`](speed::Comparison) in one sitting has no such drift.
+/// Ratio by which the times of the same program drift from session to session, even if the times of each
+/// session scatter less. A [`Comparison`](speed::Comparison) within one session has no such drift.
 const DRIFT: f64 = 1.05;
 
 type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
-/// Measures the standard table and prints it, against an earlier one if there is a file with it.
+/// Measures the standard table and prints it, compared with an earlier table if a file of one is given.
 pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<End, Failure> {
     let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
     let earlier = against.map(|path| earlier(path, collisions)).transpose()?;

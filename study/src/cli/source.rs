@@ -138,7 +138,8 @@ pub(super) fn tell(note: &str) {
     let _ = writeln!(io::stderr(), "note: {note}");
 }
 
-/// Tells the error with which a run ended. Errors know disks by their indices, and tables by their ids.
+/// Prints the error with which a run ended. Errors name disks by their indices, and tables name them by their
+/// ids.
 pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
     let id = match error {
         RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. } => run.disk(*disk),

@@ -14,7 +14,7 @@ const NOTES: [(&str, &str); 4] = [
     ("[[sweep]]", "Independent runs."),
 ];
 
-/// Examples of sections that a plan may have, for a plan that lacks them.
+/// Examples of optional sections, shown for plans that lack them.
 const EXAMPLES: [(&str, &str); 3] = [
     ("repeats", "repeats = 8   (before [experiment])"),
     ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),

@@ -262,7 +262,7 @@ impl<E: Experiment> Active<'_, E> {
         }
     }
 
-    /// Lets the experiment prepare the next step, once.
+    /// Calls the experiment's `prepare` for the next step, unless it was called already.
     fn prepare(&mut self) -> Result<(), Early> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());

@@ -171,7 +171,7 @@ impl<E: Experiment> fmt::Debug for Table<E> {
     }
 }
 
-/// Names that are taken, by the tables of every study and by the columns of every table.
+/// Reserved names: the tables of every study (`TABLES`) and the columns of every table (`PLACE`).
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 const PLACE: [&str; 12] = [
     "ramp",

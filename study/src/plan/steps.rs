@@ -1,13 +1,13 @@
-//! Values by a rule, which cost no memory however many they are.
+//! Values that follow from a rule, and cost no memory, however many there are.
 
 use granular_edmd::ParameterError;
 use granular_edmd::quantity::{accept, finite, positive};
 
-/// Largest number of values by a rule: larger numbers are not counted exactly.
+/// Largest number of values that follow from a rule: doubles do not count larger numbers exactly.
 const MOST: f64 = 9_007_199_254_740_992.0;
 
-/// Fraction of a step by which the last one may miss the end. It is some rounding of decimal fractions, since
-/// neither 0.1 nor 1/3 is a double.
+/// Fraction of a step by which the last step may miss the end. It allows for the rounding of decimal
+/// fractions, since neither 0.1 nor 1/3 is a double.
 const ROUNDING: f64 = 1e-9;
 
 /// Increasing values by a rule, as a plan has them instead of a list: `{ from = 0.0, to = 1.0, step = 0.1 }`

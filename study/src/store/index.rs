@@ -62,9 +62,10 @@ impl Head {
     }
 }
 
-/// A record, or a value that counts as not done: its head, and the place of its contents.
+/// The entry of a record, or of a value that counts as unfinished: its header, and the position of its
+/// contents in a log.
 ///
-/// There may be a million of them in memory, so it has no room to spare.
+/// A million entries may be in memory, so an entry is as small as possible.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
     head: [u8; HEAD],

@@ -1,6 +1,6 @@
 //! The search for partners, four pairs at a time, with selections by the bits of a mask (AVX-512).
 //!
-//! A mask has a bit for each lane, and what compares under a mask compares only the lanes that are in it.
+//! A mask has a bit for each lane; a comparison under a mask compares only the lanes whose bit is set.
 
 use std::arch::x86_64::{
     __m256d, __m256i, _CMP_EQ_OQ as EQUAL, _CMP_GT_OQ as GREATER, _CMP_LE_OQ as LESS_OR_EQUAL,
