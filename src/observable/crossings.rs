@@ -48,7 +48,7 @@ pub struct Crossings {
     backward: Vec<u64>,
 }
 
-/// The free flight of a center since the time `start`.
+/// The free flight of a center since `time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Free {

@@ -72,9 +72,9 @@ pub struct Counters {
     pub horizons: u64,
     /// Changes of the size of the neighbor cells. Each change predicts all events anew.
     pub cell_resizes: u64,
-    /// Largest overlap of two disks at a collision. A larger one than rounding ends the run.
+    /// Largest overlap of two disks at a collision. An overlap larger than rounding ends the run.
     pub max_overlap: f64,
-    /// Largest overlap of a disk and a wall at a collision. A larger one than rounding ends the run.
+    /// Largest overlap of a disk and a wall at a collision. An overlap larger than rounding ends the run.
     pub max_wall_overlap: f64,
     /// Disks that sinks took out.
     pub removals: u64,

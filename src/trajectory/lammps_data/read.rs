@@ -110,7 +110,8 @@ impl<'a> Sections<'a> {
         velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
     }
 
-    /// Returns the table of the disks. Only in a periodic box may disks cross the sides.
+    /// Returns the table of the disks. An image other than 0 makes the box periodic, since disks cross only
+    /// periodic sides.
     fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
         let mut names: Vec<&str> = self.columns.0.split_whitespace().collect();
         let (kind, size) = (names.iter().position(|&name| name == "type"), names.len());
