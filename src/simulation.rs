@@ -1,4 +1,4 @@
-//! The engine, which takes disks from event to event.
+//! The engine, which advances disks from event to event.
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
@@ -77,7 +77,7 @@ use cells::Cells;
 use lookahead::Lookahead;
 use state::{Bodies, Clock, Ledger};
 
-/// A system of disks that is taken from event to event.
+/// A system of disks that advances from event to event.
 ///
 /// Times given and returned are absolute times, in the units of the caller. Internally, times are offsets
 /// from an epoch that moves on, so that late times keep their digits. [`Simulation::builder`] makes a
@@ -173,7 +173,7 @@ struct Scratch {
     found: [Vec<u32>; 2],
     /// The times of all disks.
     due: Vec<f64>,
-    /// Number of disks that the scheduler has room for.
+    /// Number of disks for which the scheduler has room.
     seats: usize,
 }
 
@@ -210,8 +210,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.disks(self.clock.now)
     }
 
-    /// Returns the disk or wall into which another disk would reach deepest now, and the depth; `None` if
-    /// there is room for it.
+    /// Returns the disk or wall that another disk would overlap most deeply now, and the depth, or `None` if
+    /// there is room for the other disk.
     ///
     /// This looks at all disks.
     ///
@@ -247,8 +247,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.snapshot_as_of(self.time())
     }
 
-    /// Returns the present state as of the time that was asked for. [`Self::time`] may differ from that time
-    /// by rounding.
+    /// Returns the present state, as of the requested time. [`Self::time`] may differ from that time by
+    /// rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
         let Self { bodies, boundary, marks, .. } = self;
         Snapshot::of_run(time, self.clock.now, bodies, boundary, bodies.gravity, *marks)

@@ -34,7 +34,8 @@ pub(super) use layout::{CELLS_PER_DISK, Layout, SPARE_CELLS};
 pub(super) use size_class::SizeClass;
 use size_class::{class_of, count, together};
 
-/// Number of disks that may come or go before they are compared with those for which the cells were made.
+/// Number of disks that may be added or removed before the numbers of disks are compared with the numbers for
+/// which the cells were made.
 pub(super) const SPARE_DISKS: usize = 64;
 
 /// The disks in the cells of a grid.
@@ -69,8 +70,8 @@ impl Cells {
         let largest =
             classes.last().map_or_else(|| SizeClass::of_nobody(&domain).largest, |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
-        // Also where layers are used: this layout says whether the domain has room for the largest disk at
-        // all.
+        // This layout is needed with layers, too: it decides whether the domain has room for the largest disk
+        // at all.
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // All disks share the cells of the largest if periodic sides or ends are too close for layers.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
@@ -155,7 +156,8 @@ impl Cells {
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
         self.change(disk, Contents::remove);
-        // The last disk is found by its old number for the last time, and is written anew under the free one.
+        // The last disk is looked up by its old number for the last time, then written under the number that
+        // became free.
         if disk != last {
             self.change(last, Contents::remove);
         }
@@ -168,8 +170,8 @@ impl Cells {
         }
     }
 
-    /// Writes to `found` the disks that one of this diameter at this place would overlap, and others near it.
-    /// Returns their number.
+    /// Writes to `found` the disks that a disk of this diameter at this place would overlap, and other disks
+    /// near the place. Returns their number.
     pub(super) fn near(&self, position: DVec2, diameter: f64, found: &mut [u32]) -> usize {
         let class = class_of(&self.classes, diameter);
         match self.layers.as_ref().and_then(|layers| Some((layers, layers.of_class(class)?))) {
@@ -347,7 +349,8 @@ impl Cells {
         let count = self.contents.gather(first, step, found, 0);
         match &self.layers {
             None => count,
-            // The larger disks are few, so it does not pay to leave out those that were within reach before.
+            // The larger disks are few, so it is not worthwhile to leave out disks that were within reach
+            // before.
             Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }

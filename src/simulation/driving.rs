@@ -1,4 +1,4 @@
-//! Driving in the bulk: all disks are changed at set times, between which the run goes on as usual.
+//! Driving in the bulk: changes of all disks at set times, between which the run continues as usual.
 //!
 //! | driving | change |
 //! |---|---|

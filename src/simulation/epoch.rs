@@ -24,7 +24,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due.clear();
         due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));
         if !self.inlets.is_empty() {
-            // Seats for disks that are still to come.
+            // Room for disks that are added later.
             due.resize(due.len() + due.len() / 4 + SPARE_DISKS, f64::INFINITY);
         }
         self.scratch.seats = due.len();
@@ -36,7 +36,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Moves the epoch on by whole epochs to just before the offset `due`, and the present to `due`.
+    /// Moves the epoch by whole epochs to just before the offset `due`, and sets the present to `due`.
     #[cold]
     #[inline(never)]
     pub(super) fn move_epoch(&mut self, due: f64) -> Outcome<()> {
@@ -50,7 +50,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Moves the epoch on by this time.
+    /// Moves the epoch forward by this time.
     pub(super) fn shift_epoch(&mut self, by: f64) {
         self.bodies.shift(by);
         self.clock.shift(by);

@@ -144,7 +144,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         let is_plain = matches!(surface.response, Response::Shared | Response::Rule(_));
         self.ledger.has_source |= !is_plain || surface.velocity != DVec2::ZERO;
-        // Before the touch is checked: a sink for centers takes disks that lie deep in its wall.
+        // The removal comes before the check of the touch, since disks may lie deep in the wall of a sink for
+        // centers.
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
         }
@@ -155,8 +156,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.wall_collisions += 1;
         self.count_regime(&collision);
         self.kick(disk, &kick);
-        // The wall reacts before the disk's next flight is searched, which must see the wall as it moves from
-        // now on.
+        // The wall reacts before the disk's next flight is predicted, since the prediction needs the new
+        // motion of the wall.
         let reaction = self.boundary.react(&impact_of(&collision, wall, self.clock.now));
         self.find_next(disk);
         if parts {
@@ -178,7 +179,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         for disk in 0..self.bodies.len() {
             let (region, at_wall) = self.cells.region(disk);
             let Forecast { exit, exit_due: until, wall: expected, .. } = *self.forecast(disk);
-            // A touch that was expected may be later now, or never.
+            // A predicted touch may now happen later, or not at all.
             let was_to_meet = exit == Exit::Wall && usize::from(expected) == wall;
             let may_meet = || self.boundary.may_meet(wall, &region, self.bodies.radius(disk), until);
             if at_wall && (was_to_meet || may_meet()) {

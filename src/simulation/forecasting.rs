@@ -82,14 +82,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         earliest_collision(self.instructions, &self.bodies, periods, disk, found, count, now, known)
     }
 
-    /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.
+    /// Sets `earliest` as the next collision of a disk whose next collision was `known` before.
     ///
     /// The code does not branch on whether they are the same. The answer is known last of all, and a
     /// misprediction would undo much work.
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
         let nobody = earliest.partner as usize >= self.bodies.len();
-        // The disk stands in for nobody, since the count of some disk is read in any case.
+        // Without a partner, the disk's own index stands in, since some disk's count is read in any case.
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
         // A known collision keeps the count of its own prediction. With the partner's present count, a
         // prediction that the partner's last collision has outdated would count as valid.
@@ -117,7 +117,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Finds the time and the way in which a disk's flight in its cell ends.
+    /// Finds when and where a disk's flight in its cell ends.
     #[inline(always)]
     pub(super) fn end_flight(&mut self, disk: usize) {
         self.instructions.run(
@@ -154,7 +154,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 (horizon, Exit::Horizon)
             }
             FirstTouch::NotBefore(open) if open > now => (open, Exit::Horizon),
-            // The search gets no further, so neither would the run.
+            // The search makes no progress, so the run would not either.
             FirstTouch::NotBefore(_) => (now, Exit::Impossible),
         };
         let forecast = self.forecast_mut(disk);

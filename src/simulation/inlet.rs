@@ -141,7 +141,7 @@ impl Inlet {
         Ok(self)
     }
 
-    /// Returns the disks of which copies come in.
+    /// Returns the models, whose copies enter.
     pub(super) fn models(&self) -> &[Disk] {
         if let Source::New(models) = &self.source { models } else { &[] }
     }
@@ -151,17 +151,17 @@ impl Inlet {
         2.0 * self.models().iter().map(Disk::radius).fold(0.0, f64::max)
     }
 
-    /// Returns the velocity at which disks come back, if the inlet puts back what sinks take out.
+    /// Returns the velocity of returning disks if the inlet puts back disks that sinks remove.
     pub(super) fn velocity_of_return(&self) -> Option<DVec2> {
         if let Source::TakenOut { velocity, .. } = self.source { Some(velocity) } else { None }
     }
 
-    /// Returns whether the inlet puts back what sinks take out.
+    /// Returns whether the inlet puts back disks that sinks remove.
     pub(super) fn takes_back(&self) -> bool {
         matches!(self.source, Source::TakenOut { .. })
     }
 
-    /// Takes a disk that a sink has taken out.
+    /// Receives a disk that a sink has removed.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         if let Source::TakenOut { velocity, kind } = self.source {
             let model = Disk::at_rest(gone.radius(), gone.mass(), gone.inertia_factor(), gone.kind());
@@ -170,7 +170,7 @@ impl Inlet {
         }
     }
 
-    /// Begins to let disks in at this time, and goes on to the next one.
+    /// Starts an opening at this time, and advances to the next opening.
     pub(super) fn open(&mut self, time: f64) {
         self.times.advance_past(time);
         if let Source::New(models) = &self.source {
@@ -179,7 +179,7 @@ impl Inlet {
         }
     }
 
-    /// Returns a disk at a random place of the inlet, as one that has no id yet.
+    /// Returns a disk without an id at a random position of the inlet.
     pub(super) fn placed(&mut self, disk: &Disk) -> Option<Disk> {
         let [low, high] = self.places;
         let mut along = |low: f64, high: f64| low + (high - low) * uniform(&mut self.generator);

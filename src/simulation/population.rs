@@ -90,7 +90,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(removed)
     }
 
-    /// Predicts all events anew after disks have come or gone.
+    /// Predicts all events anew after disks were added or removed.
     pub(super) fn begin_anew(&mut self) {
         self.lookahead = Lookahead::default();
         self.ledger.has_source = true;

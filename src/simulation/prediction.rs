@@ -21,7 +21,7 @@ use vector::pairs;
 /// instructions, and no branch depends on whether a pair approaches: such a branch is a coin toss.
 pub(super) const LANES: usize = 4;
 
-/// The relative positions and velocities of some pairs.
+/// The relative positions and velocities of several pairs.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pairs {
     x: [f64; LANES],
@@ -77,7 +77,8 @@ impl Best {
         Self { due: [known.due; LANES], partner: [u64::from(known.partner); LANES] }
     }
 
-    /// Takes collisions that are earlier. Of equal times, the smaller partner wins.
+    /// Replaces the known collision in each lane where a new one is earlier. Of equal times, the smaller
+    /// partner wins.
     #[inline]
     fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {
         for lane in 0..LANES {

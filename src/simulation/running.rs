@@ -11,10 +11,10 @@ use crate::collision::CollisionRule;
 use crate::observable::Observer;
 use crate::scheduler::EventScheduler;
 
-/// The point to which a run has come.
+/// The reason why a run pauses or ends.
 enum Reached {
     Collision(Event),
-    /// The run has come to the time until which it should go.
+    /// The run has reached its target time.
     Time,
     Limit(RunEnd),
 }
@@ -57,8 +57,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.guarded(|run| run.watched_run(limits, observer)).map_err(|error| *error)
     }
 
-    /// Does a piece of work, unless a panic tore an earlier one. A part that panics in the midst of an event
-    /// leaves disks whose next events are not known.
+    /// Performs some work on the run, unless a panic interrupted earlier work. A part that panics in the
+    /// midst of an event leaves disks whose next events are not known.
     #[inline]
     fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Outcome<T>) -> Outcome<T> {
         if std::mem::replace(&mut self.ledger.is_running, true) {
@@ -99,7 +99,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         ended.and_then(|end| last.map(|_| end))
     }
 
-    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it.
+    /// Advances to the next collision and returns it, unless the collision is after the absolute time `end`.
     ///
     /// If there is none, goes to `end` and returns `None`.
     ///
@@ -145,7 +145,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
     }
 
-    /// Goes from sample to sample until a limit.
+    /// Advances from sample to sample until a limit.
     #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
         let end = watch.end();
@@ -169,7 +169,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                     return Ok(RunEnd::Observer);
                 }
             }
-            // Before a sample at the same time, which then sees the new disks.
+            // Inlets open before a sample at the same time, so that the sample sees the new disks.
             if opening <= stop {
                 self.open_inlets(opening, observer)?;
                 continue;
@@ -208,7 +208,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
-        // The difference is rounded, and must not take the run back behind its last event.
+        // The difference is rounded, and must not set the run back to a time before its last event.
         self.clock.now = self.clock.now.max(stop - self.clock.origin);
         Ok(Reached::Time)
     }

@@ -74,7 +74,7 @@ impl Contents {
     fn remove_from_crowded(&mut self, cell: usize, disk: u32) {
         let block = &mut self.blocks[cell];
         let Some(crowd) = block.crowd() else { return };
-        // The crowd gives up its last disk, which then fills the gap, be it in the block or in the crowd.
+        // The last disk of the crowd fills the gap, whether the gap is in the block or in the crowd.
         let (last, left) = self.crowds.pop(crowd);
         match left {
             Some(crowd) => block.set_crowd(crowd),
@@ -95,8 +95,8 @@ impl Contents {
     /// Appends the disks of three cells, `step` apart, to the first `count` disks in `found`.
     #[inline(always)]
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
-        // One bounds check serves all three cells, and one serves all that is written: the compiler knows
-        // that the counts of two blocks leave room for a third one in the window.
+        // One bounds check covers the reads of all three cells, and one covers all writes: the compiler knows
+        // that the counts of two blocks leave room for a third block in the window.
         let blocks = &self.blocks[first..][..=2 * step];
         let window = &mut found[count..count + WINDOW];
         let mut taken = 0;
@@ -111,7 +111,7 @@ impl Contents {
         count + taken
     }
 
-    /// Does the same where a cell is crowded, from the start.
+    /// Appends the disks of the same three cells if one of the cells is crowded.
     #[cold]
     #[inline(never)]
     fn gather_crowded(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
@@ -150,7 +150,7 @@ impl Contents {
         block.crowd().map_or(count, |crowd| self.crowds.gather(crowd, found, count))
     }
 
-    /// Requests a cell from memory.
+    /// Prefetches the block of a cell.
     #[inline]
     pub(super) fn prefetch(&self, cell: usize) {
         prefetch(&self.blocks, cell);

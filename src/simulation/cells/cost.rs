@@ -49,7 +49,7 @@ impl Group {
         classes.iter().map(group).collect()
     }
 
-    /// Returns this group together with one of larger disks.
+    /// Returns the union of this group and a group of larger disks.
     pub(super) fn with(&self, larger: &Self) -> Self {
         let class = self.class.with(&larger.class);
         let (collisions, speed) = (self.collisions + larger.collisions, self.speed + larger.speed);

@@ -7,7 +7,7 @@ use super::size_class::SizeClass;
 /// very many classes.
 const WIDTH: f64 = 0.7;
 
-/// Returns the classes, from the smallest disks up; none without disks.
+/// Returns the classes in the order of their sizes, smallest first. Without disks, there is no class.
 ///
 /// Narrow classes save looks at disks that are too far away, and few classes save looks into layers. The
 /// classes returned are the cheapest that the search finds.
@@ -40,8 +40,8 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);
     loop {
-        // Two neighbors inverted together are a bound that shifts, or two that come or go at once. Without
-        // such steps the search would stay in a valley where every single change is a loss.
+        // Inverting two neighbors together shifts a bound, or adds or removes two bounds. Without such steps
+        // the search would stay in a valley where every single change is a loss.
         let changed = (0..bounds.len()).flat_map(|first| [1, 2].map(|count| changed(&bounds, first, count)));
         let costs = changed.map(|bounds| (cost(&bounds), bounds));
         match costs.min_by(|a, b| a.0.total_cmp(&b.0)) {

@@ -56,8 +56,8 @@ pub(super) struct Layers {
     /// Class of each disk. A disk that is added has yet to enter its cell, and one that goes has left it.
     pub(super) classes: Vec<u8>,
     larger: Vec<Layer>,
-    /// For each home of each class, the smallest class first: the larger disks that reach it from their
-    /// cells.
+    /// The visitors of each home of each class, the smallest class first: the larger disks that reach the
+    /// home from their cells.
     visitors: Vec<Contents>,
     /// True if a disk that enters another cell must look at all partners again.
     pub(super) is_narrow: bool,
@@ -71,7 +71,7 @@ pub(super) fn layouts(
     highest: f64,
 ) -> Option<Layouts> {
     let SizeClass { largest: diameter, count, .. } = classes[0];
-    // Large disks look into many of these cells, so they are made fewer than if all disks had the same cells.
+    // Large disks search many of these cells, so there are fewer cells than if all disks had the same size.
     let most = cells_per_small_disk(cell_size) * count as f64 + SPARE_SMALL_CELLS;
     let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
     let grid = Grid::new(domain, smallest, diameter);
@@ -135,20 +135,20 @@ impl Layers {
         self.larger.iter().map(|layer| layer.layout).collect()
     }
 
-    /// Returns the layer of a disk; `None` for the smallest class.
+    /// Returns the layer of a disk, or `None` for a disk of the smallest class.
     #[inline]
     pub(super) fn of(&self, disk: usize) -> Option<&Layer> {
         self.of_class(self.classes[disk])
     }
 
-    /// Returns the layer of a class; `None` for the smallest one.
+    /// Returns the layer of a class, or `None` for the smallest class.
     #[inline]
     pub(super) fn of_class(&self, class: u8) -> Option<&Layer> {
         self.larger.get(usize::from(class).wrapping_sub(1))
     }
 
-    /// Writes a disk of a larger class into its home and into all homes that it reaches, or takes it out of
-    /// all of them.
+    /// Writes a disk of a larger class into its home and into all homes that it reaches, or removes the disk
+    /// from all these homes.
     pub(super) fn change(&mut self, disk: usize, place: Place, change: impl Fn(&mut Contents, usize, usize)) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
@@ -221,12 +221,13 @@ impl Layers {
                 count = layer.contents.gather_run(first, homes, found, count);
             });
         }
-        // Disks of larger classes come to this disk's home as visitors, as large disks do to small ones.
+        // Disks of larger classes are visitors of this disk's home, as they are of the homes of the smallest
+        // class.
         self.visitors[class].gather_cell(layer.home(place), found, count)
     }
 
-    /// Writes to `found` all disks that one of this larger class at this place may overlap, also those that
-    /// would lie inside it. Returns their number.
+    /// Writes to `found` all disks that a disk of this larger class at this place may overlap, including
+    /// disks that would lie inside it. Returns their number.
     pub(super) fn gather_all(
         &self,
         smallest: &Contents,
@@ -270,7 +271,7 @@ fn homes_of(grid: &Grid) -> Homes<'_> {
 pub(in crate::simulation) struct Layouts {
     /// The cells of the smallest class.
     pub(in crate::simulation) smallest: Layout,
-    /// The layers of the larger classes; none if all disks share the same cells.
+    /// The layers of the larger classes; empty if all disks share the same cells.
     pub(in crate::simulation) larger: Vec<LayerLayout>,
     /// The classes of disks that have separate cells.
     pub(in crate::simulation) classes: Vec<SizeClass>,

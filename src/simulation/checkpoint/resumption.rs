@@ -1,4 +1,4 @@
-//! Resumption: the way from a checkpoint to a run.
+//! Resumption: building a run from a checkpoint.
 
 use super::validation::{MISFIT, are_layouts, check, check_numbers, check_places};
 use super::{Checkpoint, CheckpointError, Saved};
@@ -14,7 +14,7 @@ use crate::simulation::lookahead::Lookahead;
 use crate::simulation::state::{Bodies, Clock};
 use crate::simulation::{Scratch, Simulation};
 
-/// A run that is about to go on; see [`Simulation::resume`].
+/// A builder of a run that continues from a checkpoint; see [`Simulation::resume`].
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Resumption<'a, R, B, S = BySize> {
@@ -134,7 +134,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             scratch: Scratch::default(),
             inlets: saved.inlets.clone(),
             ledger: saved.ledger,
-            // The observers that are read with it have lost the mark of the run that was saved.
+            // The observers that are read with a checkpoint have lost the mark of the saved run.
             marks: [Mark::default(), Mark::new()],
         }
     }

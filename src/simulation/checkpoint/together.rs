@@ -52,7 +52,7 @@ impl Checkpoint {
     ) -> Result<(), CheckpointError> {
         let encode = |observers: &O| postcard::to_stdvec(&(self, observers)).map_err(contents);
         let bytes = encode(observers)?;
-        // Now is the time to notice, not when the run is gone and its observers are needed.
+        // An unreadable file must be noticed now, not when the run is gone and its observers are needed.
         let (_, read): (Self, O) = decoded(&bytes)?;
         validation::check(encode(&read)? == bytes, "its observers do not read back as they were written")?;
         write_whole(path.as_ref(), &SEAL.seal(&bytes)).map_err(failed("write", path.as_ref()))

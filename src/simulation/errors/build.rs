@@ -21,7 +21,7 @@ pub enum BuildError {
         Readable(*.start), Rounded(*.spacing), Rounded(*.epoch)
     )]
     StartTime {
-        /// The start time asked for.
+        /// The requested start time.
         start: f64,
         /// Distance to the next floating-point number.
         spacing: f64,

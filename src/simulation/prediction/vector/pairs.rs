@@ -63,8 +63,8 @@ impl Search {
         }
     }
 
-    /// Predicts the collisions with four more disks, and takes those that are earlier. Of equal times, the
-    /// smaller partner wins.
+    /// Predicts the collisions with four more disks, and keeps the earlier collision in each lane. Of equal
+    /// times, the smaller partner wins.
     #[target_feature(enable = "avx512vl")]
     #[inline]
     fn improve<const IS_PERIODIC: bool>(&mut self, bodies: &Bodies, lanes: &[u32; LANES], common: &Common) {
@@ -148,7 +148,7 @@ fn nearest_image(x: __m256d, period: __m256d) -> __m256d {
     add(subtract(x, back), forth)
 }
 
-/// Returns the first `count` candidates by fours. The disk itself fills the last four.
+/// Returns the first `count` candidates in groups of four. The disk itself fills the last four.
 #[inline(always)]
 fn by_fours(candidates: &mut [u32], count: usize, disk: usize) -> &[[u32; LANES]] {
     candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
