@@ -246,8 +246,8 @@ pub trait Boundary {
         Cow::Owned(format!("wall {wall}"))
     }
 
-    /// Returns a point of a wall at `time`, which moves with the wall; `None` if the boundary does not know
-    /// one.
+    /// Returns a point that moves with a wall, at its position at `time`, or `None` if the boundary knows no
+    /// such point.
     ///
     /// If other walls are set between two runs, the engine finds out from this point whether a wall of the
     /// same name has jumped. The default is `None`.
@@ -284,7 +284,7 @@ pub trait Boundary {
     /// domain reach to infinity beyond it.
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
 
-    /// Returns the first touch of this flight, not later than `until`.
+    /// Returns the first touch of this flight that is not later than `until`.
     ///
     /// If the disk already touches a wall, that touch is found immediately while the disk approaches the
     /// wall, and never while the disk leaves it.
@@ -299,7 +299,8 @@ pub trait Boundary {
     /// The wall must exist; for any other index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// Returns the wall that a disk overlaps deepest, and the depth; `None` if the disk is inside.
+    /// Returns the wall that a disk overlaps most deeply, and the depth, or `None` if the disk overlaps no
+    /// wall.
     ///
     /// A wall that does not concern disks of the probe's kind is not overlapped.
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
@@ -313,7 +314,7 @@ pub trait Boundary {
     }
 
     /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, or `None` if no wall
-    /// has one.
+    /// has such a hollow.
     ///
     /// Rounding alone would decide whether such a disk gets into the hollow, and in which direction the wall
     /// then pushes it. The engine refuses such disks.
@@ -322,8 +323,8 @@ pub trait Boundary {
         None
     }
 
-    /// Returns the area of the places in `region` at which the center of a disk of this radius is free at
-    /// `time`; `None` if the boundary does not know it.
+    /// Returns the area of the part of `region` in which the center of a disk of this radius is free at
+    /// `time`, or `None` if the boundary does not know the area.
     ///
     /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
     /// it, and refuse to measure without it where the domain is not all free. As long as the
@@ -338,7 +339,7 @@ pub trait Boundary {
         None
     }
 
-    /// Receives the blow of a disk against a wall, and returns whether the wall moves otherwise from now on.
+    /// Receives the impact of a disk on a wall, and returns whether the wall's motion changes.
     ///
     /// The engine calls it after each collision with a wall. A wall that reacts has a finite
     /// [mass](Surface::with_mass), and its motion between two blows is known. If the answer is
@@ -360,8 +361,8 @@ pub trait Boundary {
         self.may_touch(region, radius)
     }
 
-    /// Returns the numbers of the walls that [react](Self::react) at the time origin: places, velocities,
-    /// and whatever else blows have changed.
+    /// Returns the state of the walls that [react](Self::react) at the time origin, as numbers: positions,
+    /// velocities, and all else that impacts have changed.
     ///
     /// A checkpoint keeps them, since a boundary that is given again begins anew. It is empty unless
     /// implemented.
@@ -378,7 +379,7 @@ pub trait Boundary {
             .map(drop)
     }
 
-    /// Returns the fingerprint of the boundary: its name and everything on which its answers depend, but not
+    /// Returns the fingerprint of the boundary: its name and everything on which its results depend, but not
     /// its [state](Self::state).
     ///
     /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.

@@ -84,11 +84,11 @@ pub use triangular::Triangular;
 
 use crate::Fingerprint;
 
-/// The place and velocity of a wall along its normal, which points to the disks.
+/// The position and velocity of a wall along its normal, which points to the disks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct WallState {
-    /// Displacement from the wall's place at rest.
+    /// Displacement from the wall's position at rest.
     pub displacement: f64,
     /// Velocity.
     pub velocity: f64,
@@ -102,11 +102,11 @@ impl WallState {
     }
 }
 
-/// Bounds of a wall's acceleration on a piece of time, from the phase asked for to `until`.
+/// Bounds of a wall's acceleration on a piece of time, from the requested phase to `until`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct AccelerationBounds {
-    /// End of the piece: a phase later than the one asked for, or infinite for a piece without an end.
+    /// End of the piece: a phase later than the requested one, or infinite for a piece without an end.
     pub until: f64,
     /// Lower bound of the acceleration on the piece.
     pub min: f64,

@@ -55,20 +55,20 @@ impl Curve {
         }
     }
 
-    /// Returns the places at which a horizontal line crosses the curve.
+    /// Returns the positions at which a horizontal line crosses the curve.
     fn crossings(&self, height: f64) -> impl Iterator<Item = f64> + use<> {
         let none = [f64::NAN; 2];
         let places = match *self {
-            // Half-open, so that a line through the common end of two sides crosses one of them, and not
-            // both.
+            // The interval is half-open, so that a line through the common end of two sides crosses only one
+            // side.
             Self::Line(from, to) if (from.y > height) != (to.y > height) => {
                 [from.x + (to.x - from.x) * ((height - from.y) / (to.y - from.y)), f64::NAN]
             }
             Self::Line(..) => none,
             Self::Circle(center, radius) => {
                 let above = (height - center.y).abs();
-                // As a product, the square loses no digits near the top. Beyond the circle it is negative,
-                // and its root NaN.
+                // Written as a product, the difference of squares loses no digits near the top. Beyond the
+                // circle it is negative, and its root NaN.
                 let half = ((radius - above) * (radius + above)).sqrt();
                 [center.x - half, center.x + half]
             }
@@ -76,7 +76,7 @@ impl Curve {
         places.into_iter().filter(|place| !place.is_nan())
     }
 
-    /// Returns the places at which two curves may cross; NaN for those that do not exist.
+    /// Returns the points at which two curves may cross, with NaN in place of points that do not exist.
     fn meetings(&self, other: &Self) -> [DVec2; 2] {
         match (*self, *other) {
             (Self::Line(from, to), Self::Line(start, end)) => {
@@ -117,7 +117,7 @@ pub(super) struct Field<'a> {
     pub(super) region: Region,
     /// The curves at which freedom may change.
     pub(super) curves: Vec<Curve>,
-    /// Number of places between two crossings at which a line is examined: 1 if no other curves exist.
+    /// Number of points between two crossings at which a line is examined: 1 if all curves are known.
     pub(super) looks: u32,
     pub(super) is_free: &'a dyn Fn(DVec2) -> bool,
 }
@@ -195,7 +195,7 @@ impl Field<'_> {
     fn quadrature(&self, low: f64, high: f64, curves: &[Curve]) -> f64 {
         let mut sum = 0.0;
         for (node, weight) in GAUSS {
-            // From the nearer end, so that heights near the upper end lose no digits.
+            // Heights are measured from the nearer end, so that heights near the upper end lose no digits.
             let s = 0.5 * (1.0 - node);
             let from_end = (high - low) * s * s * (3.0 - 2.0 * s);
             let lengths = self.length(low + from_end, curves) + self.length(high - from_end, curves);

@@ -52,7 +52,7 @@ pub struct Container {
     /// Height of the lid or period of the ends; infinite if the top is open.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::gate::if_finite"))]
     height: f64,
-    /// The walls that exist.
+    /// The existing walls.
     #[cfg_attr(feature = "serde", serde(rename = "walls"))]
     planes: Vec<Plane>,
 }
@@ -232,7 +232,7 @@ impl Container {
         self.planes.iter().position(|plane| plane.wall == wall)
     }
 
-    /// Removes the walls that exist among these.
+    /// Removes these walls, if they exist.
     fn without(mut self, walls: [Wall; 2]) -> Result<Self, WallError> {
         for wall in walls {
             let Some(index) = self.index(wall) else { continue };

@@ -30,7 +30,7 @@ const DISKS: usize = 400;
 /// Number of flights of each disk, from touch to touch.
 const FLIGHTS: usize = 4;
 
-/// Number of attempts to find a free place for a disk.
+/// Number of attempts to find a free position for a disk.
 const PLACES: usize = 10_000;
 
 /// Largest time origin of a flight, in units of the time that a disk takes to cross the domain.
@@ -128,7 +128,7 @@ impl Random {
         low + (high - low) * uniform(&mut self.0)
     }
 
-    /// Returns a time origin, and a flight that begins at a free place soon after it.
+    /// Returns a time origin, and a flight that begins soon after it at a free position.
     fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
         let late = self.between(-21.0, 3.0).max(0.0);
@@ -149,8 +149,8 @@ impl Random {
         Ok((origin, flight.with_kind(trial.kind)))
     }
 
-    /// Returns a speed in units of the typical one: mostly about 1, sometimes over some decades, seldom very
-    /// slow.
+    /// Returns a speed in units of the typical speed: mostly about 1, sometimes from a range of several
+    /// decades, seldom very slow.
     fn share(&mut self) -> f64 {
         match self.between(0.0, 8.0) as u32 {
             0..=4 => self.between(0.1, 4.0),
@@ -159,7 +159,7 @@ impl Random {
         }
     }
 
-    /// Returns a place in the domain where a disk overlaps no wall.
+    /// Returns a position in the domain at which a disk overlaps no wall.
     fn place(&mut self, trial: &Trial<'_>, time: f64) -> Result<DVec2, Violation> {
         let (low, high) = trial.rectangle();
         let place = (0..PLACES)

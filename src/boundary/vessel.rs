@@ -20,8 +20,8 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest numbers of periods that a part may extend over, in one direction and in all. Each brick has an
-/// image for each of them, and may overlap a large part of the cells.
+/// Largest numbers of periods over which a part may extend: in one direction, and the product of both. Each
+/// brick has an image for each period, and each image may overlap a large part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in
@@ -84,7 +84,7 @@ pub struct Vessel {
     filled: Vec<Vec<u32>>,
     /// The radii of all arcs with disks inside, in order, each with the index of its wall.
     hollows: Vec<(f64, usize)>,
-    /// Time origin, from which added parts get their phases.
+    /// Time origin, from which the phases of added parts follow.
     origin: f64,
 }
 
@@ -178,7 +178,7 @@ impl Vessel {
         parts.into_iter().try_fold(Self::new(container), |vessel, (name, part)| vessel.with(name, part))
     }
 
-    /// Returns the same vessel with one more part.
+    /// Returns the same vessel with an additional part.
     ///
     /// # Errors
     /// The same as for [`put`](Self::put).
@@ -282,7 +282,7 @@ impl Vessel {
         &self.container
     }
 
-    /// Numbers the walls, and builds the index of them.
+    /// Numbers the walls, and builds their index.
     fn number(&mut self) {
         self.walls.clear();
         for (number, placed) in self.parts.iter_mut().enumerate() {

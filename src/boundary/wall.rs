@@ -53,7 +53,7 @@ pub enum WallError {
     /// The container has no such wall, because it is open above or periodic there.
     #[error("the container has no wall \"{wall}\"")]
     Missing {
-        /// The wall asked for.
+        /// The requested wall.
         wall: Wall,
     },
     /// The settings of the wall would be lost: the wall would be taken away, or move otherwise.

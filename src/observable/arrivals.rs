@@ -59,7 +59,7 @@ impl Arrivals {
         &self.counts
     }
 
-    /// Returns the mean number of arrivals for each unit of time, with its error.
+    /// Returns the mean number of arrivals per unit of time, with its error.
     ///
     /// # Errors
     /// If no interval is complete yet.

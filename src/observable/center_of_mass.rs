@@ -62,7 +62,7 @@ fn circular_mean(
     period: f64,
     coordinate: impl Fn(DVec2) -> f64,
 ) -> f64 {
-    /// Length of the mean direction that is rounding.
+    /// Length of the mean direction below which it is due to rounding.
     const ROUNDING: f64 = 1e-12;
     let turns = |disk: &Disk| (coordinate(disk.position()) - low) / period;
     let sum: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * direction(TAU * turns(disk))).sum();

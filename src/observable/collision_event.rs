@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::collision::{Contact, Impulse};
 
-/// The thing that a disk collided with.
+/// The partner of a disk in a collision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Partner {
     /// Another disk, by its index.

@@ -55,7 +55,7 @@ crate::error::from_causes! { ObserverError from &str, String, std::io::Error, Pa
 /// An observer's decision on the run: go on, stop here, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
-/// A watcher of a run, which receives each collision, and samples at the times that it asks for.
+/// An observer of a run, which receives each collision, and samples at the times that it requests.
 ///
 /// All methods have a default, which does nothing. All times are absolute, as in
 /// [`Simulation::time`](crate::Simulation::time).
@@ -111,12 +111,12 @@ pub trait Observer {
         let _ = collision;
     }
 
-    /// Returns the time at which the observer wants the next sample; infinite for never.
+    /// Returns the time of the next sample that the observer requests, or infinity if it requests none.
     fn next_sample(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Receives the sample that was asked for.
+    /// Receives the requested sample.
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let _ = snapshot;
     }
@@ -148,10 +148,11 @@ pub trait Observer {
     }
 }
 
-/// Returns the verdict of an observer that may have noticed that it cannot go on.
+/// Returns the verdict of an observer, which fails the run if the observer has noted a fault.
 #[inline]
 pub(crate) fn verdict<E: Into<ObserverError>>(fault: &mut Option<E>) -> Verdict {
-    // The engine asks after each collision, so the usual answer comes first and writes nothing.
+    // The engine asks for a verdict after each collision, so the usual verdict comes first and writes
+    // nothing.
     if fault.is_none() {
         return Ok(ControlFlow::Continue(()));
     }

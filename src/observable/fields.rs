@@ -19,9 +19,9 @@ pub struct FieldCell {
     pub center: DVec2,
     /// Number of disks seen in the cell, over all samples.
     pub count: u64,
-    /// Disks per area that walls leave free.
+    /// Number of disks divided by the area that walls leave free.
     pub number_density: f64,
-    /// Area of the disks per area that walls leave free.
+    /// Area of the disks divided by the area that walls leave free.
     ///
     /// Each disk counts in the cell of its center.
     pub packing_fraction: f64,
@@ -119,7 +119,7 @@ impl Fields {
         let size = self.grid.cell_size();
         let cell = row * self.grid.shape().0 + column;
         let CellSums { count, area, velocity: [x, y], angular_velocity } = self.sums[cell];
-        // A cell without free area has no disks.
+        // A cell without free area holds no disks.
         let free = if self.free[cell] == 0.0 { 1.0 } else { self.free[cell] };
         let seen = size.x * size.y * free;
         let disks = count.max(1) as f64;

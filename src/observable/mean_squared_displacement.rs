@@ -88,7 +88,7 @@ impl MeanSquaredDisplacement {
     }
 }
 
-/// Returns the mean squared distance between two places of each disk.
+/// Returns the mean squared distance between two positions of each disk.
 fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
     from.mean_with(to, |from, to| from.distance_squared(*to))
 }

@@ -1,4 +1,4 @@
-//! The clock that tells observers when to sample.
+//! The clock that sets the sampling times of observers.
 
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
@@ -128,7 +128,7 @@ impl SampleTimes {
         self.started = true;
     }
 
-    /// Goes to the first sampling time of a run that has no sample yet.
+    /// Sets the first sampling time of a run that has no sample yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
             // The cast saturates. Rounding of a large quotient may miss the number by one, which `rounding`

@@ -1,4 +1,4 @@
-//! The system that an observer measures, which must not be exchanged for another one.
+//! The system that an observer measures. A later run must have the same system.
 
 use super::Snapshot;
 use super::marks::Mark;

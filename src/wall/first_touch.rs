@@ -30,14 +30,14 @@ const MOST_STEPS: u32 = 256;
 pub enum FirstTouch<T> {
     /// The first touch.
     At(T),
-    /// There is no touch before this time, and nothing is known about later ones. If this is the end of the
+    /// There is no touch before this time, and nothing is known about later times. If this is the end of the
     /// search, or infinite, the search has found no touch at all. If it is the start of the search, the
     /// search cannot go on.
     NotBefore(f64),
 }
 
 impl<T> FirstTouch<T> {
-    /// The answer of a search that has found no touch up to its end.
+    /// The result of a search that found no touch up to its end.
     pub const NONE: Self = Self::NotBefore(f64::INFINITY);
 
     /// Returns the touch, or `None` if the search found none.
@@ -48,7 +48,7 @@ impl<T> FirstTouch<T> {
         }
     }
 
-    /// Returns the same answer, with another description of the touch.
+    /// Returns the same result, with another description of the touch.
     pub fn map<U>(self, change: impl FnOnce(T) -> U) -> FirstTouch<U> {
         match self {
             Self::At(touch) => FirstTouch::At(change(touch)),
@@ -63,7 +63,8 @@ impl<T> From<Option<T>> for FirstTouch<T> {
     }
 }
 
-/// The approach of a surface to a wall: its height above the wall's place at rest, along the wall's normal.
+/// The approach of a surface to a wall: its height above the wall's position at rest, along the wall's
+/// normal.
 ///
 /// Its times are phases of the wall's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -186,7 +187,7 @@ enum Step {
     Touch(f64),
     /// The surfaces do not touch before this time.
     Open(f64),
-    /// The place of the wall is unknown from here on.
+    /// The position of the wall is unknown from this time on.
     Unknown,
 }
 
@@ -218,7 +219,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         if gap <= tolerance && rate < 0.0 {
             return Step::Touch(time);
         }
-        // The surface is so far away that its place overflows.
+        // The surface is so far away that its position overflows.
         if gap == f64::INFINITY {
             return Step::Open(f64::INFINITY);
         }

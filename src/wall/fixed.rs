@@ -3,7 +3,7 @@
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;
 
-/// The motion of a wall that stays at its place.
+/// The motion of a wall that stays at its position.
 ///
 /// ```
 /// use granular_edmd::wall::{Fixed, WallMotion};

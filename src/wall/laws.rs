@@ -37,7 +37,7 @@ const SLOPE: f64 = 3e-4;
 const PHASES: u32 = 4000;
 const INTERVAL: f64 = 400.0;
 
-/// Number of later phases, each by a fifth later than the one before.
+/// Number of later phases, each a fifth later than the previous one.
 const LATE: i32 = 40;
 
 /// Checks that a motion keeps its contract between two phases.
@@ -95,8 +95,8 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     Err(Violation::new(PART, "pieces", sentence))
 }
 
-/// Checks that two motions which answer differently have different fingerprints, and that two which answer
-/// alike have the same. Motions without a fingerprint are not compared.
+/// Checks that two motions with different values have different fingerprints, and that two with equal values
+/// have the same fingerprint. Motions without a fingerprint are not compared.
 ///
 /// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
 ///
@@ -123,7 +123,7 @@ where
     check_pair(PART, [first.fingerprint(), second.fingerprint()], difference)
 }
 
-/// A motion and its reach, under the check.
+/// The checked motion, and its reach.
 struct Check<'a, M: ?Sized> {
     motion: &'a M,
     low: f64,
@@ -268,7 +268,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         Ok(())
     }
 
-    /// Checks that the wall does not jump toward the disks where a piece ends, and that it says if it jumps.
+    /// Checks that the wall does not jump toward the disks where a piece ends, and that the motion declares
+    /// jumps.
     fn end(&self, start: f64, until: f64) -> Result<(), Violation> {
         let bounds = finite_bounds(self.motion, start)?;
         let before = self.sample(until - LAST * (until - start))?;

@@ -10,7 +10,7 @@ use crate::boundary::brick::Brick;
 /// such a corner touches both bricks and never the corner itself, so the corner needs no point.
 const CLEARLY: f64 = 1e-6;
 
-/// The bricks that meet at a place, by the directions in which they arrive and leave.
+/// The bricks that meet at a point, by the directions in which they arrive and leave.
 #[derive(Debug, Default)]
 struct Joint {
     coming: Vec<DVec2>,
@@ -31,8 +31,7 @@ impl Joint {
     }
 }
 
-/// Returns a point for each place where bricks end and a disk can touch the corner, in the order of the
-/// bricks.
+/// Returns a point for each corner where bricks end and that a disk can touch, in the order of the bricks.
 pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     let mut joints: HashMap<[u64; 2], Joint> = HashMap::new();
     let mut places = Vec::new();
@@ -40,7 +39,7 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
         let [start, end] = brick.ends();
         for (end, is_start) in [(start, true), (end, false)] {
             let Some((place, direction)) = end else { continue };
-            // Ends that are only close get a point each, and these points close the gap.
+            // Ends that are close but not equal get a point each, and these points close the gap.
             let key = key(place);
             if !joints.contains_key(&key) {
                 places.push((key, place));
@@ -58,8 +57,8 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     places.iter().filter(|(key, _)| is_exposed(key)).map(|(_, place)| Brick::corner(*place)).collect()
 }
 
-/// Returns whether a place changes from free to not free only across bricks: if all bricks are thin, or if
-/// none is and they form closed lines.
+/// Returns whether all borders between free and occupied regions lie on bricks: all bricks are thin, or no
+/// brick is thin and the bricks form closed lines.
 ///
 /// At the free end of other bricks, the nearest of them decides on which side a place is.
 pub(super) fn are_closed(bricks: &[Brick]) -> bool {
@@ -81,7 +80,7 @@ pub(super) fn are_closed(bricks: &[Brick]) -> bool {
     are_lines_closed || walls().all(Brick::is_two_sided)
 }
 
-/// Returns the bits of a place. Ends of bricks meet if their coordinates are equal.
+/// Returns the bits of a point. Ends of bricks meet if their coordinates are equal.
 fn key(place: DVec2) -> [u64; 2] {
     // The sum turns a negative zero into a positive one: the two are equal, but their bits differ.
     [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()]

@@ -24,7 +24,7 @@ impl Vessel {
         let mut near: Vec<(usize, Entry)> = near.collect();
         near.sort_by_key(|(part, _)| *part);
         let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
-            // If the disk does not reach the nearest brick of these cells, a nearer one may lie in other
+            // If the disk does not reach the nearest brick of these cells, a nearer brick may lie in other
             // cells.
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
                 Some((wall, sighted)) if sighted.distance() <= radius => {
@@ -46,7 +46,7 @@ impl Vessel {
         })
     }
 
-    /// Returns the nearest of some bricks at rest, with the index of its wall.
+    /// Returns the nearest of these bricks at rest, with the index of its wall.
     fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
         let sights = entries.map(|entry| {
             let wall = entry.wall as usize;

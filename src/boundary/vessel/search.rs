@@ -283,8 +283,8 @@ impl Search<'_> {
         Step::Open(time + open.max(time_for(&path, rounding)))
     }
 
-    /// Returns the first time, from this one on, at which the disk is so near that the part, wherever it is
-    /// then, may touch it with this brick. The result may be too early, but never too late.
+    /// Returns the first time, from this time on, at which the disk is near enough for a touch with this
+    /// brick at any position of the part. The result may be too early, but never too late.
     fn enters_strip(&self, time: f64) -> Option<f64> {
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
         let (travel, radius) = (self.placed.part.travel(), self.flight.radius());
@@ -297,7 +297,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a time in which a disk goes no farther than the distance `way` on its path.
+/// Returns a time in which a disk moves no farther than the distance `way` on its path.
 fn time_for(path: &Path, way: f64) -> f64 {
     let (speed, pull) = (path.velocity.length(), path.acceleration.length() + path.spread);
     // The larger root of ½ pull t² + speed t = way, in a form in which nothing cancels.
