@@ -29,8 +29,8 @@ pub struct Neighbor {
 }
 
 impl<'a> Neighbors<'a> {
-    /// Finds the candidates for which a condition holds. The range must be positive, and no more than half of
-    /// a period.
+    /// Builds the search among the disks for which a condition holds. The range must be positive, and no more
+    /// than half of a period.
     pub(super) fn among(
         disks: &'a [Disk],
         domain: Domain,

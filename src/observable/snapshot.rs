@@ -125,7 +125,8 @@ impl<'a> Snapshot<'a> {
         self.len() == 0
     }
 
-    /// Returns the number of walls, which all wall indices are below, or 0 for a snapshot without walls.
+    /// Returns the number of walls, or 0 for a snapshot without walls. Indices of walls are less than this
+    /// number.
     pub const fn wall_count(&self) -> usize {
         self.wall_count
     }

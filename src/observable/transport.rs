@@ -239,7 +239,7 @@ impl TransportCoefficients {
     }
 
     /// Stores the motions of this snapshot, and checks that they equal the expected motions up to rounding,
-    /// as they do if only collisions have changed them. Otherwise keeps the old ones, so that further runs
+    /// as they do if only collisions have changed them. Otherwise keeps the old motions, so that further runs
     /// are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();

@@ -12,7 +12,7 @@ use granular_edmd::trajectory::{ReadError, RecordError};
 use granular_edmd::{ParameterError, Violation};
 use thiserror::Error;
 
-/// An error: an experiment cannot be built or changed.
+/// The error of an experiment that cannot be built or changed.
 ///
 /// `?` makes it from the errors of both packages, of input and output, and from texts;
 /// [`new`](Self::new) from any other. It shows its cause, and `?` takes it into any error.
@@ -59,7 +59,7 @@ from_causes! {
     CheckpointError, RecordError, ReadError, Violation, ObserverError, PlanError, StudyError
 }
 
-/// An error in a plan: it cannot be run.
+/// The error of a plan that cannot be run.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
@@ -68,13 +68,13 @@ pub enum PlanError {
     /// A number of the protocol, or the seed, is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// The text is not a plan, or the plan cannot be a text.
+    /// The text is not a plan, or the plan cannot be written as text.
     #[error("{0}")]
     Toml(String),
-    /// The experiment refuses the parameters of a value.
+    /// The experiment rejects the parameters of a value.
     #[error("the experiment cannot be{place}")]
     Experiment {
-        /// The parameters that vary, with their values; empty if the plan varies none.
+        /// The parameters that vary, with their values; empty if no parameter varies.
         place: String,
         /// The reason.
         source: ExperimentError,
@@ -106,7 +106,7 @@ pub enum PlanError {
         /// The reason.
         reason: String,
     },
-    /// There are more ramps or values than can be numbered.
+    /// There are too many ramps or values to number.
     #[error("{count} ramps and values are too many: at most {most} are possible")]
     TooMany {
         /// The number of ramps and values.
@@ -119,7 +119,7 @@ pub enum PlanError {
     Name {
         /// The name.
         name: String,
-        /// The thing that has it: `column`, `table` or `varied parameter`.
+        /// The item with this name: `column`, `table` or `varied parameter`.
         what: &'static str,
         /// The reason.
         reason: String,
@@ -146,7 +146,7 @@ pub enum StudyError {
     /// The path of the folder is empty.
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
-    /// The folder holds other files, and no plan. A study does not mix its files with others.
+    /// The folder holds other files but no plan. A study does not mix its files with others.
     #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
     Occupied {
         /// The folder.
@@ -191,7 +191,7 @@ pub enum StudyError {
         /// The error that the system returned.
         source: io::Error,
     },
-    /// A table would take the place of another file.
+    /// A table would overwrite another file.
     #[error("{} exists already; choose another folder for tables", path.display())]
     Taken {
         /// The file.
@@ -227,12 +227,12 @@ pub enum StudyError {
         /// The fields in which the plans differ.
         differences: Vec<Difference>,
     },
-    /// A file was cut or changed, or belongs elsewhere.
+    /// A file was cut or changed, or belongs to another value or study.
     #[error("{} is damaged: {reason}; run the study with a check of its records to redo it", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// The damage.
+        /// The description of the damage.
         reason: String,
     },
     /// A record belongs to another plan, so somebody has changed the record or the plan.
@@ -296,7 +296,7 @@ impl PlanError {
         Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
     }
 
-    /// Returns the error of a text that is no TOML, or no plan.
+    /// Returns the error of a text that is not TOML, or not a plan.
     pub(super) fn toml(error: &impl fmt::Display) -> Self {
         Self::Toml(shortened(&error.to_string()))
     }
@@ -313,7 +313,7 @@ pub(super) fn shortened(message: &str) -> String {
 }
 
 impl StudyError {
-    /// Returns a function that turns an error of the system into one that names the action and the file.
+    /// Returns a function that turns an error of the system into an error that names the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { action, path: path.to_owned(), source }
     }

@@ -1,4 +1,5 @@
-//! JSON as a study writes it: flat objects, on one line in logs and a field a line in files for people.
+//! The JSON that a study writes: flat objects, on one line in logs, and with a line for each field in files
+//! for people.
 
 use std::fmt::{Display, Write};
 

@@ -50,7 +50,7 @@ const DISTINCT: f64 = 4.0;
 pub fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Result<Clusters, ParameterError> {
     non_negative("noise", noise)?;
     let mut distinct = KMeans::new(1, seed)?.fit(points)?;
-    // The search does not end at the first number that fails. Three clouds in a row, cut in two, make a wide
+    // The search continues after the first number that fails. Three clouds in a row, cut in two, make a wide
     // cluster that is not separated from the other; cut in three, they are.
     for clusters in 2..=MOST.min(points.len()) {
         let found = KMeans::new(clusters, seed)?.fit(points)?;

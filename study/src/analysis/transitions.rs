@@ -65,15 +65,15 @@ impl std::fmt::Display for TransitionLine {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Transition {
-    /// The line that is crossed.
+    /// The transition line to which the point belongs.
     pub line: TransitionLine,
     /// Middle between the neighboring control values on the two sides of the line.
     pub value: f64,
-    /// Half the distance of these control values. The transition lies between `value - error` and
+    /// Half the distance between these control values. The transition lies between `value - error` and
     /// `value + error`.
     pub error: f64,
-    /// True if the regime goes up with a growing control value. It goes down where the paper finds
-    /// re-entrance.
+    /// True if the regime advances in the order of growing energy loss as the control value grows. The regime
+    /// goes back where the paper finds re-entrance.
     pub rising: bool,
 }
 

@@ -78,7 +78,7 @@ fn earlier(path: &Path, collisions: u64) -> Result<Table, Failure> {
     })?)
 }
 
-/// Runs all states in turn, so that a slow moment of the machine slows one stretch of each.
+/// Runs all states alternately, so that a slow phase of the machine slows one interval of each state.
 fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
     let states: [Stretch; 7] = [
         stretches(speed::dilute()?),
@@ -130,14 +130,14 @@ struct Change<'a> {
     now: &'a State,
 }
 
-/// Returns whether times now can be compared with earlier ones: the machine and the build are the same.
+/// Returns whether present times can be compared with earlier times: the machine and the build are the same.
 fn is_comparable(earlier: &Circumstances) -> bool {
     let of = |it: &Circumstances| (it.processor.clone(), it.processors, it.system.clone(), it.build.clone());
     of(earlier) == of(&Circumstances::present())
 }
 
 impl Table {
-    /// Returns the table if a later one can be compared with it, or the reason why it cannot.
+    /// Returns the table, or the reason why no later table can be compared with it.
     fn checked(self, collisions: u64) -> Result<Self, String> {
         if self.collisions != collisions {
             let stretches = self.collisions;
@@ -156,7 +156,7 @@ impl Table {
         if has_any { Ok(self) } else { Err("it has none of the standard states".to_owned()) }
     }
 
-    /// Returns the change of a state since this table.
+    /// Returns how a state's time has changed since this table.
     fn change<'a>(&'a self, now: &'a State) -> Option<Change<'a>> {
         let before = self.states.iter().find(|before| before.name == now.name)?;
         Some(Change { before, now })
@@ -164,7 +164,7 @@ impl Table {
 }
 
 impl Change<'_> {
-    /// A difference counts if the quartiles of the two sittings are apart by more than [`DRIFT`].
+    /// A difference counts if the quartiles of the two sessions differ by more than the factor [`DRIFT`].
     fn finding(&self) -> &'static str {
         let (before, now) = (self.before.nanoseconds_per_collision, self.now.nanoseconds_per_collision);
         match () {

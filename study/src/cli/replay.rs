@@ -1,4 +1,4 @@
-//! The command `replay`: the collisions of a value once more, or the state before one of them.
+//! The command `replay`, which runs a value again and writes its collisions, or the state before a collision.
 
 use std::collections::VecDeque;
 use std::fs;
@@ -104,7 +104,7 @@ fn rows<E: Experiment>(
     let mut text = if wishes.json { String::new() } else { HEADINGS.to_owned() + "\n" };
     while !is_over {
         for _ in 0..BATCH {
-            // The collisions up to an error are no less wanted.
+            // The collisions up to an error are written, too.
             let next = steps.next(end).unwrap_or_else(|error| {
                 tell_end(steps.run(), &error);
                 None
@@ -150,7 +150,7 @@ fn state_before<E: Experiment>(
         _ => {}
     }
     let state = contents::<E>(&mut source.run, path)?;
-    // The run need not have one more collision.
+    // The run may end without a further collision.
     if found + 1 < number || matches!(Steps::new(source.run).next(end), Ok(None)) {
         return Err(format!("there is no collision {number} until {end}: the last one is {found}").into());
     }

@@ -125,7 +125,8 @@ pub(super) fn begun<E: Experiment>(
     Ok(builder.disks(state.into_disks()).build()?)
 }
 
-/// Returns whether a file is no checkpoint, or cannot be opened, which its reader tells better.
+/// Returns whether a file is not a checkpoint, or cannot be opened, in which case its reader gives a better
+/// error.
 fn is_no_checkpoint(error: &CheckpointError) -> bool {
     match error {
         CheckpointError::File { source, .. } => matches!(**source, CheckpointError::NotACheckpoint),
@@ -133,7 +134,7 @@ fn is_no_checkpoint(error: &CheckpointError) -> bool {
     }
 }
 
-/// Tells what the reader of a result should know, on standard error.
+/// Prints notes for the reader of a result, on standard error.
 pub(super) fn tell(note: &str) {
     let _ = writeln!(io::stderr(), "note: {note}");
 }

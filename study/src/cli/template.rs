@@ -41,7 +41,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     lines.extend(absent.map(|(_, example)| format!("\n# {example}")));
     let names = parameters::names(&parameters::tree(&plan.experiment)?).join(", ");
     let columns = E::columns();
-    // A column of the values and one of the samples may have the same name.
+    // A column of the values and a column of the samples may have the same name.
     let mut known = HashSet::new();
     let columns: Vec<_> = columns.iter().map(Column::name).filter(|name| known.insert(*name)).collect();
     lines.push(format!("\n# Parameters: {names}."));

@@ -14,11 +14,11 @@ use granular_edmd::quantity::positive;
 pub struct Progress {
     /// Index of the ramp that has just made progress.
     pub ramp: usize,
-    /// Index of the value in that ramp.
+    /// Index of the value in the ramp.
     pub value: usize,
-    /// Number of steps that are done in all ramps; a step is about one sampling interval.
+    /// Number of finished steps in all ramps; a step is about one sampling interval.
     pub done: u64,
-    /// Number of steps in all ramps that are to be run.
+    /// Number of all steps, finished or not, of the ramps to be run.
     pub total: u64,
 }
 
@@ -63,7 +63,7 @@ impl Default for Control<'_> {
 }
 
 impl<'a> Control<'a> {
-    /// Returns the same control, which calls `progress` after every step, from the thread that did the step.
+    /// Returns the same control, which calls `progress` after every step, in the thread that ran the step.
     pub fn with_progress(self, progress: &'a (dyn Fn(&Progress) + Sync)) -> Self {
         Self { progress: Some(progress), ..self }
     }
@@ -157,16 +157,16 @@ pub struct Summary {
     /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The files
     /// `logs/*.jsonl` of the study say of what.
     pub warned: usize,
-    /// Number of values of the study, or of the ramps that were to be run.
+    /// Number of values of the study, or of the ramps to be run.
     pub total: usize,
-    /// Ramps that other processes are doing.
+    /// Ramps that other processes are running.
     pub elsewhere: Vec<usize>,
     /// Files that were damaged and have been replaced.
     pub redone: Vec<PathBuf>,
 }
 
 impl Summary {
-    /// Returns true if all ramps that were to be run are complete.
+    /// Returns true if all ramps to be run are complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total
     }

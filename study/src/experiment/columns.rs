@@ -102,7 +102,7 @@ impl<E: Experiment> Column<E> {
         !matches!(self.kind, Kind::Record(_))
     }
 
-    /// Returns the estimate for a record; `None` for a column that has no error.
+    /// Returns the estimate for a record, or `None` if the column has no error.
     pub(crate) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
             Kind::Sample(value) => Some(record.mean(|sample| value(sample).number().unwrap_or(f64::NAN))),
@@ -119,7 +119,7 @@ impl<E: Experiment> fmt::Debug for Column<E> {
     }
 }
 
-/// A further table, besides the tables of values and samples, with some rows for each record.
+/// A table besides the tables of values and samples, with any number of rows for each record.
 ///
 /// ```
 /// use granular_edmd_study::{Table, vibrated_box::VibratedBox};

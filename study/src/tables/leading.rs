@@ -1,4 +1,4 @@
-//! The leading columns of every table, which tell the place of a row in the study.
+//! The leading columns of every table, which show to what part of the study a row belongs.
 
 use super::rows::Row;
 use crate::{Experiment, Leg, Plan, Record, Scalar};

@@ -26,7 +26,7 @@ impl Repeats {
         self.0[value].push(repeat);
     }
 
-    /// Writes a row for each value of which a repeat is finished.
+    /// Writes a row for each value that has a finished repeat.
     pub(super) fn write<E: Experiment>(
         self,
         plan: &Plan<E>,
