@@ -342,7 +342,7 @@ pub trait Boundary {
     /// Receives the impact of a disk on a wall, and returns whether the wall's motion changes.
     ///
     /// The engine calls it after each collision with a wall. A wall that reacts has a finite
-    /// [mass](Surface::with_mass), and its motion between two blows is known. If the answer is
+    /// [mass](Surface::with_mass), and its motion between two impacts is known. If the answer is
     /// [`Reaction::Moved`], the engine predicts all flights anew that [`may_meet`](Self::may_meet) names. The
     /// default reacts to nothing, and costs nothing.
     #[inline]

@@ -73,8 +73,8 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Checks that two parts have different fingerprints if their answers differ somewhere, and the same
-/// fingerprint otherwise.
+/// Checks that two parts have different fingerprints if any of their results differ, and the same fingerprint
+/// otherwise.
 pub(crate) fn check_pair(
     part: &'static str,
     fingerprints: [Option<Fingerprint>; 2],

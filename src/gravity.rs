@@ -71,7 +71,8 @@ impl Gravity {
         libm::hypot(self.rightward, self.downward)
     }
 
-    /// Returns the same gravity, if both components are finite and at most 1e60 in magnitude, with 0 for −0.
+    /// Returns the same gravity with 0 for −0, or an error if a component is not finite or above 1e60 in
+    /// magnitude.
     ///
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
@@ -82,7 +83,7 @@ impl Gravity {
         Ok(Self { rightward: rightward + 0.0, downward: bounded("gravity", self.downward)? + 0.0 })
     }
 
-    /// Returns the larger component, for errors.
+    /// Returns the component of larger magnitude, for errors.
     pub(crate) fn larger(self) -> f64 {
         if self.rightward.abs() > self.downward.abs() { self.rightward } else { self.downward }
     }

@@ -23,9 +23,9 @@ pub(crate) enum Level {
     /// The instructions on which the build relies.
     #[default]
     Built,
-    /// Four numbers at a time.
+    /// AVX2: four numbers at a time.
     Avx2,
-    /// Four numbers at a time, and selections by masks.
+    /// AVX-512: four numbers at a time, with selections by masks.
     Avx512,
 }
 
@@ -40,7 +40,7 @@ impl Level {
 }
 
 impl Instructions {
-    /// Those that every processor has for which the crate is built.
+    /// The instructions of all processors for which the crate is built.
     pub(crate) const BUILT: Self = Self(Level::Built);
 
     /// Returns the best level that this processor has.
@@ -117,8 +117,8 @@ fn has(level: Level) -> bool {
     level == Level::Built
 }
 
-/// Makes a function that runs one of three others, by the [`Instructions`] in its first argument: the one for
-/// any processor, for AVX2, or for AVX-512.
+/// Defines a function that runs one of three others, chosen by the [`Instructions`] in its first argument:
+/// the function for any processor, for AVX2, or for AVX-512.
 ///
 /// The three can be copies of a plain function for each level. This and all hot functions that it calls must
 /// then be `#[inline(always)]`, since other code is compiled for the level of the build. A constant

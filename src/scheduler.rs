@@ -28,7 +28,7 @@ pub use tournament_tree::TournamentTree;
 
 use crate::forward::forward;
 
-/// The answer of a scheduler without disks.
+/// The result of a scheduler without disks.
 ///
 /// No disk has this index, and the time is later than any run lasts. The engine compares the time of each
 /// event with the end of the run anyway, and this comparison rejects the answer.
@@ -95,7 +95,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
     note = "one of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
 )]
 pub trait EventScheduler {
-    /// Forgets everything, and takes these times, one for each disk.
+    /// Replaces all disks and times by these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
 
     /// Sets a new time for the event of `disk`, in place of its last one.

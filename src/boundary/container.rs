@@ -142,8 +142,8 @@ impl Container {
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
     ///
-    /// Initial states are placed where the wall is at the start. A blow of a disk changes when others meet
-    /// the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
+    /// Initial states are placed where the wall is at the start. An impact of a disk changes when other disks
+    /// meet the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
     ///
     /// # Errors
     /// If the container has no such wall, or the motion of the piston has numbers that are not finite.

@@ -56,7 +56,7 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, also for those that extend to
 ///   infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
-/// - A wall that reacts to a blow moves as its mass says, and `state` and `set_state` bring it back.
+/// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.
 ///
 /// If the boundary knows its free `area`, overlaps at random places must agree with it.

@@ -84,7 +84,7 @@ pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violatio
     })
 }
 
-/// Checks all laws except that of energy.
+/// Checks all laws except the law of energy.
 fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     let numbers = [impulse.normal(), impulse.tangential(), impulse.couple()];
     let are_finite = numbers.iter().all(|number| number.is_finite());
@@ -164,7 +164,7 @@ fn check_rolling(contact: &Contact, impulse: Impulse, coefficient: f64) -> Resul
     )
 }
 
-/// Returns whether an impulse is none, or acts against this speed.
+/// Returns whether an impulse is zero, or acts against this speed.
 fn opposes(impulse: f64, speed: f64) -> bool {
     impulse == 0.0 || impulse.signum() * speed > 0.0
 }

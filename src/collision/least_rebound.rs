@@ -48,7 +48,7 @@ impl<R> LeastRebound<R> {
         Ok(Self { rule, speed: positive("least speed of rebound", speed)? })
     }
 
-    /// Returns the rule inside, which decides all faster rebounds.
+    /// Returns the inner rule, which decides all faster rebounds.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
@@ -67,7 +67,7 @@ impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
         if raised.normal() > impulse.normal() { raised.with_regime(Regime::LeastRebound) } else { raised }
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be distinguished.
+    /// Returns `None` if the inner rule has no fingerprint: two such remedies could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed))
     }

@@ -3,12 +3,12 @@
 use std::fs::{File, TryLockError};
 use std::io;
 
-/// A file whose lock this process holds; dropping it gives the lock back.
+/// A file whose lock this process holds. Dropping the value releases the lock.
 #[derive(Debug)]
 pub struct Locked(File);
 
 impl Locked {
-    /// Waits until nobody else has the lock of a file, and takes it.
+    /// Waits until no other owner has the lock of a file, and locks the file.
     ///
     /// # Errors
     /// If the file system has no locks.
@@ -46,8 +46,8 @@ impl Locked {
 
 impl Drop for Locked {
     fn drop(&mut self) {
-        // A process that was forked meanwhile, to start another program, may have the file open, too. Closing
-        // the file here would then not release the lock.
+        // A process that was forked in the meantime to start another program may also have the file open.
+        // Closing the file here would then not release the lock.
         let _ = self.0.unlock();
     }
 }

@@ -15,7 +15,7 @@ use packing::Packing;
 /// Number of growth steps with too little change after which the disks count as jammed.
 const PATIENCE: usize = 100;
 
-/// Share of the missing area that must be gained in these steps.
+/// Fraction of the missing area that must be gained in these steps.
 const LEAST_GAIN: f64 = 0.05;
 
 /// Relative amount by which disks are enlarged while they are packed, so that no two overlap after rounding.

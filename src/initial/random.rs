@@ -1,4 +1,4 @@
-//! Disks at random places.
+//! Placement of disks at random.
 
 use glam::DVec2;
 use rand::SeedableRng;
@@ -93,8 +93,8 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns the rectangle for the center of a disk; `None` if the disk is too large for the interior, or would
-/// overlap its own image at periodic sides or ends.
+/// Returns the rectangle for the center of a disk, or `None` if the disk is too large for the interior, or
+/// would overlap its own image at periodic sides or ends.
 fn room_for(interior: &Domain, radius: f64) -> Option<Domain> {
     let room = room(interior, radius);
     let fits = |period: f64| period == 0.0 || 2.0 * radius <= period;

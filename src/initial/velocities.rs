@@ -1,4 +1,4 @@
-//! Disks with the velocities of a gas.
+//! The velocities of a gas, for disks at given positions.
 
 use glam::DVec2;
 use rand::SeedableRng;

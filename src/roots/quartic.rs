@@ -101,7 +101,7 @@ fn derivative(&[_, c1, c2, c3, c4]: &Coefficients) -> Coefficients {
 }
 
 fn middle(low: f64, high: f64) -> f64 {
-    // Not half of the sum, because the sum may overflow.
+    // The code does not halve the sum, because the sum may overflow.
     low + 0.5 * (high - low)
 }
 

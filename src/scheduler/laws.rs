@@ -94,7 +94,7 @@ impl<S: EventScheduler> Performance<S> {
         Ok(())
     }
 
-    /// Checks the answer. The closure `after` describes the last operation.
+    /// Checks the scheduler's earliest event. The closure `after` describes the last operation.
     fn compare(&self, after: impl FnOnce() -> String) -> Result<(), Violation> {
         let expected = self.oracle.earliest();
         let (given, again) = (self.scheduler.earliest(), self.scheduler.earliest());
@@ -113,7 +113,7 @@ impl<S: EventScheduler> Performance<S> {
 
     /// Asks for upcoming disks, as the engine does in large systems.
     fn look_ahead(&mut self) -> Result<(), Violation> {
-        // Any numbers will do for the disks that the engine has collected already.
+        // Arbitrary numbers serve as the disks that the engine has collected already.
         let kept = [usize::MAX, usize::MAX, 0, 1];
         let mut named = kept.to_vec();
         self.scheduler.upcoming(&mut named);
@@ -125,7 +125,7 @@ impl<S: EventScheduler> Performance<S> {
     }
 }
 
-/// Returns an answer of a scheduler in words.
+/// Returns a scheduler's result as text.
 fn told((disk, due): (usize, f64)) -> String {
     if (disk, due) == NOTHING_DUE { "nothing".to_owned() } else { format!("disk {disk} at {due:?}") }
 }

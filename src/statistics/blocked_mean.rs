@@ -28,7 +28,7 @@ pub struct BlockedMean(Vec<Level>);
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Level {
     blocks: RunningMean,
-    /// The last block, while it waits for the next one, with which it makes a larger block.
+    /// The last block, until it forms a larger block with the next.
     waiting: Option<f64>,
 }
 
@@ -64,7 +64,7 @@ impl BlockedMean {
         self.ungrouped().count()
     }
 
-    /// Returns the mean of the numbers; NaN if there were none.
+    /// Returns the mean of the numbers, or NaN without numbers.
     pub fn mean(&self) -> f64 {
         self.ungrouped().mean()
     }

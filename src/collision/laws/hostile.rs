@@ -22,24 +22,24 @@ const MILD_SPEEDS: [(f64, f64); 9] = [
 const CLOSING_SPEEDS: [f64; 14] =
     [1.0, 0.1, 3.0, 0.0, 1e-3, 1e3, 1e-6, 1e6, 1e-12, 1e12, 1e-30, 1e-60, 1e60, 1e-300];
 
-/// Slip speeds relative to the closing speed: none, near the limit of sticking, small (central contacts), and
+/// Slip speeds relative to the closing speed: zero, near the limit of sticking, small (central contacts), and
 /// large (grazing contacts).
 const SLIP_RATIOS: [f64; 12] = [0.0, 1.0, 0.3, 3.0, 0.1, 10.0, 1e-3, 1e3, 1e-9, 1e9, 1e-15, 1e15];
 
 /// Slip speeds that do not depend on the closing speed.
 const SLIP_SPEEDS: [f64; 4] = [1.0, 1e-6, 1e-30, 1e60];
 
-/// Reduced masses: of two disks of mass 1, and up to those of the lightest and the heaviest disks.
+/// Reduced masses: from two disks of mass 1 to the lightest and the heaviest disks.
 const MASSES: [f64; 5] = [0.5, 1e-3, 1e3, 1e-30, 1e30];
 
 /// Tangential masses relative to the normal one: a homogeneous disk, a ring, the bound, and all mass near the
 /// center.
 const MASS_RATIOS: [f64; 4] = [1.0 / 3.0, 0.5, 1.0, 1e-6];
 
-/// Times since the last collision: infinite, short, none, and very short.
+/// Times since the last collision: infinite, short, zero, and very short.
 const TIMES: [f64; 4] = [f64::INFINITY, 1e-3, 0.0, 1e-9];
 
-/// Partners: two disks, a disk and a wall, alike and as different as can be. The first three are mild.
+/// Partners: two disks, or a disk and a wall, equal or as different as possible. The first three are mild.
 const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
     ([Kind::DEFAULT; 2], [0.5; 2]),
     ([Kind::DEFAULT, Kind::WALL], [0.5, f64::INFINITY]),

@@ -32,7 +32,7 @@ impl Pile {
 #[repr(align(64))]
 struct Block {
     disks: [u32; ROOM],
-    /// The block before this one in its pile, or the next free one.
+    /// The previous block of the pile or, for a free block, the next free block.
     previous: u32,
 }
 
@@ -76,7 +76,7 @@ impl Piles {
         }
     }
 
-    /// Shows all disks of a pile, block by block, and empties it.
+    /// Passes all disks of a pile, block by block, to a closure, and empties the pile.
     pub(super) fn take(&mut self, pile: usize, mut show: impl FnMut(&[u32])) {
         let Pile { mut last, count } = std::mem::replace(&mut self.ends[pile], Pile::EMPTY);
         let mut count = count as usize;

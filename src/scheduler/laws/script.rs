@@ -127,7 +127,7 @@ impl Stage {
         self.below(self.due.len())
     }
 
-    /// Returns a waiting time: mostly a short one, otherwise zero, a moment, or forever.
+    /// Returns a waiting time: mostly up to 3, otherwise zero, very short or infinite.
     fn wait(&mut self) -> f64 {
         match self.below(40) {
             0 => f64::INFINITY,

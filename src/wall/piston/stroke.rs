@@ -22,7 +22,7 @@ pub(crate) struct Stroke {
     piston: Piston,
     /// The absolute time from which phases count, once it is known.
     origin: Option<f64>,
-    /// The pieces in the order of their times. The first one begins at the last blow.
+    /// The pieces in the order of their times. The first piece begins at the last impact.
     pieces: Vec<Piece>,
 }
 
