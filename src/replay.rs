@@ -126,7 +126,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Some(run))
     }
 
-    /// Returns the state from which the next collision is the given one, or `None` if the run had no such
+    /// Returns the state just before the collision with this number, or `None` if the run had no such
     /// collision.
     ///
     /// Collisions with disks and walls are counted together from 1 on, as the

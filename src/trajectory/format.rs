@@ -81,7 +81,7 @@ pub(super) fn whole_line(input: &mut dyn BufRead) -> io::Result<Option<String>> 
     Ok(Some(line.trim_end_matches(['\n', '\r']).to_owned()))
 }
 
-/// Skips this many lines, and returns false if the input has fewer.
+/// Skips `count` lines, and returns false if the input has fewer.
 pub(super) fn skip_lines(input: &mut dyn BufRead, count: usize) -> io::Result<bool> {
     let mut line = Vec::new();
     for _ in 0..count {

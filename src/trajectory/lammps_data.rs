@@ -13,7 +13,7 @@ use super::extended_xyz::{shown_depth, shown_top};
 use crate::Disk;
 use crate::disk::numbered;
 
-/// Words in the title that tell the files of this crate from others.
+/// Words in the title that distinguish the files of this crate from other files.
 const WRITER: &str = "written by granular-edmd";
 
 impl State {

@@ -12,7 +12,7 @@ use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "format";
 
-/// Number of rounds in which all frames are written, alternately or each one twice.
+/// Number of rounds in which all frames are written, alternately or each frame twice.
 const ROUNDS: usize = 40;
 
 /// Numbers of the frames.

@@ -80,10 +80,10 @@ pub struct Reader {
     settings: Settings,
 }
 
-/// The frame that is read.
+/// The choice of the frame to read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Choice {
-    /// Counted from 0, or from the end if negative.
+    /// The number of the frame, counted from 0, or from the end if negative.
     Number(isize),
     Step(u64),
 }
@@ -114,8 +114,8 @@ impl Reader {
         Self { frame: Choice::Step(step), ..self }
     }
 
-    /// Returns the same reader, which accepts overlaps up to this depth, relative to the sum of the radii,
-    /// and disks as far outside the box, relative to the radius.
+    /// Returns the same reader with this tolerance for overlaps, relative to the sum of the radii, and for
+    /// disks outside the box, relative to the radius.
     ///
     /// A simulation needs disks that do not overlap: see [`with_shrunk_radii`](Self::with_shrunk_radii).
     ///
@@ -126,7 +126,7 @@ impl Reader {
         Ok(self)
     }
 
-    /// Returns the same reader, which shrinks all radii in proportion until no disks overlap.
+    /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
     /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
     /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Masses stay.
@@ -194,7 +194,7 @@ impl Reader {
 impl Choice {
     /// Finds the frame.
     fn find(self, mut frames: Frames<'_>) -> Result<Found<'_>, ReadError> {
-        // The last frames, as many as the choice needs.
+        // The last frames, up to the number that the choice needs.
         let mut last = VecDeque::new();
         let kept = match self {
             Self::Number(number) if number < 0 => number.unsigned_abs(),
@@ -227,7 +227,7 @@ impl Choice {
 
 /// The states of the frames of a file, from [`Reader::frames`].
 pub struct States<'a> {
-    /// The frames that are left; `None` after an error.
+    /// The remaining frames; `None` after an error.
     frames: Option<Frames<'a>>,
     settings: Settings,
 }

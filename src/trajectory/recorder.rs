@@ -114,7 +114,7 @@ impl Recorder {
         Self { clock, sink, failure: None, before_failure: None, must_follow: false }
     }
 
-    /// Returns the same recorder, with its clock as it was after the last frame of the file.
+    /// Returns the same recorder with its clock in the state after the last frame of the file.
     ///
     /// A clock that begins anew would take a beat just after the start of the run for a beat on the start,
     /// and leave it out. Then a run in pieces that was killed between two of them would lack a frame.

@@ -15,9 +15,9 @@ pub(super) struct Sink {
     bytes: Vec<u8>,
 }
 
-/// The way in which the bytes of frames lie in a file, or in several.
+/// The arrangement of the bytes of frames in one or several files.
 pub(super) trait Layout {
-    /// Makes the bytes of a frame.
+    /// Returns the bytes of a frame.
     fn make(&self, frame: &Frame<'_>, bytes: &mut Vec<u8>) -> io::Result<()>;
 
     /// Adds a frame. If that fails, the file is as before.
@@ -46,7 +46,7 @@ impl Sink {
         }
     }
 
-    /// Adds a frame, or checks that the file has it if it goes to this time already.
+    /// Adds a frame or, if the file already reaches this time, checks that the file has the frame.
     pub(super) fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         let time = snapshot.time();
         let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);

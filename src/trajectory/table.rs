@@ -1,4 +1,4 @@
-//! Disks as a file has them: columns, rows, and the box, time and gravity beside them.
+//! The contents of a file: columns and rows of disks, with the box, the time and gravity.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use crate::Gravity;
 use crate::boundary::Domain;
 use crate::disk::LARGEST_ID;
 
-/// A frame of a file, for all formats the same.
+/// A frame of a file, in the same form for all formats.
 ///
 /// A format names the columns and pushes rows; [`disks`](super::disks) turns them into a state.
 #[derive(Debug, Default)]
@@ -117,7 +117,7 @@ impl Table {
         self.known().any(|(_, slot)| Some(slot) == quantity.slot(component))
     }
 
-    /// Returns the names of columns that no property of a disk comes from.
+    /// Returns the names of columns that do not determine a property of a disk.
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |column: &Column| {
             let is_name = column.slot == Some(Quantity::Name as usize);
@@ -137,7 +137,7 @@ impl Table {
         self.values.chunks(stride).zip(self.lines.iter().copied())
     }
 
-    /// Returns the lines of the rows alone, to free the rest.
+    /// Returns the lines of the rows, and frees everything else.
     pub(super) fn into_lines(self) -> Vec<usize> {
         self.lines
     }

@@ -72,7 +72,7 @@ impl<'a> Packing<'a> {
         1.0 - self.grown.iter().map(area).sum::<f64>() / self.full.iter().map(area).sum::<f64>()
     }
 
-    /// Returns the disks with their full radii at their present positions.
+    /// Returns the present positions of the disks.
     pub(super) fn places(&self) -> impl Iterator<Item = DVec2> {
         self.grown.iter().map(Disk::position)
     }

@@ -14,7 +14,7 @@ const NAME: usize = 64;
 pub(super) struct Archive<R> {
     input: R,
     pub(super) names: Vec<String>,
-    /// The entries of the index, as they are in the file.
+    /// The entries of the index, as raw bytes.
     entries: Vec<[u8; ENTRY]>,
     /// True if this crate wrote the file.
     pub(super) is_own: bool,
@@ -80,7 +80,7 @@ impl<R: Read + Seek> Archive<R> {
 }
 
 impl Chunk {
-    /// Returns a number of the chunk; NaN if it is not there, or its type is not known.
+    /// Returns a number of the chunk, or NaN if the chunk does not have the number or its type is not known.
     ///
     /// A single column in single precision has the digits that it shows, so that 0.35 is 0.35.
     pub(super) fn number(&self, row: usize, column: usize) -> f64 {
@@ -108,7 +108,7 @@ impl Chunk {
     }
 }
 
-/// Returns the bytes of a number of this type; 0 if the type is not known.
+/// Returns how many bytes a number of this type has, or 0 if the type is not known.
 pub(super) const fn width(kind: u8) -> u64 {
     match kind {
         1 | 5 => 1,
@@ -130,7 +130,7 @@ fn read_names(bytes: &[u8], version: u16) -> Vec<String> {
     names.into_iter().take_while(|name| !name.is_empty()).collect()
 }
 
-/// Returns the whole number at a place.
+/// Returns the whole number at a position.
 pub(super) fn number(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(bytes[at..].as_chunks().0[0])
 }
@@ -140,7 +140,7 @@ pub(super) fn id(entry: &[u8]) -> usize {
     usize::from(u16::from_le_bytes([entry[28], entry[29]]))
 }
 
-/// Reads bytes, all of which must be there.
+/// Reads bytes, or returns an error if some are missing.
 pub(super) fn read_at(mut input: impl Read + Seek, start: u64, length: u64) -> io::Result<Vec<u8>> {
     input.seek(SeekFrom::Start(start))?;
     let mut bytes = Vec::new();

@@ -19,8 +19,8 @@ const ROOM: usize = 1024;
 /// Number of the chunk with the time of a frame.
 const TIME: usize = 16;
 
-/// Frames in a file of GSD, and its index: its place and the number of entries for which it has room, the
-/// entries, and the chunks of each frame. The entries are written in place.
+/// The frames in a GSD file, and its index: the position of the index, the number of entries for which it has
+/// room, the entries, and the chunks of each frame. The entries are written in place.
 ///
 /// A frame counts once the first of its entries is in the index. So the chunks are written first, then the
 /// other entries, and the first entry at last: a process that dies meanwhile leaves bytes that nobody sees.
@@ -48,7 +48,7 @@ impl Indexed {
         Ok(Sink::new(file, index))
     }
 
-    /// Goes on after the last whole frame of a file.
+    /// Continues after the last complete frame of a file.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let medium = media::reopen(path)?;
         let mut index = Self::first();
@@ -62,7 +62,7 @@ impl Indexed {
         Self { location: HEADER as u64, room: ROOM, entries: Vec::new(), places: Vec::new(), is_cut: false }
     }
 
-    /// Returns the place after everything that the index lists, and after the index.
+    /// Returns the position after the index and after everything that it lists.
     fn end(&self) -> u64 {
         let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
         let frames = self.places.last().map_or(0, |place| place.end);
@@ -90,7 +90,8 @@ impl Indexed {
         Ok(())
     }
 
-    /// Takes everything that a cut has torn out of the index, before other bytes take its place.
+    /// Removes from the index everything that a cut has torn, before other bytes are written at the same
+    /// positions.
     fn mend(&mut self, file: &mut Growing<Locked>) -> io::Result<()> {
         let rest = vec![0; self.room * ENTRY - self.entries.len()];
         file.medium.write_at(self.location + self.entries.len() as u64, &rest)?;
@@ -137,12 +138,12 @@ impl Indexed {
         }
     }
 
-    /// Reads the frames that the present index lists beyond those that are known.
+    /// Reads the frames that the present index lists beyond the known frames.
     fn read_frames(&mut self, file: &File, size: u64, times: &mut Vec<f64>) -> io::Result<()> {
         let known = self.entries.len();
         let entries = read_at(file, self.location + known as u64, (self.room * ENTRY - known) as u64)?;
         let mut rest = entries.as_slice();
-        // The first entry of a frame is written last, so a frame that has it was whole once.
+        // The first entry of a frame is written last, so a frame with this entry was complete once.
         while rest.len() >= ENTRY && number(rest, 16) != 0 {
             let start = number(rest, 16);
             let (known, end) = self::entries(shape_at(rest, times.len()), start);
@@ -204,7 +205,7 @@ fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     Err(no_frame("a file of GSD by this version of granular-edmd", found))
 }
 
-/// Returns the header of a file whose index is here, and has room for so many entries.
+/// Returns the header of a file with its index at this position, and room for this number of entries.
 fn header(location: u64, room: u64) -> Vec<u8> {
     let numbers = [
         0x65DF_65DF_65DF_65DF,
@@ -223,7 +224,7 @@ fn header(location: u64, room: u64) -> Vec<u8> {
     header
 }
 
-/// Returns the shape of the frame whose entries come next.
+/// Returns the shape of the frame with the next entries.
 fn shape_at(entries: &[u8], frame: usize) -> Shape {
     let is_of_frame = |entry: &&[u8]| number(entry, 0) == frame as u64;
     let own = || entries.chunks_exact(ENTRY).take(CHUNKS.len()).take_while(is_of_frame);

@@ -40,14 +40,14 @@ impl<'a> Section<'a> {
 /// The sections of a file.
 #[derive(Default)]
 struct Sections<'a> {
-    /// Columns of the atoms, whether the file names their style, and the line that may do so.
+    /// Columns of the atoms, whether the file names the atoms' style, and the line that may name it.
     columns: (&'a str, bool),
     line: usize,
     atoms: Section<'a>,
     velocities: Option<Section<'a>>,
     /// Numbers of types by their labels.
     labels: HashMap<&'a str, &'a str>,
-    /// Something that only other styles have, with its line.
+    /// An item that only other styles have, with its line.
     other: Option<(&'a str, usize)>,
 }
 

@@ -20,7 +20,7 @@ const TAIL: &str = "</Collection>\n</VTKFile>\n";
 /// Frames in separate files, in a folder beside the file of times.
 pub(in crate::trajectory) struct Series {
     folder: PathBuf,
-    /// Name of the folder, as it stands in the file of times.
+    /// Name of the folder, as written in the file of times.
     name: String,
 }
 
@@ -41,7 +41,7 @@ impl Series {
         Ok(Sink::new(file, Self { folder, name }))
     }
 
-    /// Goes on after the last whole frame of a series.
+    /// Continues after the last complete frame of a series.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let (folder, name) = place(path)?;
         let file = media::reopen(path)?;
@@ -54,7 +54,7 @@ impl Series {
         Sink::new(file, Self { folder, name }).with_frames(times)
     }
 
-    /// Writes one of the files of a frame. A killed run may have left that file, whole or torn.
+    /// Writes one of a frame's files. A killed run may have left that file, whole or torn.
     fn write(&self, part: &str, number: usize, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.folder.join(file_name(part, number));
         let file = match fs::read(&path) {
