@@ -108,7 +108,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    no disk goes through a wall, all centers stay in the domain.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
 ///    this radius, or a smaller one, can touch a wall at any time. If it is true for a region, it is true for
-///    every larger region around that one.
+///    every larger region that contains the region.
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
 ///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`. A search
 ///    that cannot come to an end says how far the way is free, which is later than the flight begins.
@@ -126,33 +126,32 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    of the domain overlaps the wall, and one that is smaller by this overlaps none.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
-/// 8. The same questions get the same answers, bit for bit, until the origin is set or a wall reacts.
+/// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple: its velocity changes by
 ///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
 ///    over the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a
-///    mass m counts as the impulse C/R. No wall moves in an instant. The answer is [`Reaction::Moved`] if the
+///    mass m counts as the impulse C/R. No wall moves in an instant. The result is [`Reaction::Moved`] if the
 ///    velocity changes. A wall of infinite masses does not react.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
-/// 11. [`state`](Self::state) and [`set_state`](Self::set_state) bring walls back that have reacted: all
-///     answers are as before, and the state that was set is returned again. A state of another length is
-///     refused.
+/// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
+///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap`, and
 ///     [`wall_point`](Self::wall_point) stays on its wall.
-/// 13. Boundaries with equal [fingerprints](Self::fingerprint) answer alike, and equal boundaries have equal
-///     ones, whatever their state and their origin.
+/// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
+///     have equal fingerprints, whatever their state and their origin.
 ///
 /// The engine guarantees:
-/// - It sets the origin before it asks anything, and whenever the epoch of the run moves. It never asks about
-///   a time before the origin.
+/// - It sets the origin before any other call, and whenever the epoch of the run moves. It never passes a
+///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends
 ///   (`until`) when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most.
 ///   In an epoch, a typical disk goes some tens of diameters.
-/// - It asks `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
+/// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
-/// - It asks `surface` about a touch that `first_touch` found: with its wall, its time, and the position of
+/// - It calls `surface` for a touch that `first_touch` found: with its wall, its time, and the position of
 ///   the disk at that time.
-/// - It asks `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
+/// - It calls `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
 ///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
@@ -289,9 +288,9 @@ pub trait Boundary {
     /// If the disk already touches a wall, that touch is found immediately while the disk approaches the
     /// wall, and never while the disk leaves it.
     ///
-    /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up
-    /// to which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time, so a
-    /// run can check its limits between two parts of a long search.
+    /// An `Option<Touch>` becomes the result by `into`. A search with many steps may return the time up to
+    /// which it has found no touch ([`FirstTouch::NotBefore`]); the engine calls again at that time, so a run
+    /// can check its limits between two parts of a long search.
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
@@ -342,7 +341,7 @@ pub trait Boundary {
     /// Receives the impact of a disk on a wall, and returns whether the wall's motion changes.
     ///
     /// The engine calls it after each collision with a wall. A wall that reacts has a finite
-    /// [mass](Surface::with_mass), and its motion between two impacts is known. If the answer is
+    /// [mass](Surface::with_mass), and its motion between two impacts is known. If the result is
     /// [`Reaction::Moved`], the engine predicts all flights anew that [`may_meet`](Self::may_meet) names. The
     /// default reacts to nothing, and costs nothing.
     #[inline]
@@ -353,8 +352,8 @@ pub trait Boundary {
 
     /// Returns whether a disk with its center in `region` may touch this wall at any time up to `until`.
     ///
-    /// The engine asks after a wall has [reacted](Self::react), in order to find the disks whose flights may
-    /// now end otherwise. A narrow answer saves predictions; by default, it is the answer of
+    /// The engine calls the method after a wall has [reacted](Self::react), in order to find the disks whose
+    /// flights may now end differently. A narrow result saves predictions; the default is the result of
     /// [`may_touch`](Self::may_touch).
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
         let _ = (wall, until);

@@ -8,12 +8,12 @@ use crate::violation::require;
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
-/// others. A custom part makes its fingerprint from its name and from all numbers on which its answers
+/// others. A custom part makes its fingerprint from its name and from all numbers on which its results
 /// depend. A part without a name and numbers, such as a closure, has no fingerprint, and two such parts
 /// cannot be distinguished. The checks of fingerprints, such as
 /// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare two parts
-/// with their answers: parts that differ in a number must differ, and equal parts agree. The hash is FNV-1a
-/// with 64 bits, over bytes in a fixed order, so it is the same on every platform.
+/// with their results: parts with different results must have different fingerprints, and equal parts equal
+/// ones. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;

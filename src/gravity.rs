@@ -8,8 +8,8 @@ use crate::quantity::accept;
 
 /// Gravity: the constant acceleration of all disks in free flight.
 ///
-/// A number is gravity that points down, or up if it is negative; a vector is the acceleration itself. Both
-/// turn into gravity by themselves, wherever a function asks for it.
+/// A number is gravity that points down, or up if it is negative; a vector is the acceleration itself.
+/// Functions that take gravity accept both, and convert them.
 ///
 /// ```
 /// use granular_edmd::Gravity;

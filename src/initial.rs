@@ -11,8 +11,8 @@
 //! A [`Reader`](crate::trajectory::Reader) takes disks from files of other programs.
 //!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
-//! [`with_maxwellian_velocities`] sets them in motion. To place disks around others that are placed already,
-//! put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).
+//! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks
+//! into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
 //! The functions place no disk into a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in

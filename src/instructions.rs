@@ -1,9 +1,9 @@
 //! Vector instructions that only some processors of an architecture have.
 //!
 //! A build for any x86-64 processor can rely only on instructions for two numbers at a time, but nearly all
-//! of these processors can take four. The hot code is therefore compiled for each level, and [`Instructions`]
-//! names the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses
-//! a product and a sum into one instruction; the bits do not depend on the level.
+//! of these processors can process four. The hot code is therefore compiled for each level, and
+//! [`Instructions`] names the level that this processor has. The arithmetic is the same in all copies, since
+//! Rust never fuses a product and a sum into one instruction; the bits do not depend on the level.
 //!
 //! Two parts for which the compiler finds no good vector instructions are written out in them: the tournament
 //! of the scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions

@@ -6,7 +6,7 @@ use std::fmt;
 ///
 /// A kind changes nothing by itself: radius and mass belong to the disk. Rules find the kinds of both
 /// partners in the [`Contact`](crate::collision::Contact), so that steel and glass can rub in their own way
-/// ([`RulesByKind`](crate::collision::RulesByKind)). Observers can look at disks of one kind
+/// ([`RulesByKind`](crate::collision::RulesByKind)). Observers can be restricted to disks of one kind
 /// ([`OfKind`](crate::observable::OfKind)). Disks have [`Kind::DEFAULT`] unless another is given, and walls
 /// have [`Kind::WALL`].
 ///

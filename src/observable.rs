@@ -1,8 +1,8 @@
 //! Observables and observers: quantities of a state, and watchers of a run.
 //!
 //! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] watches a run: the engine reports
-//! the beginning and the end of the run and every [`Collision`] to it, and shows it a snapshot at the times
-//! that it asks for. An observer may stop the run. You lend it to a run and read it afterwards. Observers and
+//! the beginning and the end of the run and every [`Collision`] to it, and gives it a snapshot at the times
+//! that it requests. An observer may stop the run. You lend it to a run and read it afterwards. Observers and
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!

@@ -1,8 +1,8 @@
 //! Playback of runs: the state before any collision, the last collisions of a disk, and the first differences
 //! of two runs.
 //!
-//! Nothing is recorded but the state of the run now and then. All in between follows from these states, bit
-//! for bit, so any collision can be looked at as if one had waited for it. A state may come from a
+//! Only states of the run are recorded, at intervals. All in between follows from these states, bit for bit,
+//! so any collision can be looked at as if one had waited for it. A state may come from a
 //! [checkpoint](Simulation::resume), from a start file or from a plan and a seed.
 //!
 //! ```
@@ -114,7 +114,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// cover the time.
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
         if time >= self.present.time() {
@@ -133,7 +133,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn before_collision(&self, number: u64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         if number > self.present.counters().collisions() + u64::from(self.has_failed) {
             return Ok(None);
@@ -150,7 +150,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns the collisions after the absolute time `from`, up to and at `to`.
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
         let start = &self.states[0];
         // Disks that touch at the start collide immediately.
@@ -162,7 +162,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// their order. The disk is known by its [id](crate::Disk::id).
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
         for state in self.states.iter().rev().filter(|state| state.time() < until) {
@@ -206,7 +206,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// `None` if the two keep no states of the same times.
     ///
     /// # Errors
-    /// If the parts of a run do not answer as they did the first time.
+    /// If the parts of a run return other results than the first time.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

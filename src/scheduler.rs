@@ -31,7 +31,7 @@ use crate::forward::forward;
 /// The result of a scheduler without disks.
 ///
 /// No disk has this index, and the time is later than any run lasts. The engine compares the time of each
-/// event with the end of the run anyway, and this comparison rejects the answer.
+/// event with the end of the run anyway, and this comparison rejects the result.
 pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
 /// A scheduler: it orders the events of the disks by their times.
@@ -42,14 +42,14 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. If all times are infinite, the
 ///    disk with the smallest index is named, with its infinite time.
 /// 3. **Time may go back.** [`set`](Self::set) takes any time. It may be later than the disk's last time,
-///    earlier than it (because a faster partner has appeared), or even earlier than the last answer. After
-///    most events, the disk that was just named gets a later time. In the other cases a scheduler may be
-///    slow, but not wrong.
+///    earlier (because a faster partner has appeared), or even earlier than the last result of `earliest`.
+///    After most events, the disk that was just named gets a later time. In the other cases a scheduler may
+///    be slow, but not wrong.
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
-/// 5. **Without disks**, as before the first `reset`, the answer is [`NOTHING_DUE`].
-/// 6. **Questions change nothing.** [`earliest`](Self::earliest) answers alike until the next `set` or
-///    `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
+/// 5. **Without disks**, as before the first `reset`, the result is [`NOTHING_DUE`].
+/// 6. ****Queries change nothing.** [`earliest`](Self::earliest) returns the same result until the next `set`
+///    or `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
 ///
 /// # What the engine guarantees
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
@@ -70,9 +70,9 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// fifty thousand operations; `docs/validation.md` says which planted faults it finds.
 ///
 /// # Why the answer is a pair and not an `Option`
-/// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]
-/// fails the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to
-/// each event, and no information.
+/// The engine calls the method at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails
+/// the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to each
+/// event, and no information.
 ///
 /// ```
 /// use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE, TournamentTree};

@@ -17,8 +17,8 @@
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
 //!    the caller gives again. It notices if they are different ones, as far as they have fingerprints.
-//! 6. A part (a rule, boundary, scheduler or observer) that gives an impossible answer ends the run with an
-//!    error that names the answer. It never makes the engine go back in time, or name a disk or wall that
+//! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
+//!    error that names the result. It never makes the engine go back in time, or name a disk or wall that
 //!    does not exist. A collision that is carried out is at its wall, and no deeper in it or in a disk than
 //!    rounding. The chapters of [`Boundary`] and [`EventScheduler`] on broken contracts say which faults stay
 //!    unseen.
@@ -105,7 +105,7 @@ use state::{Bodies, Clock, Ledger};
 pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     rule: R,
     boundary: B,
-    /// Number of walls of the boundary. The answers of the boundary are checked against it.
+    /// Number of walls of the boundary. The results of the boundary are checked against it.
     wall_count: usize,
     scheduler: S,
     bodies: Bodies,
@@ -200,7 +200,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns the index of the disk with this [id](Disk::id), or `None` if it is not in the run.
     ///
-    /// This looks at all disks.
+    /// The call examines all disks.
     pub fn index_of(&self, id: u64) -> Option<usize> {
         (0..self.len()).find(|&disk| self.bodies.id(disk) == id)
     }
@@ -213,7 +213,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the disk or wall that another disk would overlap most deeply now, and the depth, or `None` if
     /// there is room for the other disk.
     ///
-    /// This looks at all disks.
+    /// The call examines all disks.
     ///
     /// ```
     /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic};
@@ -285,7 +285,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If gravity is not finite, or a component is above 1e60 in magnitude. If disks would fall so fast that
-    /// times as late as the present are too coarse. The simulation then stays as it was.
+    /// times as late as the present are too coarse. The simulation then stays unchanged.
     pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
         let gravity = gravity.into().checked()?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
@@ -307,7 +307,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation
-    /// then stays as it was.
+    /// then stays unchanged.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         traffic::check_inlets(&boundary, &self.inlets)?;

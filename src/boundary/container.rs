@@ -21,7 +21,7 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin, such as the paper's box.
 ///
-/// All walls are fixed at first, and follow the rule of the disks. Each wall can be given a motion along its
+/// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
 /// normal (which points inward), its own rule, a temperature, or a kind.
 ///
 /// ```

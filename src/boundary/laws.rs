@@ -1,7 +1,7 @@
 //! Checks of a boundary's contract, for custom boundaries.
 //!
-//! [`check`] sends disks on random flights between the walls, and checks every answer of the boundary about
-//! them. [`check_fingerprints`] compares two boundaries.
+//! [`check`] sends disks on random flights between the walls, and checks every result of the boundary.
+//! [`check_fingerprints`] compares two boundaries.
 
 mod area;
 mod flight;

@@ -32,8 +32,8 @@ impl FirstTouch<Touch> {
 
     /// Returns the earlier of two results for the same flight.
     ///
-    /// Of touches at the same time, the wall with the smaller index counts. A boundary that puts walls into
-    /// another one, as [`Obstacles`](super::Obstacles) does, combines the answers in this way.
+    /// Of touches at the same time, the wall with the smaller index counts. A boundary that adds walls to
+    /// another boundary, as [`Obstacles`](super::Obstacles) does, combines the results in this way.
     #[inline]
     pub fn or(self, other: Self) -> Self {
         let is_first = match (&self, &other) {

@@ -31,9 +31,9 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
 /// A disk must be free of the container's walls and of each part: two blocks make a hopper, and a polygon can
-/// have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
-/// repeated: a part that reaches beyond one side comes in again at the other, however far it reaches. They
-/// are added, replaced and removed by name, also between runs
+/// have pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
+/// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
+/// added, replaced and removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
 /// Initial states keep clear of all parts, as these are at time 0. To pack disks densely among parts that
@@ -194,7 +194,7 @@ impl Vessel {
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
     /// walls. If the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. The vessel then stays as it was.
+    /// both, or its motion is lost in the rounding of its coordinates. The vessel then stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
@@ -213,7 +213,7 @@ impl Vessel {
     /// The indices of the walls after it become smaller.
     ///
     /// # Errors
-    /// If there is no part of this name. The vessel then stays as it was.
+    /// If there is no part of this name. The vessel then stays unchanged.
     pub fn remove(&mut self, name: &str) -> Result<Part, VesselError> {
         let removed = self.parts.remove(self.place_of(name)?);
         self.number();

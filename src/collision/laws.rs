@@ -4,8 +4,8 @@
 //! impulse and its opposite at the contact point. The rule is responsible for separation, energy and
 //! friction, and for symmetry.
 //!
-//! [`check`] asks a rule about tens of thousands of contacts, the same ones for the same seed, and fits into
-//! a plain test:
+//! [`check`] calls a rule for tens of thousands of contacts, the same contacts for the same seed, and fits
+//! into a plain test:
 //!
 //! ```
 //! use granular_edmd::collision::laws::{self, Promises};

@@ -21,9 +21,9 @@ const START: u64 = 12;
 
 /// A log: a file to which one process appends, while any number of others may read.
 ///
-/// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or a
-/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be
-/// alone.
+/// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or an
+/// incomplete piece at the end, which the next piece overwrites. Nothing locks the file: whoever appends must
+/// be alone.
 ///
 /// ```
 /// use granular_edmd::file::{Log, Seal, read_piece};

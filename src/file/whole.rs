@@ -23,7 +23,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Draft::with(path, bytes)?.finish()
 }
 
-/// Writes a file as [`write_whole`] does, but in a loss of power it may be lost or torn.
+/// Writes a file as [`write_whole`] does, except that a loss of power may lose or damage the file.
 ///
 /// # Errors
 /// If the system cannot write it.
@@ -115,9 +115,9 @@ pub fn is_temporary(name: &OsStr) -> bool {
 
 /// Returns a name that no other writer uses.
 ///
-/// The process number tells programs on this host apart, the count tells writers in this process apart, and
-/// the random number tells hosts apart that share a disk. The file's own name is left out, so that the result
-/// cannot become too long.
+/// The process number distinguishes programs on this host, the count distinguishes writers in this process,
+/// and the random number distinguishes hosts that share a disk. The file's own name is left out, so that the
+/// result cannot become too long.
 pub fn unique_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);

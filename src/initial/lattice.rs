@@ -14,8 +14,8 @@ const MOST_EMPTY_ROWS: usize = 1000;
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
 ///
-/// Over a floor that moves only vertically, the columns would hop in line for ever, which a run
-/// [warns](crate::simulation::Warning::OneDirection) of. Give the disks small velocities
+/// Over a floor that moves only vertically, the columns would hop in line forever, of which a run
+/// [warns](crate::simulation::Warning::OneDirection). Give the disks small velocities
 /// ([`with_maxwellian_velocities`](super::with_maxwellian_velocities)).
 ///
 /// Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for that. Sites

@@ -113,7 +113,7 @@ impl<T: Observer> Observer for OfKind<T> {
 /// An observer that sees only collisions between two kinds, in either order, of two disks or of a disk and a
 /// wall.
 ///
-/// It passes on samples as they are.
+/// It passes samples on unchanged.
 ///
 /// ```
 /// use granular_edmd::Kind;

@@ -52,7 +52,7 @@ impl ObserverError {
 
 crate::error::from_causes! { ObserverError from &str, String, std::io::Error, ParameterError }
 
-/// An observer's decision on the run: go on, stop here, or fail.
+/// An observer's decision on the run: continue, stop, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
 /// An observer of a run, which receives each collision, and samples at the times that it requests.
@@ -65,7 +65,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    time, is stopped, or fails.
 /// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
 ///    changed.
-/// 3. `on_sample` is called at the time that `next_sample` asked for, unless that is after the end of the
+/// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
 ///    run. The sample has seen all events up to and at its time. A time before the start of the run is
 ///    sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
@@ -79,11 +79,11 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// takes each step.
 ///
 /// # What an observer guarantees
-/// 1. `next_sample` is never NaN. Its value is infinite if no sample is wanted.
+/// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
 /// 2. After a sample, `next_sample` names a later time than the sample's.
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
-/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
-///    these calls, and would notice another change too late.
+/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine calls `next_sample`
+///    after these calls, and would notice another change too late.
 /// 5. Samples do not depend on how a run is cut: if a run starts at the time at which the last one ended,
 ///    `next_sample` is what it was at the end.
 ///
@@ -138,11 +138,11 @@ pub trait Observer {
         let _ = end;
     }
 
-    /// Decides whether the run goes on, stops here, or fails.
+    /// Decides whether the run continues, stops, or fails.
     ///
     /// # Errors
-    /// If the observer cannot go on, for example because a file cannot be written or a quantity has left its
-    /// range. The run then fails, too.
+    /// If the observer cannot continue, for example because a file cannot be written or a quantity has left
+    /// its range. The run then fails, too.
     fn verdict(&mut self) -> Verdict {
         Ok(ControlFlow::Continue(()))
     }

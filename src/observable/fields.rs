@@ -37,12 +37,11 @@ pub struct FieldCell {
 
 /// Density, flow and temperatures on a grid, averaged over samples: for example, to show convection rolls.
 ///
-/// A disk counts in the cell of its center. Densities are those in the free part of a cell, which
+/// A disk counts in the cell of its center. Densities refer to the free part of a cell, which
 /// [`Boundary::area`](crate::boundary::Boundary::area) gives at each sample; a run ends with an error if the
-/// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*,
-/// over all samples. A flow that changes between samples, such as a roll that reverses, counts as
-/// temperature. If $`n`$ disks are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$,
-/// for independent samples.
+/// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*, over all samples.
+/// A flow that changes between samples, such as a roll that reverses, counts as temperature. If $`n`$ disks
+/// are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$, for independent samples.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};

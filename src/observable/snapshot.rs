@@ -11,8 +11,8 @@ use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
 ///
-/// The run does not see changes of these copies. They are made when somebody asks for them, so the start of a
-/// run costs nothing for an observer that only reads the time.
+/// The run does not see changes of these copies. They are made on request, so the start of a run costs
+/// nothing for an observer that only reads the time.
 #[derive(Debug, Clone)]
 pub struct Snapshot<'a> {
     time: f64,

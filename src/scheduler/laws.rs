@@ -17,9 +17,9 @@ const PART: &str = "scheduler";
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
 /// have from none to some ten thousand disks, and up to three million operations. They contain times that
-/// advance, go back, or are before the last answer; ties and times that differ by their last bits, both
+/// advance, go back, or are before the last result; ties and times that differ only in their last bits, both
 /// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
-/// many and no disks. Each question is asked twice. Now and then the scripts ask for
+/// many and no disks. Each query is made twice. At intervals, the scripts call
 /// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" says
 /// which planted faults the check finds. The scripts never change within a version.
 ///
@@ -111,7 +111,7 @@ impl<S: EventScheduler> Performance<S> {
         Err(Violation::new(PART, "earliest", found))
     }
 
-    /// Asks for upcoming disks, as the engine does in large systems.
+    /// Queries upcoming disks, as the engine does in large systems.
     fn look_ahead(&mut self) -> Result<(), Violation> {
         // Arbitrary numbers serve as the disks that the engine has collected already.
         let kept = [usize::MAX, usize::MAX, 0, 1];

@@ -12,7 +12,7 @@ use wide::Wide;
 /// A tournament: the earliest disk of each match enters the next round, until one disk is left.
 ///
 /// Processors that compare four or eight times at once play matches of 32 disks. Others play matches of four,
-/// and so do all with more than 32 768 disks. The answers are the same.
+/// and so do all with more than 32 768 disks. The results are the same.
 #[derive(Debug, Clone, Default)]
 pub struct TournamentTree {
     instructions: Instructions,

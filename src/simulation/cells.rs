@@ -2,7 +2,7 @@
 //! cells around it.
 //!
 //! A disk passes to a neighbor cell where it leaves its own, widened by a margin (`layout.rs`, `grid.rs`), at
-//! the time that `prediction::cell_exit` gives. Then it looks at the three cells ahead (`Cells::ahead`).
+//! the time that `prediction::cell_exit` gives. Then it searches the three cells ahead (`Cells::ahead`).
 
 mod block;
 mod cell_size;

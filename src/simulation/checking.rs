@@ -1,10 +1,11 @@
 //! Checks of the results that the engine receives: collisions happen where surfaces touch, no event is lost,
 //! and no disk leaves the domain.
 //!
-//! All parts may be code of the user's. None of them can make the engine panic, but a wall that is not where
-//! it says, or a scheduler that forgets, would let a run end as if nothing had happened. The engine therefore
-//! checks where a check costs next to nothing: at each wall collision, at each new largest overlap, at the
-//! ends of searches for a wall, and at all disks whenever the epoch moves or a run ends.
+//! All parts may be code of the user's. None of them can make the engine panic. But a wall at another
+//! position than it reports, or a scheduler that loses events, would let a run end as if nothing had
+//! happened. The engine therefore checks where a check costs next to nothing: at each wall collision, at each
+//! new largest overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a
+//! run ends.
 
 use glam::DVec2;
 
@@ -73,7 +74,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             Partner::Disk(other) => self.bodies.radius(disk).min(self.bodies.radius(other)),
             Partner::Wall(_) => self.bodies.radius(disk),
         };
-        // A depth that is not a number would stay the largest for ever.
+        // A depth that is not a number would stay the largest forever.
         if depth.is_nan() || depth > DEEP * radius + self.rounding_at(disk, partner) {
             return Err(self.false_contact(disk, inside, depth).into());
         }
@@ -90,7 +91,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (now, radius) = (self.clock.now, probe.radius());
         let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
         // A wall that jumps away from the disks may have done so in the rounding of the time. The engine
-        // never asks about times before the epoch.
+        // never passes times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);
         if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {
             return Ok(());
@@ -104,8 +105,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the error by which the gap between a disk and its partner may differ from zero.
     ///
     /// Positions are rounded relative to their distance from the origin, and to the distance traveled since
-    /// the epoch. The time of a touch is rounded as absolute times are, since some walls know no others. In
-    /// this time, the disk goes on, and so does the wall.
+    /// the epoch. The time of a touch is rounded as absolute times are, since some walls know no others.
+    /// Meanwhile, both the disk and the wall move.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);

@@ -196,12 +196,12 @@ impl Checkpoint {
         decoded(opened(SEAL, bytes)?).map(Self)
     }
 
-    /// Writes the checkpoint to a file, whole or not at all.
+    /// Writes the checkpoint to a file, completely or not at all.
     ///
     /// A reader never sees half of it, even if others write the same file.
     ///
     /// # Errors
-    /// If the file cannot be written. An older file of that name is then as it was.
+    /// If the file cannot be written. An older file of that name then stays unchanged.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CheckpointError> {
         write_whole(path.as_ref(), &self.to_bytes()?).map_err(failed("write", path.as_ref()))
     }

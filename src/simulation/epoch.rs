@@ -18,7 +18,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.reset_scheduler();
     }
 
-    /// Tells the scheduler the times of all events.
+    /// Passes the times of all events to the scheduler.
     pub(super) fn reset_scheduler(&mut self) {
         let mut due = std::mem::take(&mut self.scratch.due);
         due.clear();

@@ -1,11 +1,12 @@
 //! The event loop, which finds the next event, carries it out, and predicts what follows.
 //!
-//! This file shows one collision from top to bottom. [`Simulation::next_due`] asks the scheduler, and
-//! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
-//! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
-//! The arithmetic of predictions is in `prediction.rs`, and epochs are in `epoch.rs`. If rounding leaves
-//! partners approaching after a collision, `parting.rs` makes them part. All results of rules, boundaries and
-//! schedulers are checked in `checking.rs`. None of these files calls back into the event loop.
+//! This file shows one collision from top to bottom. [`Simulation::next_due`] queries the scheduler, and
+//! [`Simulation::advance`] carries out the event. [`Simulation::collide`] lets the rule decide
+//! (`resolution.rs`) and kicks both disks. It then predicts the next event of each disk, and passes its time
+//! to the scheduler (`forecasting.rs`). The arithmetic of predictions is in `prediction.rs`, and epochs are
+//! in `epoch.rs`. If rounding leaves partners approaching after a collision, `parting.rs` makes them part.
+//! All results of rules, boundaries and schedulers are checked in `checking.rs`. None of these files calls
+//! back into the event loop.
 
 use glam::DVec2;
 

@@ -22,7 +22,7 @@ pub enum Event {
 
 /// The reason why a run ended without an error.
 ///
-/// The run can go on from there, with the same bits.
+/// The run can continue from there, with the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunEnd {

@@ -15,7 +15,7 @@ use crate::scheduler::EventScheduler;
 pub(super) const HORIZON: f64 = 2.0;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Finds the next event of a disk among all its neighbors, and tells the scheduler.
+    /// Finds the next event of a disk among all its neighbors, and passes its time to the scheduler.
     pub(super) fn predict(&mut self, disk: usize) {
         self.find_next(disk);
         self.schedule(disk);
@@ -98,7 +98,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.forecast_mut(disk).set_collision(earliest, collisions);
     }
 
-    /// Tells the scheduler when the next event of a disk is due.
+    /// Passes the time of a disk's next event to the scheduler.
     #[inline(always)]
     pub(super) fn schedule(&mut self, disk: usize) {
         self.scheduler.set(disk, self.forecast(disk).due());

@@ -13,10 +13,11 @@ use crate::{Disk, Kind, ParameterError};
 
 /// An inlet: it lets disks into a run, at set times and at random places of a rectangle.
 ///
-/// Each time it opens, [`new`](Self::new) lets in one disk, and [`refill`](Self::refill) all disks that sinks
-/// have taken out since. A disk for which it finds no room waits until the inlet opens again, and the others
-/// wait behind it. A disk that comes in has a new [id](Disk::id) and the largest index, and has collided with
-/// nothing yet. This takes the same time however many disks there are.
+/// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
+/// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it
+/// finds no room waits until the inlet opens again, and the others wait behind it. A disk that enters has a
+/// new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same time
+/// however many disks there are.
 ///
 /// An inlet is a part of the state of a run, and so of its checkpoints, with the disks that wait.
 ///

@@ -6,7 +6,7 @@ use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
 /// Number of disks that come into sight between two steps of a request: first the disk is requested, then the
-/// cells that its event needs, then its neighbors in those cells.
+/// cells that its event needs, then its neighbors in these cells.
 const LATER: usize = 12;
 
 /// The disks that last came into sight. For each, the disk itself is requested from memory first, then the

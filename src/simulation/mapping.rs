@@ -16,7 +16,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If `change` fails, a disk that has moved or grown does not fit, or a disk becomes so fast that times
-    /// as late as the present are too coarse. The simulation then stays as it was.
+    /// as late as the present are too coarse. The simulation then stays unchanged.
     ///
     /// ```
     /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};

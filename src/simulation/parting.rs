@@ -11,7 +11,7 @@ use crate::observable::Collision;
 use crate::scheduler::EventScheduler;
 
 /// Largest number of pushes, each twice as strong as the last, with which two partners are made to part. If
-/// these fail, the partners are left as they are.
+/// these fail, the partners stay unchanged.
 const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, relative to the speeds of the disks, above which it is not rounding: the

@@ -24,9 +24,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk, or has the id of another; the error
-    /// names its index. If there
-    /// would be too many disks, the domain is too small for a disk, or a disk is so fast that times as late
-    /// as the present are too coarse. The simulation then stays as it was.
+    /// names its index. If there would be too many disks, the domain is too small for a disk, or a disk is so
+    /// fast that times as late as the present are too coarse. The simulation then stays unchanged.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;
@@ -71,7 +70,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If the boundary's domain cannot hold the other disks any more, which happens only if the boundary
-    /// breaks its contract. The simulation then stays as it was.
+    /// breaks its contract. The simulation then stays unchanged.
     pub fn remove(&mut self, mut chosen: impl FnMut(usize, &Disk) -> bool) -> Result<Vec<Disk>, BuildError> {
         let all = self.disks();
         let leaves: Vec<bool> = all.iter().enumerate().map(|(index, disk)| chosen(index, disk)).collect();

@@ -40,14 +40,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// Returns what ended the run.
     ///
-    /// The run calls the observer at its start, at each collision, at the samples that the observer asks for,
+    /// The run calls the observer at its start, at each collision, at the samples that the observer requests,
     /// and at its end, even if it ends with an error. If the observer stops the run, the present is the time
-    /// of the collision or sample at which the observer did so. Whatever ends the run, the next one goes on
+    /// of the collision or sample at which the observer did so. However the run ends, the next run continues
     /// from there with the same bits.
     ///
     /// # Errors
     /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
-    /// scheduler or observer gives an impossible answer, times become too coarse, or an observer fails. The
+    /// scheduler or observer returns an impossible result, times become too coarse, or an observer fails. The
     /// simulation then keeps the state of that time.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
@@ -242,7 +242,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
     }
 
-    /// Asks the observer whether the run goes on.
+    /// Asks the observer whether the run continues.
     #[inline]
     fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
         observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))

@@ -2,8 +2,8 @@
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
 //! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
-//! of date: their collision count does not match the disk that has this index now. They are made anew when
-//! they come up, as for any partner that has collided since.
+//! of date: their collision count does not match the disk that has this index now. The engine replaces them
+//! when they are due, as for any partner that has collided since.
 
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
@@ -22,12 +22,12 @@ const TRIES: u32 = 32;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Adds an inlet, which lets disks in from now on.
     ///
-    /// At equal times, it does so after all events of disks and before a sample. Inlets take turns in the
-    /// order in which they were added.
+    /// At equal times, the inlet opens after all events of disks and before a sample. Inlets take turns in
+    /// the order in which they were added.
     ///
     /// # Errors
     /// If the inlet is not in the domain, or a model does not fit into the boundary, just fills a hollow of a
-    /// wall, or moves at a speed below 1e-100. The simulation then stays as it was.
+    /// wall, or moves at a speed below 1e-100. The simulation then stays unchanged.
     pub fn add_inlet(&mut self, mut inlet: Inlet) -> Result<(), BuildError> {
         check_inlets(&self.boundary, std::slice::from_ref(&inlet))?;
         check_speeds(inlet.models().iter().map(Disk::velocity).chain(inlet.velocity_of_return()))?;

@@ -66,17 +66,17 @@ pub enum Warning {
     },
     /// More than half of the collisions parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow,
-    /// the speed is too high, and the energy that it puts in keeps the disks moving.
+    /// the speed is too high, and the energy that it adds keeps the disks moving.
     MostlyLeastRebound {
         /// Number of collisions that the remedy decided.
         raised: u64,
         /// Number of all collisions, with disks or walls.
         collisions: u64,
-        /// Energy that it put in.
+        /// Energy added by the remedy.
         energy: f64,
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
-    /// them aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small
+    /// them aside. Rows of a lattice over a floor that moves vertically hop like this forever. Any small
     /// velocities at the start mend it, for example by
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
@@ -97,8 +97,8 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk can get to a sink, and none has been taken out: walls are in its way, such as those nearer
-    /// than a radius to a line for centers. A gate that opens later is a harmless cause.
+    /// No disk can reach a sink, and none has been removed: walls block the sink, such as walls nearer than a
+    /// radius to a line for centers. A gate that opens later is a harmless cause.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
@@ -262,8 +262,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         (!has_source && is_more).then_some(Warning::EnergyGained { before, now })
     }
 
-    /// Counts the walls that are elsewhere in another boundary at this moment. Walls are the same if their
-    /// names are.
+    /// Counts the walls that have another position in another boundary at the present time. Walls are the
+    /// same if their names are.
     pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
         let before = places(&self.boundary, self.clock.now);
         for (name, (wall, here)) in places(other, self.clock.now) {

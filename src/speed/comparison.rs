@@ -102,7 +102,7 @@ impl Comparison {
     /// collisions.
     ///
     /// # Errors
-    /// Those of the stretches.
+    /// The times of the measured intervals.
     pub fn between<E>(
         mut first: impl FnMut() -> Result<RunReport, E>,
         mut other: impl FnMut() -> Result<RunReport, E>,

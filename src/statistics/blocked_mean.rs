@@ -87,7 +87,7 @@ impl BlockedMean {
             return Estimate::blocked(whole.mean(), naive, whole.count(), 1.0, false);
         }
         if naive == 0.0 {
-            // Equal samples tell no more than one of them.
+            // Equal samples carry no more information than one of them.
             return Estimate::blocked(whole.mean(), 0.0, whole.count(), whole.count() as f64, false);
         }
         let several = self.0.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);

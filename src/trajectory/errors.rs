@@ -47,7 +47,7 @@ pub enum RecordError {
     },
     /// The file has no whole frame after which a recorder could continue.
     ///
-    /// The file is left as it is.
+    /// The file stays unchanged.
     #[error("{} has no whole frame to go on from; it is left as it is", path.display())]
     NoFrame {
         /// The path.
@@ -55,7 +55,7 @@ pub enum RecordError {
     },
     /// The file belongs to another run, since it has another frame, or no frame, at a time of this run.
     ///
-    /// The file is left as it is.
+    /// The file stays unchanged.
     #[error("{} is of another run: it goes to time {}, and has {} at time {}", path.display(), Readable(*.last),
         if *.is_there { "another frame" } else { "no frame" }, Readable(*.time))]
     AnotherRun {

@@ -31,7 +31,7 @@ use crate::{Disk, Gravity};
 /// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
 /// ASE, chemfiles, MDAnalysis and OVITO read the columns alike, as far as they know them. Symbols of elements
-/// are there because ASE takes nothing else.
+/// are written because ASE accepts nothing else.
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
 /// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the

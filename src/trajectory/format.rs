@@ -41,7 +41,7 @@ impl<'a> Frame<'a> {
 /// 3. `skip_frame` returns `None` for a frame that is cut short at any byte, as a process that is killed
 ///    leaves it.
 ///
-/// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` tells which planted faults it
+/// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults it
 /// finds.
 ///
 /// [`Recorder`](super::Recorder) makes each frame whole in memory, so a format may write in small pieces. The

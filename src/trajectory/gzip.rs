@@ -99,7 +99,7 @@ pub(super) fn frames(
 /// Checks the bytes after the last complete frame: the ending or a part of it, or a part of a frame that a
 /// killed process wrote over the ending.
 ///
-/// An ending of another checksum tells that a frame is damaged. A new ending would hide that for ever.
+/// An ending with another checksum shows that a frame is damaged. A new ending would hide the damage forever.
 fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) -> io::Result<()> {
     let room = (ending.len() + 1).saturating_sub(packed.len());
     input.take(room as u64).read_to_end(&mut packed)?;

@@ -15,9 +15,9 @@ use crate::quantity::non_negative;
 
 /// Reads disks from files of this crate and of other programs.
 ///
-/// The contents tell the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD, or a
-/// table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the feature
-/// `gzip`, the file may be compressed.
+/// The contents determine the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD,
+/// or a table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the
+/// feature `gzip`, the file may be compressed.
 ///
 /// Columns count by their names, in any order and case. A position and a radius are needed; without the
 /// others, a disk is as from [`Disk::new`](crate::Disk::new).
@@ -35,9 +35,9 @@ use crate::quantity::non_negative;
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///
-/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns that tell the
-/// same must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored. What
-/// the reader ignores or changes, [`State::notes`] tells.
+/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns of the same
+/// quantity must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored.
+/// [`State::notes`] lists everything that the reader ignores or changes.
 ///
 /// # Examples
 /// A state of soft disks, whose contacts overlap, made a start of hard ones:
@@ -128,7 +128,7 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
+    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] returns the amount.
     /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {

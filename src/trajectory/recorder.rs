@@ -19,9 +19,9 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 ///
 /// # Going on in a file
 /// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
-/// the frames after the checkpoint again, with the same bits. The recorder compares them with those in the
-/// file and does not write them twice. If they differ, the file is of another run, and the error says so. If
-/// the process died in the middle of a frame, the next frame overwrites the torn one.
+/// the frames after the checkpoint again, with the same bits. The recorder compares them with the frames in
+/// the file and does not write them twice. If they differ, the file is of another run, and the error says so.
+/// If the process died in the middle of a frame, the next frame overwrites the incomplete one.
 ///
 /// The recorder continues with the first beat after the last frame of the file. If the run is later than that
 /// beat, as from a checkpoint that is newer than the file, the run ends with an error, since frames would be
@@ -83,7 +83,7 @@ impl Recorder {
     ///
     /// # Errors
     /// If the file cannot be opened, another recorder writes to it, it is not of this format, an older
-    /// version wrote it with other columns, or it has no whole frame. The file is then left as it is.
+    /// version wrote it with other columns, or it has no whole frame. The file then stays unchanged.
     pub fn append(
         path: impl AsRef<Path>,
         format: impl Into<FileFormat>,

@@ -16,7 +16,7 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 ///
 /// Every run depends on both.
 ///
-/// The check looks at phases in the first period, or between 0 and a million for a motion without a period.
+/// The check tries phases in the first period, or between 0 and a million for a motion without a period.
 ///
 /// # Errors
 /// The first violation that the check finds.

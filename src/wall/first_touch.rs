@@ -32,7 +32,7 @@ pub enum FirstTouch<T> {
     At(T),
     /// There is no touch before this time, and nothing is known about later times. If this is the end of the
     /// search, or infinite, the search has found no touch at all. If it is the start of the search, the
-    /// search cannot go on.
+    /// search cannot continue.
     NotBefore(f64),
 }
 
@@ -89,8 +89,8 @@ impl Approach {
         self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
     }
 
-    /// Returns whether the surface stays above this height until this time. Under an upward pull, the answer
-    /// is always no, and the caller must search.
+    /// Returns whether the surface stays above this height until this time. Under an upward pull, the result
+    /// is always false, and the caller must search.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
         // Under a downward pull, the surface is lowest at the first or the last of these times, so two tests
@@ -119,7 +119,7 @@ impl Approach {
 /// the wall never enters. The search then follows it from piece to piece.
 ///
 /// # Searches that do not come to an end
-/// A search invents no touch. It answers [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
+/// A search invents no touch. It returns [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
 /// gap is known to be open:
 /// - After 256 steps. The caller may resume the search from that time.
 /// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends

@@ -1,8 +1,8 @@
 //! Checks of a wall motion's contract, for custom motions.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only
-//! that all answers are finite and that pieces advance; a container does this with every motion that it is
-//! given. [`check_fingerprints`] compares two motions.
+//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only that all numbers are
+//! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
+//! compares two motions.
 
 use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
@@ -101,7 +101,7 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
 /// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
 ///
 /// # Errors
-/// If the fingerprints tell something else than the answers.
+/// If the fingerprints contradict the values.
 ///
 /// ```
 /// use granular_edmd::wall::{Sinusoidal, laws};

@@ -73,8 +73,7 @@ impl<E: Experiment> Study<E> {
     }
 
     /// Writes the tables, unless another process has written them meanwhile. A run of the whole study also
-    /// writes lost tables again. If one of many tasks finds everything done, it leaves the tables as they
-    /// are.
+    /// writes lost tables again. If one of many tasks finds everything done, it leaves the tables unchanged.
     fn write_tables_once(&self, is_whole: bool) -> Result<(), StudyError> {
         let is_there = || if is_whole { self.has_tables() } else { self.folder.is_complete() };
         if is_there() {

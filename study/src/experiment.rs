@@ -238,7 +238,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Returns the tables that the study writes besides those of values and samples, such as tables of
+    /// Returns tables that the study writes besides the tables of values and samples, such as tables of
     /// profiles.
     fn tables() -> Vec<Table<Self>> {
         Vec::new()
@@ -259,7 +259,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Changes a simulation from the parameters of the previous value to these.
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
-    /// fingerprint stay as they are.
+    /// fingerprint stay unchanged.
     ///
     /// # Errors
     /// If the disks do not fit into the walls.

@@ -66,8 +66,8 @@ impl<E: Experiment> Study<E> {
 
     /// Opens the study in a folder, or writes a plan that passes a check to the folder.
     ///
-    /// A plan that is there was checked then: the check takes seconds in large studies, and each of many
-    /// processes would repeat it.
+    /// An existing plan was checked when it was written: the check takes seconds in large studies, and each
+    /// of many processes would repeat it.
     pub(super) fn open_or_put(
         folder: &Path,
         plan: Plan<E>,

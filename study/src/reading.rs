@@ -225,8 +225,8 @@ impl<E: Experiment> Study<E> {
         Ok(true)
     }
 
-    /// Returns the seconds of one processor that the finished values took, and those that the others will
-    /// take if they are like them; the latter is NaN before a value is finished.
+    /// Returns the processor seconds that the finished values took, and an estimate for the other values, if
+    /// these are alike. The estimate is NaN before a value is finished.
     ///
     /// Both are estimates: of a value that was interrupted, the last piece counts alone.
     ///
@@ -250,7 +250,7 @@ impl<E: Experiment> Study<E> {
     /// Writes the tables of all finished records into the folder of the study, and returns the number of
     /// these records.
     ///
-    /// A run does this when all ramps are done. Call it earlier to look at what is there. Tables are written
+    /// A run does this when all ramps are done. Call it earlier to see the results so far. Tables are written
     /// row by row, so they may be larger than memory.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The store of a study: logs of records, one log for each process that ran at the same time as others.
 //!
 //! A process appends each finished value to its own log, as a whole piece with a checksum. Readers merge all
-//! logs by ramp and value. A log outlives its process: the next one goes on in it.
+//! logs by ramp and value. A log outlives its process: the next process continues it.
 
 mod claims;
 mod index;

@@ -36,7 +36,7 @@ impl Brick {
 
     /// Returns whether a disk of this radius may touch the brick while its center is in a region.
     ///
-    /// A custom boundary can answer [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with it.
+    /// A custom boundary can implement [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with it.
     pub fn may_touch(&self, region: &Region, radius: f64) -> bool {
         // The margin keeps rounding from hiding a touch at the edge of the region.
         self.is_near(region, 1.001 * radius)

@@ -205,7 +205,7 @@ fn check_origin(
     let (origin, start) = (trial.origin, flight.time());
     let state = trial.boundary.state();
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
-    // react do not know how they came to be as they are, so their other origin is later.
+    // react do not know their past, so the other origin is later for them.
     let earlier = origin.min(LATEST * trial.length() / trial.speed);
     let shift = 0.37 * if state.is_empty() { earlier } else { -start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));

@@ -24,7 +24,7 @@ const CONTACTS: usize = 300;
 /// The check sets the time origins of both.
 ///
 /// # Errors
-/// If the fingerprints tell something else than the answers.
+/// If the fingerprints contradict the results.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, laws};

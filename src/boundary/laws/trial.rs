@@ -89,8 +89,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end,
-    /// this asks again, as the engine does.
+    /// Returns the first touch of a flight. If the search of the boundary ends before `until`, the method
+    /// calls it again, as the engine does.
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
         let mut rest = *flight;
         for _ in 0..MOST_SEARCHES {
@@ -160,7 +160,7 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the region, extended as the engine does it: to infinity where it is near an edge of the
+    /// Returns the region with the engine's extension: to infinity where the region is near an edge of the
     /// domain.
     fn open_at_edges(&self, region: Region) -> Region {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;

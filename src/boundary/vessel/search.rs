@@ -15,8 +15,8 @@ const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the others have their turn.
 ///
-/// A brick that moves fast near the disk may take many steps, and never touch the disk because another one
-/// does so first. An arm that turns has such a brick at its back. The rounds keep it from taking all the
+/// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
+/// touches it first. An arm that turns has such a brick at its back. The rounds keep it from taking all the
 /// steps.
 const STEPS_IN_A_ROUND: u32 = 16;
 
@@ -233,7 +233,7 @@ impl Search<'_> {
         FirstTouch::NotBefore(time)
     }
 
-    /// Returns whether floating-point times are too coarse to tell where the part is.
+    /// Returns whether floating-point times are too coarse to determine the position of the part.
     fn is_too_fast(&self, time: f64) -> bool {
         let latest = time.abs() + self.placed.phase.size();
         let spacing = latest.next_up() - latest;

@@ -54,11 +54,11 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
 ///
 /// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
 /// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
-/// closing speed, and partners that have just collided. The partners are, in turn, disks of kinds 0 and 1 and
-/// straight walls, with radii up to the extremes that the engine accepts.
+/// closing speed, and partners that have just collided. The partners are, alternately, disks of kinds 0 and 1
+/// and straight walls, with radii up to the extremes that the engine accepts.
 ///
-/// Mild contacts come first, such as that of two disks of mass 1 that meet at speed 1. So if a rule fails at
-/// a mild contact, its error shows numbers that are easy to read.
+/// Mild contacts come first, such as two disks of mass 1 that meet at speed 1. So if a rule fails at a mild
+/// contact, its error shows numbers that are easy to read.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;

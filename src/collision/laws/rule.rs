@@ -221,7 +221,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
 /// compared.
 ///
 /// # Errors
-/// If the fingerprints tell something else than the answers.
+/// If the fingerprints contradict the impulses.
 ///
 /// ```
 /// use granular_edmd::collision::{Smooth, laws};

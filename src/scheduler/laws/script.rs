@@ -186,8 +186,8 @@ fn few(stage: &mut Stage) -> Operation {
     reset(stage, disks, Stage::extreme_time)
 }
 
-/// Makes the operations of a run: the disk whose event is due gets a later time. Now and then another disk
-/// gets one, or returns to its previous time.
+/// Makes the operations of a run: the disk whose event is due gets a later time. At intervals, another disk
+/// gets a later time, or returns to its previous time.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
         return stage.any(first, Stage::spread_time);

@@ -22,8 +22,8 @@
 //! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
 //! many to look into.
 //!
-//! A pair must find each other from both sides, whichever of the two is searched for. The large disk looks
-//! into the homes of its reach. The small disk cannot look up: the cells above it that reach its home are too
+//! A pair must find each other from both sides, whichever of the two is searched for. The large disk searches
+//! the homes within its reach. The small disk cannot look up: the cells above it that reach its home are too
 //! many. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it lies. When the
 //! large disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought
 //! up to date there, and only the small disks there are new partners.
@@ -59,7 +59,7 @@ pub(super) struct Layers {
     /// The visitors of each home of each class, the smallest class first: the larger disks that reach the
     /// home from their cells.
     visitors: Vec<Contents>,
-    /// True if a disk that enters another cell must look at all partners again.
+    /// True if a disk that enters another cell must examine all partners again.
     pub(super) is_narrow: bool,
 }
 
@@ -214,8 +214,8 @@ impl Layers {
                 None => reach.for_each_run(place, act),
             }
         }
-        // Disks of the same class are few and near. To tell which of them are new would cost more than to
-        // take them all.
+        // Disks of the same class are few and near. Finding out which of them are new would cost more than
+        // gathering them all.
         if let Some(own) = own {
             own.for_each_run(place, |first, homes| {
                 count = layer.contents.gather_run(first, homes, found, count);
@@ -265,7 +265,7 @@ fn homes_of(grid: &Grid) -> Homes<'_> {
     Homes { grid, cells: 1, stride: grid.stride(), first: grid.stride() + 1 }
 }
 
-/// The layouts of all cells, which a run must keep to go on with the same bits.
+/// The layouts of all cells, which a run must keep in order to continue with the same bits.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Layouts {

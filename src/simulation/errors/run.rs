@@ -9,7 +9,7 @@ use crate::error::{Readable, Rounded};
 use crate::observable::{ObserverError, Partner};
 use crate::simulation::BuildError;
 
-/// The result of the engine's inner functions. Errors are boxed, so that the usual answer comes back in
+/// The result of the engine's inner functions. Errors are boxed, so that the usual result is returned in
 /// registers.
 pub(in crate::simulation) type Outcome<T> = Result<T, Box<RunError>>;
 
@@ -152,7 +152,7 @@ pub enum RunError {
         /// The cause.
         source: Box<BuildError>,
     },
-    /// An inlet cannot go on: its next opening is too late for the digits of a number, or there are no ids
+    /// An inlet cannot continue: its next opening is too late for the digits of a number, or there are no ids
     /// left.
     #[error("an inlet failed at time {}", Rounded(*.time))]
     Inlet {

@@ -29,7 +29,7 @@ pub(in crate::simulation) struct Clock {
     /// The offset after which the epoch moves.
     pub(in crate::simulation) epoch_length: f64,
     pub(in crate::simulation) guard: Guard,
-    /// Number of events until the run looks at its limits and its guard again: 1 if a look is due at the next
+    /// Number of events until the run checks its limits and its guard again: 1 if a check is due at the next
     /// event. No outcome depends on it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(in crate::simulation) events_to_look: u64,

@@ -37,7 +37,7 @@ pub(in crate::simulation) struct Guard {
     pub(in crate::simulation) before: u64,
     /// Number of windows in a row in which time hardly advanced.
     pub(in crate::simulation) slow: u32,
-    /// Number of those, at their end, in which it advanced as much as in the window before.
+    /// Number of the last of these windows in which time advanced as much as in the previous window.
     pub(in crate::simulation) alike: u32,
     /// Simulated time that the last window covered.
     pub(in crate::simulation) elapsed: f64,
@@ -58,7 +58,7 @@ pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> 
     epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
 }
 
-/// Returns the number of events that the guard and the looks at the limits count.
+/// Returns the number of events that the guard and the checks of the limits count.
 pub(in crate::simulation) fn effort(counters: &Counters) -> u64 {
     counters.events().saturating_add(EVENTS_PER_HORIZON.saturating_mul(counters.horizons))
 }
@@ -72,7 +72,7 @@ impl Guard {
 
     /// Ends the window before the event at this time offset, after `events` events in all. Returns the window
     /// as a standstill if time has advanced in it by less than `least_progress` for each event. In either
-    /// case a new window begins, so that a caller who removes the cause can go on.
+    /// case a new window begins, so that a caller who removes the cause can continue.
     pub(in crate::simulation) fn end_window(
         &mut self,
         offset: f64,

@@ -1,4 +1,4 @@
-//! The ids of disks, which stay as they are while indices change.
+//! The ids of disks, which stay unchanged while indices change.
 
 use crate::disk::LARGEST_ID;
 use crate::quantity::accept;
@@ -34,7 +34,7 @@ impl Identities {
         accept(new == 0 || last + new <= LARGEST_ID, "largest id so far", requirement, last as f64).map(drop)
     }
 
-    /// Gives no id from now on that one of these disks has.
+    /// Makes sure that new disks get none of these disks' ids.
     pub(super) fn reserve(&mut self, disks: &[Disk]) {
         self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
     }

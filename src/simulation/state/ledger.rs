@@ -10,7 +10,7 @@ pub(in crate::simulation) struct Ledger {
     pub(in crate::simulation) energy: f64,
     /// True once a wall that moves or is warm was hit, disks were changed, or others came or went.
     pub(in crate::simulation) has_source: bool,
-    /// True while a run is under way. If it is true before a run, the last one was torn by a panic.
+    /// True while a run is under way. If it is true before a run, a panic interrupted the last run.
     pub(in crate::simulation) is_running: bool,
 }
 

@@ -28,7 +28,7 @@ impl Bodies {
         self.has_changed = true;
     }
 
-    /// Adds disks as they are at this time offset.
+    /// Adds disks in their states at this time offset.
     pub(in crate::simulation) fn insert(&mut self, disks: &[Disk], offset: f64) {
         self.identities.reserve(disks);
         for disk in disks {

@@ -22,8 +22,9 @@ const TIME: usize = 16;
 /// The frames in a GSD file, and its index: the position of the index, the number of entries for which it has
 /// room, the entries, and the chunks of each frame. The entries are written in place.
 ///
-/// A frame counts once the first of its entries is in the index. So the chunks are written first, then the
-/// other entries, and the first entry at last: a process that dies meanwhile leaves bytes that nobody sees.
+/// A frame counts once the first of its entries is in the index. The chunks are therefore written first, then
+/// the other entries, and the first entry last: a process that is killed meanwhile leaves bytes that no
+/// reader sees.
 pub(in crate::trajectory) struct Indexed {
     location: u64,
     room: usize,
@@ -35,7 +36,7 @@ pub(in crate::trajectory) struct Indexed {
 }
 
 impl Indexed {
-    /// Begins a file. A name that asks for compression is an error, since an index needs plain bytes.
+    /// Begins a file. A name with an ending for compression is an error, since an index needs plain bytes.
     pub(in crate::trajectory) fn create(path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
         if is_gzip(path) {
             let reason = "a file of GSD is not compressed, so its name must not end in .gz";
@@ -113,7 +114,7 @@ impl Indexed {
 
     /// Reads the index of a file, and returns the times of its whole frames.
     ///
-    /// Each index but the first lies after the frames of the one before, which stays as it was. So a file
+    /// Each index but the first lies after the frames of the previous index, which stays unchanged. So a file
     /// that lost its last index has the frames of the one before.
     fn read(&mut self, file: &File) -> io::Result<Vec<f64>> {
         let (size, head) = (file.metadata()?.len(), read_at(file, 0, HEADER as u64)?);

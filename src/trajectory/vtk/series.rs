@@ -54,7 +54,7 @@ impl Series {
         Sink::new(file, Self { folder, name }).with_frames(times)
     }
 
-    /// Writes one of a frame's files. A killed run may have left that file, whole or torn.
+    /// Writes one of a frame's files. A killed run may have left that file, complete or not.
     fn write(&self, part: &str, number: usize, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.folder.join(file_name(part, number));
         let file = match fs::read(&path) {
@@ -65,7 +65,7 @@ impl Series {
         };
         let mut file = file.map_err(RecordError::io("create", &path))?;
         file.write_all(bytes).map_err(|error| {
-            // A torn file is harmless, but it takes room on a full drive.
+            // An incomplete file is harmless, but it takes room on a full drive.
             let _ = fs::remove_file(&path);
             RecordError::io("write to", &path)(error)
         })

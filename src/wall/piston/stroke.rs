@@ -83,7 +83,7 @@ impl Stroke {
 
     /// Returns the same motion with phases that count from this absolute time.
     ///
-    /// An earlier origin belongs to another run, which the piston begins as it is.
+    /// An earlier origin belongs to another run, which the piston begins in its present state.
     pub(crate) fn at_origin(&self, origin: f64) -> Self {
         match self.origin.map(|before| origin - before) {
             Some(0.0) => self.clone(),

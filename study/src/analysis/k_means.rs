@@ -62,7 +62,7 @@ impl KMeans {
 
     /// Finds the clusters of these points.
     ///
-    /// If there are fewer different points than clusters asked for, there are fewer clusters.
+    /// If there are fewer distinct points than requested clusters, there are fewer clusters.
     ///
     /// # Errors
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
@@ -145,7 +145,7 @@ fn descend(points: &[DVec2], mut centers: Vec<DVec2>) -> Fit {
     for _ in 0..ROUNDS {
         move_to_means(points, &fit.labels, &mut centers);
         let next = assign(points, &centers);
-        // Labels settle after finitely many rounds. The scatter may go on changing by rounding.
+        // Labels settle after finitely many rounds. The scatter may continue to change by rounding.
         let settled = next.labels == fit.labels;
         fit = next;
         if settled {

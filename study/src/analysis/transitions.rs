@@ -92,10 +92,10 @@ struct Seen {
 /// order of the lines.
 ///
 /// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
-/// the first value where a run shows two rolls, or both numbers of rolls in turn, and ends (b) at the last
-/// value where a run shows anything but two rolls. The other lines have no hysteresis in the paper. Where
-/// runs disagree about them, the transition lies somewhere between the values at which the runs agree, and
-/// its error covers that range. The observations of a single ramp give the points of that ramp.
+/// the first value where a run shows two rolls, or both numbers of rolls alternately, and ends (b) at the
+/// last value where a run shows anything but two rolls. The other lines have no hysteresis in the paper.
+/// Where runs disagree about them, the transition lies somewhere between the values at which the runs agree,
+/// and its error covers that range. The observations of a single ramp give the points of that ramp.
 ///
 /// # Errors
 /// If a control value is not finite.

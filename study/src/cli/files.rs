@@ -89,7 +89,7 @@ impl Ending {
         Ok(written.map_err(StudyError::io("write", path))?)
     }
 
-    /// Returns the names of those data of the state that the format cannot hold.
+    /// Returns the names of the data in the state that the format cannot hold.
     pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
         let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
         let keeps_time = self != Self::Csv;

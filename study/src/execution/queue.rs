@@ -16,8 +16,8 @@ enum Block {
 
 /// A ring of blocks.
 ///
-/// Processes begin at random places and go on in order from there, so they seldom meet, and each runs the
-/// blocks ahead of it. One that meets another goes to a new place.
+/// Processes begin at random positions and continue in order from there, so they seldom meet, and each runs
+/// the blocks ahead of it. One that meets another goes to a new place.
 #[derive(Debug)]
 pub(super) struct Queue {
     blocks: Vec<Range<usize>>,

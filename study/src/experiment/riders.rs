@@ -56,8 +56,8 @@ pub struct Start<'a> {
     pub seed: u64,
     /// Absolute time from which the run starts or continues.
     pub time: f64,
-    /// True if the value continues from a saved state. One that was killed before its first save starts anew,
-    /// and files of its companion may be there.
+    /// True if the value continues from a saved state. A value that was killed before its first save starts
+    /// anew, and files of its companion may exist already.
     pub is_resumed: bool,
 }
 

@@ -13,8 +13,8 @@ pub(crate) struct Seen {
 }
 
 impl<E: Experiment> Plan<E> {
-    /// Returns the parts of a record on which the path depends. A state may take long to tell, and only a
-    /// refined ramp asks for it.
+    /// Returns the parts of a record on which the path depends. Finding the name of a state may take long,
+    /// and only a refined ramp needs the name.
     pub(crate) fn seen(&self, record: &Record<E>) -> Seen {
         let state = if self.is_refined() { E::state(record) } else { None };
         Seen { leg: record.leg(), at: record.ramped_value(), state }
