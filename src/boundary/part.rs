@@ -21,7 +21,7 @@ use crate::{Fingerprint, Kind};
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
 /// their own motion.
 ///
-/// A new part is at rest, follows the rule of the disks, and has the kind of walls. Corners are added
+/// A new part is at rest, follows the rule of the disks, and has the default kind of walls. Corners are added
 /// automatically wherever bricks end and a disk can touch the end.
 ///
 /// | constructor | disks are free |

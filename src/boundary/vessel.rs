@@ -189,7 +189,7 @@ impl Vessel {
 
     /// Puts a part into the vessel.
     ///
-    /// Its walls come after the walls of all other parts.
+    /// The walls of the part come after the walls of all other parts.
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶

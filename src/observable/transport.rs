@@ -42,7 +42,7 @@ type Moments = [DVec2; MOMENTS];
 ///
 /// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
 /// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible.
-/// Velocities are those about the center of mass. All integrals are exact; samples only set the lags.
+/// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
 ///
 /// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of

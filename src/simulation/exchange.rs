@@ -1,4 +1,4 @@
-//! The same disks with another rule, boundary or scheduler, which may be of another type.
+//! Exchange of the rule, boundary or scheduler for another one, which may have another type.
 
 use super::builder::fit;
 use super::traffic::check_inlets;

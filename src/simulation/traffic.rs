@@ -1,4 +1,4 @@
-//! Disks that come and go during a run, one at a time.
+//! Insertion and removal of single disks during a run.
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
 //! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
@@ -16,7 +16,7 @@ use crate::quantity::accept;
 use crate::scheduler::EventScheduler;
 use crate::{Disk, ParameterError};
 
-/// Number of places that an inlet tries for a disk each time it opens.
+/// Number of positions that an inlet tries for a disk at each opening.
 const TRIES: u32 = 32;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -51,7 +51,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         std::mem::take(&mut self.inlets)
     }
 
-    /// Returns the absolute time at which an inlet opens next; infinite without inlets.
+    /// Returns the absolute time at which the next inlet opens, or infinity without inlets.
     pub(super) fn next_opening(&self) -> Outcome<f64> {
         let mut next = f64::INFINITY;
         for opening in self.inlets.iter().map(|inlet| inlet.times.upcoming()) {
@@ -111,7 +111,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             && self.boundary.overlap(&Probe::of(disk, now)).is_none()
     }
 
-    /// Gives a disk that a sink took out to the inlet that puts such disks back.
+    /// Passes a disk that a sink removed to the inlet that puts such disks back.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         let inlets = self.inlets.iter_mut().filter(|inlet| inlet.takes_back());
         if let Some(inlet) = inlets.min_by_key(|inlet| inlet.waiting()) {
@@ -135,9 +135,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.keep_cells_suitable();
     }
 
-    /// Puts a disk in where there is room for it, into cells that suit it.
+    /// Inserts a disk at a free position, into cells that suit it.
     fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
-        // The place of a disk at an epoch long ago would lack digits, and so would the place of a fast disk.
+        // The position of a disk at a distant epoch would lack digits, as would the position of a fast disk.
         if self.clock.now > self.clock.epoch_length {
             self.move_epoch(self.clock.now)?;
         }

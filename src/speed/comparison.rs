@@ -102,7 +102,7 @@ impl Comparison {
     /// collisions.
     ///
     /// # Errors
-    /// The times of the measured intervals.
+    /// The errors of the two closures.
     pub fn between<E>(
         mut first: impl FnMut() -> Result<RunReport, E>,
         mut other: impl FnMut() -> Result<RunReport, E>,

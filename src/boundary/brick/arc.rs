@@ -139,7 +139,7 @@ impl Arc {
         let outward = r.try_normalize().unwrap_or(DVec2::Y);
         let normal = if side == Side::Left { -outward } else { outward };
         let distance = (r.length() - self.radius).abs();
-        // A point has no sides, so the bricks that end there decide.
+        // A point has no sides, so the bricks that end at the point decide.
         Sight { distance, normal, side, weight: if self.radius == 0.0 { 0.0 } else { distance } }
     }
 

@@ -89,8 +89,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the first touch of a flight. If the search of the boundary ends before `until`, the method
-    /// calls it again, as the engine does.
+    /// Returns the first touch of a flight. If the search of the boundary ends before `until` without a
+    /// touch, the method calls it again, as the engine does.
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
         let mut rest = *flight;
         for _ in 0..MOST_SEARCHES {

@@ -294,8 +294,8 @@ impl Travel {
     }
 }
 
-/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. Its
-/// components refer to axes that do not turn.
+/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. The
+/// components of the path refer to axes that do not turn.
 ///
 /// The third derivative of the path there is $`-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp`$. A bound
 /// of it, times a third of the time, is an acceleration that bounds the error.

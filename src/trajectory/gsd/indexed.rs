@@ -214,7 +214,7 @@ fn header(location: u64, room: u64) -> Vec<u8> {
         room,
         (HEADER + ROOM * ENTRY) as u64,
         (names().len() / 64) as u64,
-        // Version 1.4 of the schema, and 2.0 of the file.
+        // The versions are 1.4 of the schema and 2.0 of the file format.
         1 << 16 | 4 | 2 << 48,
     ];
     let mut header: Vec<u8> = numbers.iter().flat_map(|number: &u64| number.to_le_bytes()).collect();

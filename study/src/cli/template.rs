@@ -49,7 +49,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     Ok(lines.join("\n"))
 }
 
-/// Returns the meaning of the key of a line.
+/// Returns the meaning of the key on a line.
 fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
     let key = line.split_once(" = ")?.0;
     match section.strip_prefix("experiment") {

@@ -21,7 +21,7 @@ pub(crate) fn tried(count: usize) -> impl Iterator<Item = usize> {
     (0..tried).map(move |index| index * count.saturating_sub(1) / tried.saturating_sub(1).max(1))
 }
 
-/// Values of a parameter, at least one.
+/// One or more values of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(super) enum Values<T> {
