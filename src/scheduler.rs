@@ -48,7 +48,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
 /// 5. **Without disks**, as before the first `reset`, the result is [`NOTHING_DUE`].
-/// 6. ****Queries change nothing.** [`earliest`](Self::earliest) returns the same result until the next `set`
+/// 6. **Queries change nothing.** [`earliest`](Self::earliest) returns the same result until the next `set`
 ///    or `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
 ///
 /// # What the engine guarantees

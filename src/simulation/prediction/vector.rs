@@ -2,7 +2,7 @@
 //! the same bits, and has its lines in the same order. The reasons for the arithmetic are given there.
 //!
 //! Three things here are not in the plain code, and are what makes it faster:
-//! 1. ****No read covers several recent writes.** The processor can pass a number on from a write to a read
+//! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read
 //!    only if the write covers all of the read. Otherwise the read waits until the writes have left for the
 //!    cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler makes
 //!    such reads: it merges four numbers that lie side by side into one vector. The functions of
