@@ -9,7 +9,7 @@ use super::{MARGIN, Side, Sight};
 use crate::boundary::Region;
 use crate::boundary::vector::direction;
 
-/// A circle, or an arc of a circle. It leads counterclockwise, so its left side is inside. A point is a
+/// A circle, or an arc of a circle. The arc leads counterclockwise, so its left side is inside. A point is a
 /// circle of radius 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Arc {
@@ -155,7 +155,7 @@ impl Arc {
         (self.center - self.radius, self.center + self.radius)
     }
 
-    /// Returns the smallest and the largest distance of the arc's points from a point.
+    /// Returns the smallest and the largest distance of the arc's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         let nearest = self.sight(place).distance;
         // The point of the circle opposite the given point is the farthest, unless the arc does not reach it.

@@ -114,7 +114,7 @@ impl Segment {
         (self.from.min(to), self.from.max(to))
     }
 
-    /// Returns the smallest and the largest distance of the segment's points from a point.
+    /// Returns the smallest and the largest distance of the segment's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         let farthest =
             self.to().map_or(f64::INFINITY, |to| place.distance(to).max(place.distance(self.from)));
