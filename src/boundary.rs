@@ -108,7 +108,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    no disk goes through a wall, all centers stay in the domain.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
 ///    this radius, or a smaller one, can touch a wall at any time. If it is true for a region, it is true for
-///    every larger region around that one.
+///    every larger region that contains the region.
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
 ///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`. A search
 ///    that cannot come to an end says how far the way is free, which is later than the flight begins.
@@ -126,33 +126,32 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    of the domain overlaps the wall, and one that is smaller by this overlaps none.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
-/// 8. The same questions get the same answers, bit for bit, until the origin is set or a wall reacts.
+/// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple: its velocity changes by
 ///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
 ///    over the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a
-///    mass m counts as the impulse C/R. No wall moves in an instant. The answer is [`Reaction::Moved`] if the
+///    mass m counts as the impulse C/R. No wall moves in an instant. The result is [`Reaction::Moved`] if the
 ///    velocity changes. A wall of infinite masses does not react.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
-/// 11. [`state`](Self::state) and [`set_state`](Self::set_state) bring walls back that have reacted: all
-///     answers are as before, and the state that was set is returned again. A state of another length is
-///     refused.
+/// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
+///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap`, and
 ///     [`wall_point`](Self::wall_point) stays on its wall.
-/// 13. Boundaries with equal [fingerprints](Self::fingerprint) answer alike, and equal boundaries have equal
-///     ones, whatever their state and their origin.
+/// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
+///     have equal fingerprints, whatever their state and their origin.
 ///
 /// The engine guarantees:
-/// - It sets the origin before it asks anything, and whenever the epoch of the run moves. It never asks about
-///   a time before the origin.
-/// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends
-///   (`until`) when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most.
-///   In an epoch, a typical disk goes some tens of diameters.
-/// - It asks `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
+/// - It sets the origin before any other call, and whenever the epoch of the run moves. It never passes a
+///   time before the origin.
+/// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
+///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
+///   epoch, a typical disk moves some tens of diameters.
+/// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
-/// - It asks `surface` about a touch that `first_touch` found: with its wall, its time, and the position of
+/// - It calls `surface` for a touch that `first_touch` found: with its wall, its time, and the position of
 ///   the disk at that time.
-/// - It asks `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
+/// - It calls `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
 ///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
@@ -246,11 +245,11 @@ pub trait Boundary {
         Cow::Owned(format!("wall {wall}"))
     }
 
-    /// Returns a point of a wall at `time`, which moves with the wall; `None` if the boundary does not know
-    /// one.
+    /// Returns a point that moves with a wall, at its position at `time`, or `None` if the boundary knows no
+    /// such point.
     ///
-    /// If other walls are set between two runs, the engine tells from this point whether a wall of the same
-    /// name has jumped. It is `None` unless implemented.
+    /// If other walls are set between two runs, the engine finds out from this point whether a wall of the
+    /// same name has jumped. The default is `None`.
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None
@@ -280,18 +279,18 @@ pub trait Boundary {
 
     /// Returns whether a disk with its center in `region` can touch a wall at any time.
     ///
-    /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach
-    /// to infinity beyond it.
+    /// The engine calls [`first_touch`](Self::first_touch) only in such regions. Regions at the edge of the
+    /// domain reach to infinity beyond it.
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
 
-    /// Returns the first touch of this flight, not later than `until`.
+    /// Returns the first touch of this flight that is not later than `until`.
     ///
     /// If the disk already touches a wall, that touch is found immediately while the disk approaches the
     /// wall, and never while the disk leaves it.
     ///
-    /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up
-    /// to which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time, so a
-    /// run can check its limits between two parts of a long search.
+    /// An `Option<Touch>` becomes the result by `into`. A search with many steps may return the time up to
+    /// which it has found no touch ([`FirstTouch::NotBefore`]); the engine calls again at that time, so a run
+    /// can check its limits between two parts of a long search.
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
@@ -299,7 +298,8 @@ pub trait Boundary {
     /// The wall must exist; for any other index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// Returns the wall that a disk overlaps deepest, and the depth; `None` if the disk is inside.
+    /// Returns the wall that a disk overlaps most deeply, and the depth, or `None` if the disk overlaps no
+    /// wall.
     ///
     /// A wall that does not concern disks of the probe's kind is not overlapped.
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
@@ -313,7 +313,7 @@ pub trait Boundary {
     }
 
     /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, or `None` if no wall
-    /// has one.
+    /// has such a hollow.
     ///
     /// Rounding alone would decide whether such a disk gets into the hollow, and in which direction the wall
     /// then pushes it. The engine refuses such disks.
@@ -322,8 +322,8 @@ pub trait Boundary {
         None
     }
 
-    /// Returns the area of the places in `region` at which the center of a disk of this radius is free at
-    /// `time`; `None` if the boundary does not know it.
+    /// Returns the area of the part of `region` in which the center of a disk of this radius is free at
+    /// `time`, or `None` if the boundary does not know the area.
     ///
     /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
     /// it, and refuse to measure without it where the domain is not all free. As long as the
@@ -338,10 +338,10 @@ pub trait Boundary {
         None
     }
 
-    /// Receives the blow of a disk against a wall, and returns whether the wall moves otherwise from now on.
+    /// Receives the impact of a disk on a wall, and returns whether the wall's motion changes.
     ///
     /// The engine calls it after each collision with a wall. A wall that reacts has a finite
-    /// [mass](Surface::with_mass), and its motion between two blows is known. If the answer is
+    /// [mass](Surface::with_mass), and its motion between two impacts is known. If the result is
     /// [`Reaction::Moved`], the engine predicts all flights anew that [`may_meet`](Self::may_meet) names. The
     /// default reacts to nothing, and costs nothing.
     #[inline]
@@ -352,16 +352,16 @@ pub trait Boundary {
 
     /// Returns whether a disk with its center in `region` may touch this wall at any time up to `until`.
     ///
-    /// The engine asks after a wall has [reacted](Self::react), in order to find the disks whose flights may
-    /// now end otherwise. A narrow answer saves predictions; by default, it is the answer of
+    /// The engine calls the method after a wall has [reacted](Self::react), in order to find the disks whose
+    /// flights may now end differently. A narrow result saves predictions; the default is the result of
     /// [`may_touch`](Self::may_touch).
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
         let _ = (wall, until);
         self.may_touch(region, radius)
     }
 
-    /// Returns the numbers of the walls that [react](Self::react) at the time origin: places, velocities,
-    /// and whatever else blows have changed.
+    /// Returns the state of the walls that [react](Self::react) at the time origin, as numbers: positions,
+    /// velocities, and all else that impacts have changed.
     ///
     /// A checkpoint keeps them, since a boundary that is given again begins anew. It is empty unless
     /// implemented.
@@ -378,7 +378,7 @@ pub trait Boundary {
             .map(drop)
     }
 
-    /// Returns the fingerprint of the boundary: its name and everything on which its answers depend, but not
+    /// Returns the fingerprint of the boundary: its name and everything on which its results depend, but not
     /// its [state](Self::state).
     ///
     /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.

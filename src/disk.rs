@@ -126,17 +126,17 @@ impl Disk {
         Ok(Self { inertia_factor, ..self })
     }
 
-    /// Returns the same disk as one of this kind.
+    /// Returns the same disk with this kind.
     pub const fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }
     }
 
-    /// Returns the same disk as if it had passed these numbers of periods to the right and up.
+    /// Returns the same disk with these numbers of periods crossed to the right and up.
     pub const fn with_image(self, image: [i32; 2]) -> Self {
         Self { image, ..self }
     }
 
-    /// Returns the same disk with this id, by which it is known as long as it exists.
+    /// Returns the same disk with this id, which identifies the disk as long as it exists.
     ///
     /// A simulation gives ids from 1 on to the disks that have none, so few programs call this. The id 0
     /// stands for none.
@@ -188,11 +188,11 @@ impl Disk {
         self.kind
     }
 
-    /// Returns the numbers of periods that the disk has passed to the right and up, less those to the left
-    /// and down.
+    /// Returns the numbers of periods that the disk has crossed to the right and up, minus the numbers
+    /// crossed to the left and down.
     ///
-    /// Each passage counts one, also if the period has changed since. After 2³¹ passages the count goes on at
-    /// −2³¹.
+    /// Each passage counts one, also if the period has changed since. After 2³¹ passages the count continues
+    /// at −2³¹.
     ///
     /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) turns these
     /// numbers into a position that does not jump.
@@ -200,7 +200,8 @@ impl Disk {
         self.image
     }
 
-    /// Returns the id, by which the disk is known as long as it exists; 0 before a simulation has given one.
+    /// Returns the id, which identifies the disk as long as it exists, or 0 before a simulation has assigned
+    /// one.
     ///
     /// Unlike the index, it stays the same when other disks are removed. Checkpoints and files keep it, and a
     /// run never gives the id of a disk that was removed to another one.
@@ -286,7 +287,8 @@ pub(crate) fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2,
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
-/// Returns the disks with their ids, or with 1, 2, 3, … if some have none, since no simulation made them.
+/// Returns the disks with their ids, or with the ids 1, 2, 3, … if some have no id, because no simulation
+/// made them.
 pub(crate) fn numbered(disks: &[Disk]) -> impl Iterator<Item = (u64, &Disk)> {
     let are_known = disks.iter().all(|disk| disk.id() != 0);
     disks.iter().zip(1_u64..).map(move |(disk, number)| (if are_known { disk.id() } else { number }, disk))

@@ -1,4 +1,4 @@
-//! The error of a parameter that cannot be used.
+//! The error of an unusable parameter.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 use glam::DVec2;
 use thiserror::Error;
 
-/// An error: a parameter lies outside the range in which it has a meaning.
+/// The error of a parameter outside the range in which it has a meaning.
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;
@@ -26,7 +26,7 @@ pub struct ParameterError {
     value: f64,
 }
 
-/// A number with all its digits. Very large and very small numbers have an exponent.
+/// A number shown with all its digits. Very large and very small numbers have an exponent.
 ///
 /// This is the form for numbers that a caller gave, or that are compared with each other in a message.
 pub(crate) struct Readable(pub(crate) f64);
@@ -39,7 +39,7 @@ impl fmt::Display for Readable {
     }
 }
 
-/// A number with its first six digits, for times and depths that the crate has computed.
+/// A number shown with its first six digits, for times and depths that the crate has computed.
 pub(crate) struct Rounded(pub(crate) f64);
 
 impl fmt::Display for Rounded {
@@ -77,7 +77,7 @@ impl ParameterError {
         &self.name
     }
 
-    /// Returns the value that was refused.
+    /// Returns the refused value.
     pub const fn value(&self) -> f64 {
         self.value
     }

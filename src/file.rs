@@ -1,5 +1,5 @@
-//! Files that are whole or absent, logs that grow by whole pieces, and locks: what checkpoints,
-//! trajectories and studies are made of, for stores of other packages.
+//! Files that are complete or absent, logs that grow by complete pieces, and locks. Checkpoints, trajectories
+//! and studies consist of these, and other packages can use them for their stores.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {

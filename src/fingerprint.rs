@@ -8,12 +8,12 @@ use crate::violation::require;
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
-/// others. A custom part makes its fingerprint from its name and from all numbers on which its answers
-/// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be
-/// distinguished. The checks of fingerprints, such as
+/// others. A custom part makes its fingerprint from its name and from all numbers on which its results
+/// depend. A part without a name and numbers, such as a closure, has no fingerprint, and two such parts
+/// cannot be distinguished. The checks of fingerprints, such as
 /// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare two parts
-/// with their answers: parts that differ in a number must differ, and equal parts agree. The hash is FNV-1a
-/// with 64 bits, over bytes in a fixed order, so it is the same on every platform.
+/// with their results: parts with different results must have different fingerprints, and equal parts equal
+/// ones. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;
@@ -49,7 +49,7 @@ impl Fingerprint {
         self.bytes(text.as_bytes()).bytes(&(text.len() as u64).to_le_bytes())
     }
 
-    /// Adds the fingerprint of a part that this one contains.
+    /// Adds the fingerprint of a part that this part contains.
     pub const fn part(self, part: Self) -> Self {
         self.bytes(&part.0.to_le_bytes())
     }
@@ -73,8 +73,8 @@ impl fmt::Display for Fingerprint {
     }
 }
 
-/// Checks that two parts have different fingerprints if their answers differ somewhere, and the same
-/// fingerprint otherwise.
+/// Checks that two parts have different fingerprints if any of their results differ, and the same fingerprint
+/// otherwise.
 pub(crate) fn check_pair(
     part: &'static str,
     fingerprints: [Option<Fingerprint>; 2],

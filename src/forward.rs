@@ -3,8 +3,7 @@
 /// Implements a trait for pointers to its implementers. Each call goes to the part behind the pointer.
 ///
 /// The list has all methods of the trait, first the methods of `&self`, then `mut` and the methods of
-/// `&mut self`. A provided method that is missing here would silently answer for the pointer and not for the
-/// part.
+/// `&mut self`. If a provided method were missing here, its default would silently replace the part's method.
 macro_rules! forward {
     ($trait:ident for [$($pointer:ty),+] $methods:tt) => {
         $(crate::forward::forward!(@ $trait, $pointer, $methods);)+

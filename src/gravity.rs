@@ -8,8 +8,8 @@ use crate::quantity::accept;
 
 /// Gravity: the constant acceleration of all disks in free flight.
 ///
-/// A number is gravity that points down, or up if it is negative; a vector is the acceleration itself. Both
-/// turn into gravity by themselves, wherever a function asks for it.
+/// A number is gravity that points down, or up if it is negative; a vector is the acceleration itself.
+/// Functions that take gravity accept both, and convert them.
 ///
 /// ```
 /// use granular_edmd::Gravity;
@@ -36,8 +36,8 @@ impl Gravity {
     /// No gravity.
     pub const NONE: Self = Self { rightward: 0.0, downward: 0.0 };
 
-    /// Returns gravity of this strength in a box that is turned clockwise by `angle`, in radians: the floor
-    /// descends to the right.
+    /// Returns the gravity of this strength in a box that is turned clockwise by `angle`, in radians, so that
+    /// the floor descends to the right.
     ///
     /// # Errors
     /// If the angle is beyond a right angle in magnitude: it was probably meant in degrees, and gravity would
@@ -71,7 +71,8 @@ impl Gravity {
         libm::hypot(self.rightward, self.downward)
     }
 
-    /// Returns the same gravity, if both components are finite and at most 1e60 in magnitude, with 0 for −0.
+    /// Returns the same gravity with 0 for −0, or an error if a component is not finite or above 1e60 in
+    /// magnitude.
     ///
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
@@ -82,7 +83,7 @@ impl Gravity {
         Ok(Self { rightward: rightward + 0.0, downward: bounded("gravity", self.downward)? + 0.0 })
     }
 
-    /// Returns the larger component, for errors.
+    /// Returns the component of larger magnitude, for errors.
     pub(crate) fn larger(self) -> f64 {
         if self.rightward.abs() > self.downward.abs() { self.rightward } else { self.downward }
     }

@@ -11,8 +11,8 @@
 //! A [`Reader`](crate::trajectory::Reader) takes disks from files of other programs.
 //!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
-//! [`with_maxwellian_velocities`] sets them in motion. To place disks around others that are placed already,
-//! put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).
+//! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks
+//! into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
 //! The functions place no disk into a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in
@@ -42,7 +42,7 @@ use crate::error::Readable;
 use crate::quantity::accept;
 use crate::simulation::{BuildError, FEWEST};
 
-/// An error: the disks do not fit, or cannot be placed.
+/// The error of disks that do not fit, or cannot be placed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacementError {
@@ -52,7 +52,7 @@ pub enum PlacementError {
     /// There is no room for all disks.
     #[error("there is room for {placed} of {count} disks of radius {} in {interior}", Readable(*.radius))]
     NoRoom {
-        /// Number of disks wanted.
+        /// Number of requested disks.
         count: usize,
         /// Number of disks that could be placed.
         placed: usize,
@@ -61,7 +61,7 @@ pub enum PlacementError {
         /// Interior of the boundary, up to the height to which disks were placed.
         interior: Domain,
     },
-    /// A period of the domain is too short for a simulation of such disks: a disk would see another one and
+    /// A period of the domain is too short for a simulation of such disks: a disk would meet another disk and
     /// its image at the same time.
     #[error(
         "a simulation needs periods of more than four diameters, but the period is {} and the diameter {}",
@@ -73,7 +73,7 @@ pub enum PlacementError {
         /// Diameter of the largest disk.
         diameter: f64,
     },
-    /// The disks jam before they are packed.
+    /// The disks jam before they have their full radii.
     #[error("the disks jam at the area fraction {reached:.4}: they would need {wanted:.4}")]
     Jammed {
         /// Area fraction of the disks in the room when they jammed.

@@ -1,9 +1,9 @@
 //! Vector instructions that only some processors of an architecture have.
 //!
 //! A build for any x86-64 processor can rely only on instructions for two numbers at a time, but nearly all
-//! of these processors can take four. The hot code is therefore compiled for each level, and [`Instructions`]
-//! names the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses
-//! a product and a sum into one instruction; the bits do not depend on the level.
+//! of these processors can process four. The hot code is therefore compiled for each level, and
+//! [`Instructions`] names the level that this processor has. The arithmetic is the same in all copies, since
+//! Rust never fuses a product and a sum into one instruction; the bits do not depend on the level.
 //!
 //! Two parts for which the compiler finds no good vector instructions are written out in them: the tournament
 //! of the scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions
@@ -23,9 +23,9 @@ pub(crate) enum Level {
     /// The instructions on which the build relies.
     #[default]
     Built,
-    /// Four numbers at a time.
+    /// AVX2: four numbers at a time.
     Avx2,
-    /// Four numbers at a time, and selections by masks.
+    /// AVX-512: four numbers at a time, with selections by masks.
     Avx512,
 }
 
@@ -40,7 +40,7 @@ impl Level {
 }
 
 impl Instructions {
-    /// Those that every processor has for which the crate is built.
+    /// The instructions of all processors for which the crate is built.
     pub(crate) const BUILT: Self = Self(Level::Built);
 
     /// Returns the best level that this processor has.
@@ -117,8 +117,8 @@ fn has(level: Level) -> bool {
     level == Level::Built
 }
 
-/// Makes a function that runs one of three others, by the [`Instructions`] in its first argument: the one for
-/// any processor, for AVX2, or for AVX-512.
+/// Defines a function that runs one of three others, chosen by the [`Instructions`] in its first argument:
+/// the function for any processor, for AVX2, or for AVX-512.
 ///
 /// The three can be copies of a plain function for each level. This and all hot functions that it calls must
 /// then be `#[inline(always)]`, since other code is compiled for the level of the build. A constant

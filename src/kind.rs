@@ -1,4 +1,4 @@
-//! Kinds of disks and walls, by which rules and observers tell them apart.
+//! Kinds of disks and walls, by which rules and observers distinguish them.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use std::fmt;
 ///
 /// A kind changes nothing by itself: radius and mass belong to the disk. Rules find the kinds of both
 /// partners in the [`Contact`](crate::collision::Contact), so that steel and glass can rub in their own way
-/// ([`RulesByKind`](crate::collision::RulesByKind)). Observers can look at disks of one kind
+/// ([`RulesByKind`](crate::collision::RulesByKind)). Observers can be restricted to disks of one kind
 /// ([`OfKind`](crate::observable::OfKind)). Disks have [`Kind::DEFAULT`] unless another is given, and walls
 /// have [`Kind::WALL`].
 ///
@@ -25,13 +25,13 @@ use std::fmt;
 pub struct Kind(u16);
 
 impl Kind {
-    /// The kind of disks that were given no other kind: number 0.
+    /// The default kind of disks: number 0.
     pub const DEFAULT: Self = Self(0);
 
-    /// The kind of walls that were given no other kind: number 65535.
+    /// The default kind of walls: number 65535.
     pub const WALL: Self = Self(u16::MAX);
 
-    /// Creates the kind of this number.
+    /// Creates the kind with this number.
     pub const fn new(number: u16) -> Self {
         Self(number)
     }

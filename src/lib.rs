@@ -113,8 +113,8 @@ pub mod wall;
 /// The number of the results of this version.
 ///
 /// Versions with the same number give the same bits for the same inputs. A version that changes a trajectory,
-/// a seed or a measured value has a larger number, and a line under “Results” in its changelog. A
-/// study goes on only by versions with the number of the one that began it.
+/// a seed or a measured value has a larger number, and a line under “Results” in its changelog. Only versions
+/// with the same number can continue a study.
 pub const RESULTS: u32 = 1;
 
 pub use disk::Disk;

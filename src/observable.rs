@@ -1,8 +1,8 @@
 //! Observables and observers: quantities of a state, and watchers of a run.
 //!
 //! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] watches a run: the engine reports
-//! the beginning and the end of the run and every [`Collision`] to it, and shows it a snapshot at the times
-//! that it asks for. An observer may stop the run. You lend it to a run and read it afterwards. Observers and
+//! the beginning and the end of the run and every [`Collision`] to it, and gives it a snapshot at the times
+//! that it requests. An observer may stop the run. You lend it to a run and read it afterwards. Observers and
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!
@@ -48,9 +48,8 @@
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
 //! # Custom observers
-//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`]
-//! is a clock. In a plain test, [`laws::check`]
-//! checks the contract of an observer.
+//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. Other observers can use
+//! [`SampleTimes`] as their clock. In a plain test, [`laws::check`] checks the contract of an observer.
 //!
 //! ```
 //! use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, laws};

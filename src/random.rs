@@ -1,4 +1,4 @@
-//! The few samplers that enter a trajectory. They are part of this crate, so that no dependency can change
+//! The samplers on which trajectories depend. They are part of this crate, so that no dependency can change
 //! their bits.
 
 use rand::Rng;

@@ -1,8 +1,8 @@
-//! Runs played back: the state before any collision, the last collisions of a disk, and where two runs
-//! differ.
+//! Playback of runs: the state before any collision, the last collisions of a disk, and the first differences
+//! of two runs.
 //!
-//! Nothing is recorded but the state of the run now and then. All in between follows from these states, bit
-//! for bit, so any collision can be looked at as if one had waited for it. A state may come from a
+//! Only states of the run are recorded, at intervals. All in between follows from these states, bit for bit,
+//! so any collision can be looked at as if one had waited for it. A state may come from a
 //! [checkpoint](Simulation::resume), from a start file or from a plan and a seed.
 //!
 //! ```
@@ -39,10 +39,10 @@ use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
 
-/// Largest number of states that are kept, unless the caller sets another.
+/// Default of the largest number of states that are kept.
 const MOST_STATES: usize = 64;
 
-/// Difference of two times, relative to the interval between states, that is rounding.
+/// Largest difference of two times that counts as rounding, relative to the interval between states.
 const SAME: f64 = 1e-9;
 
 /// A run that can be played back; [the module](self) has an example.
@@ -60,7 +60,7 @@ pub struct Replay<R, B, S> {
 }
 
 impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
-    /// Creates a replay that starts with this state, and keeps one at the end of each interval.
+    /// Creates a replay that starts with this state, and keeps a state at the end of each interval.
     ///
     /// # Errors
     /// If the interval is not finite and positive.
@@ -76,12 +76,12 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Self { most: most.max(2), ..self }
     }
 
-    /// Returns the run as far as it has come.
+    /// Returns the run in its latest state.
     pub const fn present(&self) -> &Simulation<R, B, S> {
         &self.present
     }
 
-    /// Runs on until the absolute time `end`.
+    /// Continues the run until the absolute time `end`.
     ///
     /// # Errors
     /// The same as for [`Simulation::run_until`]. The run can be played back up to the error.
@@ -114,11 +114,11 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// cover the time.
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
         if time >= self.present.time() {
-            // The run may have ended with an error there, and would do so again.
+            // The run may have ended with an error at this time, and would end so again.
             return Ok((time == self.present.time()).then(|| self.present.clone()));
         }
         let mut run = state.clone();
@@ -126,13 +126,14 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Some(run))
     }
 
-    /// Returns the state just before a collision, which comes next; `None` if the run had no such collision.
+    /// Returns the state just before the collision with this number, or `None` if the run had no such
+    /// collision.
     ///
     /// Collisions with disks and walls are counted together from 1 on, as the
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn before_collision(&self, number: u64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         if number > self.present.counters().collisions() + u64::from(self.has_failed) {
             return Ok(None);
@@ -149,7 +150,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns the collisions after the absolute time `from`, up to and at `to`.
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
         let start = &self.states[0];
         // Disks that touch at the start collide immediately.
@@ -161,7 +162,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// their order. The disk is known by its [id](crate::Disk::id).
     ///
     /// # Errors
-    /// If the parts of the run do not answer as they did the first time.
+    /// If the parts of the run return other results than the first time.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
         for state in self.states.iter().rev().filter(|state| state.time() < until) {
@@ -176,7 +177,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(last.split_off(last.len().saturating_sub(count)))
     }
 
-    /// Plays a state on, and returns its collisions.
+    /// Continues from a state, and returns the collisions.
     fn played(&self, run: Simulation<R, B, S>, until: f64) -> Result<Vec<Replayed>, RunError> {
         let (mut steps, mut all) = (Steps::new(run), Vec::new());
         let end = until.min(self.present.time());
@@ -191,7 +192,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         }
     }
 
-    /// Returns the state at this time, or the last one if the run ends before it.
+    /// Returns the state at this time, or the last state if the run ends earlier.
     fn last_before(&self, time: f64) -> Result<Simulation<R, B, S>, RunError> {
         let before = if time < self.present.time() { self.at(time)? } else { None };
         Ok(before.unwrap_or_else(|| self.present.clone()))
@@ -205,7 +206,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// `None` if the two keep no states of the same times.
     ///
     /// # Errors
-    /// If the parts of a run do not answer as they did the first time.
+    /// If the parts of a run return other results than the first time.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -28,10 +28,10 @@ pub use tournament_tree::TournamentTree;
 
 use crate::forward::forward;
 
-/// The answer of a scheduler without disks.
+/// The result of a scheduler without disks.
 ///
 /// No disk has this index, and the time is later than any run lasts. The engine compares the time of each
-/// event with the end of the run anyway, and this comparison rejects the answer.
+/// event with the end of the run anyway, and this comparison rejects the result.
 pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
 /// A scheduler: it orders the events of the disks by their times.
@@ -42,14 +42,14 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. If all times are infinite, the
 ///    disk with the smallest index is named, with its infinite time.
 /// 3. **Time may go back.** [`set`](Self::set) takes any time. It may be later than the disk's last time,
-///    earlier than it (because a faster partner has appeared), or even earlier than the last answer. After
-///    most events, the disk that was just named gets a later time. In the other cases a scheduler may be
-///    slow, but not wrong.
+///    earlier (because a faster partner has appeared), or even earlier than the last result of `earliest`.
+///    After most events, the disk that was just named gets a later time. In the other cases a scheduler may
+///    be slow, but not wrong.
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
-/// 5. **Without disks**, as before the first `reset`, the answer is [`NOTHING_DUE`].
-/// 6. **Questions change nothing.** [`earliest`](Self::earliest) answers alike until the next `set` or
-///    `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
+/// 5. **Without disks**, as before the first `reset`, the result is [`NOTHING_DUE`].
+/// 6. **Queries change nothing.** [`earliest`](Self::earliest) returns the same result until the next `set`
+///    or `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
 ///
 /// # What the engine guarantees
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
@@ -61,7 +61,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///   slow.
 ///
 /// # Schedulers that break the contract
-/// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
+/// The engine compares each result with the event that it keeps: a disk that does not exist, or a time other
 /// than the last one set for it, ends the run with an error. If a scheduler loses a `set` and never names an
 /// event that is due, the engine notices when the epoch ends, or at the end of a run with at least as many
 /// events as disks, and ends the run with an error. Checking all disks more often would cost time, so the
@@ -70,9 +70,9 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// fifty thousand operations; `docs/validation.md` says which planted faults it finds.
 ///
 /// # Why the answer is a pair and not an `Option`
-/// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]
-/// fails the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to
-/// each event, and no information.
+/// The engine calls the method at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails
+/// the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to each
+/// event, and no information.
 ///
 /// ```
 /// use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE, TournamentTree};
@@ -95,7 +95,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
     note = "one of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
 )]
 pub trait EventScheduler {
-    /// Forgets everything, and takes these times, one for each disk.
+    /// Replaces all disks and times by these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
 
     /// Sets a new time for the event of `disk`, in place of its last one.
@@ -111,11 +111,11 @@ pub trait EventScheduler {
     /// Appends the disks whose events are due soon and that have not been named yet, if the scheduler knows
     /// them.
     ///
-    /// The answer is a hint: the engine fetches early what these events will need from memory. The call
-    /// changes neither the order of events nor the disks that `disks` holds already. Disks may be missing, or
-    /// be named twice or in any order. The engine ignores disks that do not exist. The default names none. A
-    /// scheduler that wraps another passes the call on: among 10⁵ disks, it would take half as long again
-    /// otherwise.
+    /// The list is a hint: the engine prefetches the data that these events will need. The call changes
+    /// neither the order of events nor the disks that `disks` holds already. Disks may be missing, or be
+    /// named twice or in any order. The engine ignores disks that do not exist. The default names no disk. A
+    /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes half as long
+    /// again.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

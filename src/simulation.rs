@@ -1,4 +1,4 @@
-//! The engine, which takes disks from event to event.
+//! The engine, which advances disks from event to event.
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
@@ -17,8 +17,8 @@
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
 //!    the caller gives again. It notices if they are different ones, as far as they have fingerprints.
-//! 6. A part (a rule, boundary, scheduler or observer) that gives an impossible answer ends the run with an
-//!    error that names the answer. It never makes the engine go back in time, or name a disk or wall that
+//! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
+//!    error that names the result. It never makes the engine go back in time, or name a disk or wall that
 //!    does not exist. A collision that is carried out is at its wall, and no deeper in it or in a disk than
 //!    rounding. The chapters of [`Boundary`] and [`EventScheduler`] on broken contracts say which faults stay
 //!    unseen.
@@ -77,7 +77,7 @@ use cells::Cells;
 use lookahead::Lookahead;
 use state::{Bodies, Clock, Ledger};
 
-/// A system of disks that is taken from event to event.
+/// A system of disks that advances from event to event.
 ///
 /// Times given and returned are absolute times, in the units of the caller. Internally, times are offsets
 /// from an epoch that moves on, so that late times keep their digits. [`Simulation::builder`] makes a
@@ -105,7 +105,7 @@ use state::{Bodies, Clock, Ledger};
 pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     rule: R,
     boundary: B,
-    /// Number of walls of the boundary. The answers of the boundary are checked against it.
+    /// Number of walls of the boundary. The results of the boundary are checked against it.
     wall_count: usize,
     scheduler: S,
     bodies: Bodies,
@@ -169,11 +169,11 @@ const _: () = {
 /// Buffers that are used again and again.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
-    /// The neighbors of one disk, or of both that collide.
+    /// Buffers for the neighbors of one disk, or of both disks of a collision.
     found: [Vec<u32>; 2],
     /// The times of all disks.
     due: Vec<f64>,
-    /// Number of disks that the scheduler has room for.
+    /// Number of disks for which the scheduler has room.
     seats: usize,
 }
 
@@ -200,7 +200,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns the index of the disk with this [id](Disk::id), or `None` if it is not in the run.
     ///
-    /// This looks at all disks.
+    /// The call examines all disks.
     pub fn index_of(&self, id: u64) -> Option<usize> {
         (0..self.len()).find(|&disk| self.bodies.id(disk) == id)
     }
@@ -210,10 +210,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.disks(self.clock.now)
     }
 
-    /// Returns the disk or wall into which another disk would reach deepest now, and the depth; `None` if
-    /// there is room for it.
+    /// Returns the disk or wall that another disk would overlap most deeply now, and the depth, or `None` if
+    /// there is room for the other disk.
     ///
-    /// This looks at all disks.
+    /// The call examines all disks.
     ///
     /// ```
     /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic};
@@ -247,8 +247,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.snapshot_as_of(self.time())
     }
 
-    /// Returns the present state as of the time that was asked for. [`Self::time`] may differ from that time
-    /// by rounding.
+    /// Returns the present state, as of the requested time. [`Self::time`] may differ from that time by
+    /// rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
         let Self { bodies, boundary, marks, .. } = self;
         Snapshot::of_run(time, self.clock.now, bodies, boundary, bodies.gravity, *marks)
@@ -285,7 +285,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If gravity is not finite, or a component is above 1e60 in magnitude. If disks would fall so fast that
-    /// times as late as the present are too coarse. The simulation then stays as it was.
+    /// times as late as the present are too coarse. The simulation then stays unchanged.
     pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
         let gravity = gravity.into().checked()?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
@@ -307,7 +307,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation
-    /// then stays as it was.
+    /// then stays unchanged.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         traffic::check_inlets(&boundary, &self.inlets)?;

@@ -63,7 +63,7 @@ pub fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..=high).prop_map(libm::exp10)
 }
 
-/// Returns speeds of either sign: ordinary ones, ones spread over 24 decades, and zero.
+/// Returns speeds of either sign: ordinary speeds, speeds spread over 24 decades, and zero.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -94,8 +94,8 @@ pub fn direction() -> impl Strategy<Value = DVec2> {
     ]
 }
 
-/// Returns contacts as a rule sees them: they close, with any slip and relative spin, at any time after the
-/// last collision or without one.
+/// Returns contacts for rules: closing ones with any slip and relative spin, at any time after the last
+/// collision or without an earlier collision.
 ///
 /// The partners are disks of the kinds 0 to 3 with any masses and inertia, or one is a straight, convex or
 /// hollow wall. [`contact_of`] takes other kinds.
@@ -324,8 +324,8 @@ pub fn vessel() -> impl Strategy<Value = Vessel> {
     )
 }
 
-/// Returns up to this number of disks that do not overlap, of several kinds, with radii from 0.05 to 0.5 and
-/// masses over six decades, in rows from the origin on.
+/// Returns a strategy for lists of up to `most` disks that do not overlap, of several kinds, with radii from
+/// 0.05 to 0.5 and masses over six decades, in rows from the origin on.
 ///
 /// ```
 /// use proptest::prelude::*;

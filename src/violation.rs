@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// An error: a part breaks a law, one of the sentences in the contract of its trait.
+/// The error of a part that breaks a law, one of the sentences in the contract of its trait.
 ///
 /// All checks of contracts return it, from `collision::laws` to `trajectory::laws`. The sentence that was
 /// found holds the numbers with which the part can be tried again.

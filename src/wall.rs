@@ -84,11 +84,11 @@ pub use triangular::Triangular;
 
 use crate::Fingerprint;
 
-/// The place and velocity of a wall along its normal, which points to the disks.
+/// The position and velocity of a wall along its normal, which points to the disks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct WallState {
-    /// Displacement from the wall's place at rest.
+    /// Displacement from the wall's position at rest.
     pub displacement: f64,
     /// Velocity.
     pub velocity: f64,
@@ -102,11 +102,11 @@ impl WallState {
     }
 }
 
-/// Bounds of a wall's acceleration on a piece of time, from the phase asked for to `until`.
+/// Bounds of a wall's acceleration on a piece of time, from the requested phase to `until`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct AccelerationBounds {
-    /// End of the piece: a phase later than the one asked for, or infinite for a piece without an end.
+    /// End of the piece: a phase later than the requested one, or infinite for a piece without an end.
     pub until: f64,
     /// Lower bound of the acceleration on the piece.
     pub min: f64,
@@ -163,14 +163,14 @@ impl AccelerationBounds {
 /// the run. For a motion with a period, the phase is the absolute time less some whole periods, which keeps
 /// all digits of late times. It is below one period in magnitude when an epoch of the run begins, grows as
 /// the epoch goes on, and is negative only in runs that begin at a negative time. A motion whose smallest and
-/// largest displacements are equal never moves, and is asked only about small phases, whatever the time.
+/// largest displacements are equal never moves, and receives only small phases, whatever the time.
 ///
 /// # Contract
 /// An implementation guarantees, for every phase:
 /// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, and the same ones
 ///    each time they are called with the same phase. Only `until` may be infinite.
 /// 2. The displacement lies within [`reach`](Self::reach).
-/// 3. A piece ends later than the phase asked for, and its bounds hold for the acceleration up to its end.
+/// 3. A piece ends later than the requested phase, and its bounds hold for the acceleration up to its end.
 /// 4. Inside a piece, displacement and velocity are continuous, the acceleration jumps a few times at most,
 ///    and the displacement is the integral of the velocity, to $`10^{-8}`$ of it. At the end of a piece, the
 ///    velocity may jump. The displacement may jump there, too, but only away from the disks. The state at
@@ -184,10 +184,10 @@ impl AccelerationBounds {
 ///
 /// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
-/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even with
-/// wrong answers; its documentation says how. Bounds that are too small, a reach that is too small or a jump
-/// toward the disks let disks pass into the wall, which the engine notices at the next collision with it.
-/// Bounds that are too large only cost time.
+/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even if the
+/// motion breaks the contract; its documentation says how. Bounds that are too small, a reach that is too
+/// small or a jump toward the disks let disks pass into the wall, which the engine notices at the next
+/// collision with it. Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{
@@ -243,8 +243,7 @@ pub trait WallMotion {
 
     /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`].
     ///
-    /// Unless given, the answer comes from a look at the first period, or at the first thousand pieces if
-    /// they are over earlier.
+    /// The default examines the first period, or the first thousand pieces if these end earlier.
     fn jumps(&self) -> bool {
         jumps::seen(self)
     }

@@ -16,11 +16,10 @@ const TOLERANCE: f64 = 1e-12;
 /// Largest number of times that a piece is halved. A jump at an unknown height is then lost in rounding.
 const MOST_HALVINGS: u32 = 44;
 
-/// Number of places between two crossings at which a line is examined if there may be curves that are not
-/// known.
+/// Number of points between two crossings at which a line is examined if some curves may be unknown.
 pub(super) const LOOKS: u32 = 16;
 
-/// Distance of the first and the last of these places from the ends, relative to the interval.
+/// Distance of the first and the last of these points from the ends of the interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
 
 /// Nodes and weights of Gauss and Legendre's rule of ten points on [-1, 1]: the positive half.
@@ -32,7 +31,7 @@ const GAUSS: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// A curve at which the freedom of a center may change.
+/// A curve that may separate free positions of a center from occupied ones.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Curve {
     Line(DVec2, DVec2),
@@ -40,7 +39,7 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// Returns the same curve with its points moved.
+    /// Returns the same curve with its points mapped by `to`.
     pub(super) fn moved(self, to: impl Fn(DVec2) -> DVec2) -> Self {
         match self {
             Self::Line(from, end) => Self::Line(to(from), to(end)),
@@ -56,20 +55,20 @@ impl Curve {
         }
     }
 
-    /// Returns the places at which a horizontal line crosses the curve.
+    /// Returns the positions at which a horizontal line crosses the curve.
     fn crossings(&self, height: f64) -> impl Iterator<Item = f64> + use<> {
         let none = [f64::NAN; 2];
         let places = match *self {
-            // Half-open, so that a line through the common end of two sides crosses one of them, and not
-            // both.
+            // The interval is half-open, so that a line through the common end of two sides crosses only one
+            // side.
             Self::Line(from, to) if (from.y > height) != (to.y > height) => {
                 [from.x + (to.x - from.x) * ((height - from.y) / (to.y - from.y)), f64::NAN]
             }
             Self::Line(..) => none,
             Self::Circle(center, radius) => {
                 let above = (height - center.y).abs();
-                // As a product, the square loses no digits near the top. Beyond the circle it is negative,
-                // and its root NaN.
+                // Written as a product, the difference of squares loses no digits near the top. Beyond the
+                // circle it is negative, and its root NaN.
                 let half = ((radius - above) * (radius + above)).sqrt();
                 [center.x - half, center.x + half]
             }
@@ -77,7 +76,7 @@ impl Curve {
         places.into_iter().filter(|place| !place.is_nan())
     }
 
-    /// Returns the places at which two curves may cross; NaN for those that do not exist.
+    /// Returns the points at which two curves may cross, with NaN in place of points that do not exist.
     fn meetings(&self, other: &Self) -> [DVec2; 2] {
         match (*self, *other) {
             (Self::Line(from, to), Self::Line(start, end)) => {
@@ -118,7 +117,7 @@ pub(super) struct Field<'a> {
     pub(super) region: Region,
     /// The curves at which freedom may change.
     pub(super) curves: Vec<Curve>,
-    /// Number of places between two crossings at which a line is examined: 1 if no other curves exist.
+    /// Number of points between two crossings at which a line is examined: 1 if all curves are known.
     pub(super) looks: u32,
     pub(super) is_free: &'a dyn Fn(DVec2) -> bool,
 }
@@ -179,7 +178,7 @@ impl Field<'_> {
         self.refined(low, high, &curves, whole, MOST_HALVINGS)
     }
 
-    /// Returns the area between two heights, of which `whole` is a first estimate.
+    /// Returns the free area between two heights. `whole` is a first estimate of it.
     fn refined(&self, low: f64, high: f64, curves: &[Curve], whole: f64, halvings: u32) -> f64 {
         let middle = low + 0.5 * (high - low);
         let halves = [(low, middle), (middle, high)].map(|(low, high)| self.quadrature(low, high, curves));
@@ -196,7 +195,7 @@ impl Field<'_> {
     fn quadrature(&self, low: f64, high: f64, curves: &[Curve]) -> f64 {
         let mut sum = 0.0;
         for (node, weight) in GAUSS {
-            // From the nearer end, so that heights near the upper end lose no digits.
+            // Heights are measured from the nearer end, so that heights near the upper end lose no digits.
             let s = 0.5 * (1.0 - node);
             let from_end = (high - low) * s * s * (3.0 - 2.0 * s);
             let lengths = self.length(low + from_end, curves) + self.length(high - from_end, curves);

@@ -89,12 +89,12 @@ impl Free {
     }
 }
 
-/// A brick as seen from a place.
+/// The relation of a brick to a point: its distance and direction.
 #[derive(Debug, Clone, Copy)]
 struct Sight {
     /// Distance of the nearest point of the brick.
     distance: f64,
-    /// Unit vector from that point to the place.
+    /// Unit vector from the nearest point of the brick to the given point.
     normal: DVec2,
     side: Side,
     /// Distance from the brick, extended straight beyond its ends. If two bricks meet at the nearest point,
@@ -102,12 +102,12 @@ struct Sight {
     weight: f64,
 }
 
-/// The nearest point of a brick, as seen from a place.
+/// The relation of the nearest point of a brick to a given point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
     pub(super) distance: f64,
     pub(super) normal: DVec2,
-    /// True if the place is on a free side.
+    /// True if the given point is on a free side.
     pub(super) is_free: bool,
     pub(super) weight: f64,
 }
@@ -195,7 +195,7 @@ impl Brick {
         })
     }
 
-    /// Returns the points that fix the place of the brick.
+    /// Returns the points that fix the position of the brick.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {
             Shape::Segment(segment) => [segment.from, segment.to().unwrap_or(segment.from)],
@@ -228,7 +228,7 @@ impl Brick {
         }
     }
 
-    /// Returns a lower and an upper bound of the distances of the brick's points from a place.
+    /// Returns a lower and an upper bound of the distances of the brick's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         match self.shape {
             Shape::Segment(segment) => segment.distances(place),

@@ -9,7 +9,7 @@ use crate::collision::CollisionRule;
 #[cfg(feature = "serde")]
 use crate::collision::KnownRule;
 
-/// The response of a wall to a touch, as the wall keeps it. [`Response`] borrows it.
+/// The response of a wall to a touch, in the owned form that a wall keeps. [`Response`] borrows it.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -20,7 +20,7 @@ pub(super) enum Conduct {
     Thermal(Thermal),
     /// Removes disks at their first touch.
     Absorbing,
-    /// Removes disks when their centers arrive.
+    /// Removes disks when their centers reach the wall.
     AbsorbingCenters,
 }
 

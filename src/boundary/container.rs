@@ -21,7 +21,7 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin, such as the paper's box.
 ///
-/// All walls are fixed at first, and follow the rule of the disks. Each wall can be given a motion along its
+/// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
 /// normal (which points inward), its own rule, a temperature, or a kind.
 ///
 /// ```
@@ -52,7 +52,7 @@ pub struct Container {
     /// Height of the lid or period of the ends; infinite if the top is open.
     #[cfg_attr(feature = "serde", serde(serialize_with = "crate::gate::if_finite"))]
     height: f64,
-    /// The walls that exist.
+    /// The existing walls.
     #[cfg_attr(feature = "serde", serde(rename = "walls"))]
     planes: Vec<Plane>,
 }
@@ -142,8 +142,8 @@ impl Container {
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
     ///
-    /// Initial states are placed where the wall is at the start. A blow of a disk changes when others meet
-    /// the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
+    /// Initial states are placed where the wall is at the start. An impact of a disk changes when other disks
+    /// meet the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
     ///
     /// # Errors
     /// If the container has no such wall, or the motion of the piston has numbers that are not finite.
@@ -232,7 +232,7 @@ impl Container {
         self.planes.iter().position(|plane| plane.wall == wall)
     }
 
-    /// Removes the walls that exist among these.
+    /// Removes these walls, if they exist.
     fn without(mut self, walls: [Wall; 2]) -> Result<Self, WallError> {
         for wall in walls {
             let Some(index) = self.index(wall) else { continue };

@@ -87,7 +87,7 @@ impl Domain {
         shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| DVec2::new(x, y)))
     }
 
-    /// Returns the displacements of those periodic images of another rectangle that come near this one.
+    /// Returns the displacements of another rectangle's periodic images near this rectangle.
     ///
     /// An engine's domain is longer than four diameters of a disk where it is periodic, so a quarter of a
     /// period is more than the radius by which a disk inside reaches beyond the domain.
@@ -98,7 +98,7 @@ impl Domain {
         columns.flat_map(move |x| rows.clone().map(move |y| DVec2::new(x, y) * periods))
     }
 
-    /// Returns whether a place is in the rectangle, or beyond it by no more than `slack`.
+    /// Returns whether a point is in the rectangle, or outside by no more than `slack`.
     #[inline]
     pub(crate) fn contains(&self, place: DVec2, slack: f64) -> bool {
         place.x >= self.left - slack
@@ -119,7 +119,8 @@ impl Domain {
         separation
     }
 
-    /// Returns a place moved into the rectangle by whole periods, where the rectangle is periodic.
+    /// Returns a point moved into the rectangle by whole periods, in the directions in which the rectangle is
+    /// periodic.
     pub(crate) fn wrapped(&self, place: DVec2) -> DVec2 {
         let mut place = place;
         if self.periodic_sides {
@@ -131,8 +132,7 @@ impl Domain {
         place
     }
 
-    /// Returns the unwrapped position of a disk: the position that it would have if periodic sides and ends
-    /// had never taken it back.
+    /// Returns the unwrapped position of a disk: its position without all shifts by periodic sides and ends.
     ///
     /// Differences of unwrapped positions are displacements.
     ///
@@ -151,8 +151,8 @@ impl Domain {
     }
 }
 
-/// Returns the whole numbers of periods by which a thing is moved to a place from `low` to `high`, or a
-/// quarter of a period beyond. Callers refuse things that would need many more.
+/// Returns the whole numbers whose products with the period lie between `low` and `high`, or at most a
+/// quarter of a period beyond. Callers refuse input that would need many more.
 fn numbers(period: f64, low: f64, high: f64) -> impl Iterator<Item = f64> + Clone {
     const MOST: f64 = 1e4;
     let (first, last) = if period > 0.0 {
@@ -173,8 +173,8 @@ impl fmt::Display for Domain {
     }
 }
 
-/// The upper edge in files. Some text formats have no infinite numbers, so text files hold `None` for an open
-/// top.
+/// How files store the upper edge. Some text formats have no infinite numbers, so text files hold `None` for
+/// an open top.
 #[cfg(feature = "serde")]
 mod open_top {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -219,12 +219,13 @@ impl Region {
         Self { min, max }
     }
 
-    /// Returns whether a place is in the rectangle. The right and the upper edge belong to its neighbors.
+    /// Returns whether a point is in the rectangle. The right and the upper edges belong to the neighbors of
+    /// the rectangle.
     pub(crate) fn contains(&self, place: DVec2) -> bool {
         place.cmpge(self.min).all() && place.cmplt(self.max).all()
     }
 
-    /// Returns the part of the rectangle that lies in another one; it has no area if there is none.
+    /// Returns the intersection of the rectangle with another, which has no area if the two are disjoint.
     pub(crate) fn within(&self, other: &Self) -> Self {
         let min = self.min.max(other.min);
         Self { min, max: self.max.min(other.max).max(min) }
@@ -235,7 +236,7 @@ impl Region {
         (self.max.x - self.min.x) * (self.max.y - self.min.y)
     }
 
-    /// Returns the smallest scalar product of a vector with a place in the rectangle.
+    /// Returns the smallest scalar product of a vector with the points of the rectangle.
     pub(crate) fn least_along(&self, vector: DVec2) -> f64 {
         let nearest = DVec2::select(vector.cmpgt(DVec2::ZERO), self.min, self.max);
         // A zero component must not be multiplied by an infinite edge: the product would not be a number.

@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::error::Rounded;
 use crate::{ParameterError, Violation};
 
-/// An error: a vessel cannot be built or changed in this way.
+/// The error of a vessel that cannot be built or changed.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Vessel};
@@ -26,7 +26,7 @@ pub enum VesselError {
     EqualPoints {
         /// Number of a point.
         first: usize,
-        /// Number of the next one.
+        /// Number of the next point.
         second: usize,
     },
     /// A polygon has no area, so it has no inside.
@@ -46,7 +46,7 @@ pub enum VesselError {
     /// The motion gives numbers that would break every run.
     #[error("the motion of the part cannot be used: {violation}")]
     Motion {
-        /// The answer of the motion.
+        /// The violation of the contract of motions.
         violation: Violation,
     },
     /// The motion jumps back, and disks can be behind the part.
@@ -73,7 +73,7 @@ pub enum VesselError {
     Unknown {
         /// The name.
         name: String,
-        /// The names of the parts that it has.
+        /// The names of the vessel's parts.
         parts: Vec<String>,
     },
     /// The vessel has a part or a wall of this name already.
@@ -117,10 +117,10 @@ pub enum VesselError {
     },
 }
 
-/// Most names of parts that an error lists.
+/// Largest number of names of parts that an error lists.
 const LISTED: usize = 8;
 
-/// Says which parts a vessel has.
+/// Returns a sentence that lists the parts of a vessel.
 fn listed(parts: &[String]) -> String {
     let names: Vec<String> = parts.iter().take(LISTED).map(|name| format!("\"{name}\"")).collect();
     match parts.len() {

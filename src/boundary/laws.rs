@@ -1,7 +1,7 @@
 //! Checks of a boundary's contract, for custom boundaries.
 //!
-//! [`check`] sends disks on random flights between the walls, and checks every answer of the boundary about
-//! them. [`check_fingerprints`] compares two boundaries.
+//! [`check`] sends disks on random flights between the walls, and checks every result of the boundary.
+//! [`check_fingerprints`] compares two boundaries.
 
 mod area;
 mod flight;
@@ -24,13 +24,13 @@ use area::check_areas;
 use flight::check_flights;
 use trial::{PART, Trial};
 
-/// Number of disks that are sent on flights.
+/// Number of disks that the check lets fly.
 const DISKS: usize = 400;
 
 /// Number of flights of each disk, from touch to touch.
 const FLIGHTS: usize = 4;
 
-/// Number of attempts to find a free place for a disk.
+/// Number of attempts to find a free position for a disk.
 const PLACES: usize = 10_000;
 
 /// Largest time origin of a flight, in units of the time that a disk takes to cross the domain.
@@ -56,7 +56,7 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, also for those that extend to
 ///   infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
-/// - A wall that reacts to a blow moves as its mass says, and `state` and `set_state` bring it back.
+/// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.
 ///
 /// If the boundary knows its free `area`, overlaps at random places must agree with it.
@@ -96,7 +96,7 @@ pub fn check<B: Boundary + ?Sized>(
         let (origin, flight) = random.flight(&mut trial)?;
         trial.begin(origin)?;
         check_flights(&mut trial, flight, FLIGHTS)?;
-        // Each time, the disk is of another size.
+        // Each of these disks has another size.
         if number % 83 == 4 {
             check_areas(&trial, flight.time(), &mut random)?;
         }
@@ -128,7 +128,7 @@ impl Random {
         low + (high - low) * uniform(&mut self.0)
     }
 
-    /// Returns a time origin, and a flight that begins at a free place soon after it.
+    /// Returns a time origin, and a flight that begins soon after it at a free position.
     fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
         let late = self.between(-21.0, 3.0).max(0.0);
@@ -149,8 +149,8 @@ impl Random {
         Ok((origin, flight.with_kind(trial.kind)))
     }
 
-    /// Returns a speed in units of the typical one: mostly about 1, sometimes over some decades, seldom very
-    /// slow.
+    /// Returns a speed in units of the typical speed: mostly about 1, sometimes from a range of several
+    /// decades, seldom very slow.
     fn share(&mut self) -> f64 {
         match self.between(0.0, 8.0) as u32 {
             0..=4 => self.between(0.1, 4.0),
@@ -159,7 +159,7 @@ impl Random {
         }
     }
 
-    /// Returns a place in the domain where a disk overlaps no wall.
+    /// Returns a position in the domain at which a disk overlaps no wall.
     fn place(&mut self, trial: &Trial<'_>, time: f64) -> Result<DVec2, Violation> {
         let (low, high) = trial.rectangle();
         let place = (0..PLACES)

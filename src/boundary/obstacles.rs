@@ -13,9 +13,9 @@ use crate::{Disk, Fingerprint, Flight, ParameterError};
 /// A boundary with fixed round obstacles inside, such as pegs.
 ///
 /// Each obstacle has the place, the radius and the kind of a disk. It follows the rule of the disks, as a
-/// partner of infinite mass at rest. Obstacles may overlap each other and the walls. They are the last walls
-/// of the boundary, in the order in which they are given. Each search for a touch tries all of them, so
-/// hundreds of obstacles are slow.
+/// partner of infinite mass at rest. Obstacles may overlap each other and the walls. Among the walls of the
+/// boundary, obstacles come last, in the order in which they are given. Each search for a touch tries all of
+/// them, so hundreds of obstacles are slow.
 ///
 /// [Initial states](crate::initial) keep clear of obstacles. To place a disk by hand, make it an obstacle
 /// while the others are placed around it.
@@ -44,12 +44,12 @@ pub struct Obstacles<B> {
 }
 
 impl<B: Boundary> Obstacles<B> {
-    /// Puts obstacles into a boundary, with the places, radii and kinds of these disks.
+    /// Puts obstacles into a boundary, with the positions, radii and kinds of these disks.
     ///
     /// An obstacle outside a periodic domain is moved into it by whole periods.
     pub fn new(boundary: B, obstacles: impl IntoIterator<Item = Disk>) -> Self {
         let domain = boundary.domain();
-        // An obstacle whose new place would be out of range keeps the old one.
+        // An obstacle whose new position would be out of range keeps its old position.
         let inside = |disk: Disk| disk.with_position(domain.wrapped(disk.position())).unwrap_or(disk);
         Self { obstacles: obstacles.into_iter().map(inside).collect(), boundary }
     }
@@ -64,7 +64,7 @@ impl<B: Boundary> Obstacles<B> {
         &self.obstacles
     }
 
-    /// Returns the places of an obstacle and of its periodic images.
+    /// Returns the positions of an obstacle and of its periodic images.
     fn images(&self, obstacle: &Disk) -> impl Iterator<Item = DVec2> {
         let (place, radius) = (obstacle.position(), obstacle.radius());
         self.boundary.domain().images_of(place - radius, place + radius).map(move |image| place + image)
@@ -98,7 +98,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let is_near = |place: DVec2, contact: f64| {
             let nearest = place.clamp(region.min, region.max);
-            // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
+            // The region holds centers of disks. The margin keeps rounding from hiding a touch at its edge.
             nearest.distance(place) <= 1.001 * contact
         };
         self.boundary.may_touch(region, radius)

@@ -21,7 +21,7 @@ use crate::{Fingerprint, Kind};
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
 /// their own motion.
 ///
-/// A new part is at rest, follows the rule of the disks, and has the kind of walls. Corners are added
+/// A new part is at rest, follows the rule of the disks, and has the default kind of walls. Corners are added
 /// automatically wherever bricks end and a disk can touch the end.
 ///
 /// | constructor | disks are free |
@@ -55,7 +55,7 @@ pub struct Part {
     surface_speed: f64,
     /// Absolute time at which the motion has phase 0.
     start: f64,
-    /// The kinds of the disks that it stops, in order; all kinds if there are none.
+    /// The kinds of the disks that the part stops, in order. An empty list means all kinds.
     #[cfg_attr(feature = "serde", serde(rename = "only_for"))]
     kinds: Vec<Kind>,
 }
@@ -161,14 +161,14 @@ impl Part {
         &self.bricks
     }
 
-    /// Returns the distance of a place from the part as it was built, negative where no disk can be.
+    /// Returns the distance of a point from the part in its original position, negative where no disk can be.
     pub fn signed_distance(&self, place: DVec2) -> f64 {
         self.nearest(place).map_or(f64::INFINITY, |(_, distance)| distance)
     }
 }
 
 impl Part {
-    /// Gives the part this conduct. Centers are points, so they need no corners where bricks end.
+    /// Sets the response of the part. Centers are points, so they need no corners where bricks end.
     fn with_conduct(mut self, conduct: Conduct) -> Self {
         self.conduct = conduct;
         if self.takes_centers() {
@@ -195,12 +195,12 @@ impl Part {
         !is_plain || self.surface_speed != 0.0
     }
 
-    /// Iterates over all bricks: as given, then the corners.
+    /// Iterates over all bricks: the given bricks, then the corners.
     pub(super) fn all_bricks(&self) -> impl Iterator<Item = &Brick> {
         self.bricks.iter().chain(&self.corners)
     }
 
-    /// Returns whether a place changes from free to not free only across bricks.
+    /// Returns whether all borders between free and occupied regions lie on bricks.
     pub(super) fn is_closed(&self) -> bool {
         corners::are_closed(&self.bricks)
     }
@@ -216,7 +216,7 @@ impl Part {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
 
-    /// Returns a rectangle around the part as it was built. Its edges may be infinite.
+    /// Returns a rectangle around the part in its original position. Its edges may be infinite.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
         enclosing(self.all_bricks().map(Brick::bounds))
     }
@@ -226,7 +226,7 @@ impl Part {
         enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
     }
 
-    /// Returns the number of the nearest brick and the distance from it, negative behind it.
+    /// Returns the number of the nearest brick and the distance from it, negative behind the brick.
     pub(super) fn nearest(&self, place: DVec2) -> Option<(usize, f64)> {
         let sights = self.all_bricks().map(|brick| Sighted::new(brick, place)).enumerate();
         let nearest = sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
@@ -249,7 +249,7 @@ impl Part {
     }
 }
 
-/// Returns the rectangle around some rectangles.
+/// Returns the smallest rectangle around all of these rectangles.
 pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     rectangles.fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
@@ -259,7 +259,7 @@ pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DV
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sighted {
     nearest: Nearest,
-    /// Distance below which two bricks count as equally far.
+    /// Largest difference of distances for which two bricks count as equally far.
     rounding: f64,
 }
 
@@ -270,7 +270,7 @@ impl Sighted {
         Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
     }
 
-    /// Returns whether this brick decides the side of a place rather than another one: it is nearer, or
+    /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
     /// equally near and seen less edge-on.
     ///
     /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
@@ -285,7 +285,7 @@ impl Sighted {
         self.nearest.distance
     }
 
-    /// Returns the distance, negative behind the brick.
+    /// Returns the distance from the brick, negative behind it.
     pub(super) fn signed_distance(&self) -> f64 {
         if self.nearest.is_free { self.nearest.distance } else { -self.nearest.distance }
     }

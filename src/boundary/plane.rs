@@ -19,7 +19,7 @@ pub(super) struct Plane {
     /// Unit vector from the wall to the disks.
     #[cfg_attr(feature = "serde", serde(skip))]
     normal: DVec2,
-    /// Place of the wall at rest, along its normal.
+    /// Position of the wall at rest, along its normal.
     #[cfg_attr(feature = "serde", serde(skip))]
     place: f64,
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::wall::motion_or_piston"))]
@@ -95,8 +95,8 @@ impl Plane {
         self.motion = motion;
     }
 
-    /// Sets the slide of the wall; an error if it has one, which would be lost: a belt in a box that is
-    /// shaken sideways.
+    /// Sets the sliding motion of the wall. Returns an error if the wall has one already, which would be
+    /// lost: a belt in a box that is shaken sideways.
     pub(super) fn set_slide(&mut self, slide: Slide) -> Result<(), WallError> {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
@@ -119,15 +119,16 @@ impl Plane {
         }
     }
 
-    /// Takes a blow with this impulse. Returns true if the wall has a mass, and moves otherwise from now on.
+    /// Changes the motion of the wall by this impulse. Returns true if the wall has a mass, so that its
+    /// motion has changed.
     pub(super) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
         let Some(stroke) = self.motion.stroke() else { return false };
         self.motion = Motion::of(stroke.struck(impulse.dot(self.normal), time + self.phase));
         true
     }
 
-    /// Returns whether a disk with its center in `region` may touch the wall up to this time, unless the wall
-    /// takes another blow.
+    /// Returns whether a disk with its center in `region` may touch the wall up to this time, unless another
+    /// disk hits the wall.
     pub(super) fn may_meet(&self, region: &Region, radius: f64, until: f64) -> bool {
         let highest = self.motion.stroke().map_or(self.highest, |stroke| stroke.highest_until(until));
         region.least_along(self.normal) - self.place - radius <= highest
@@ -161,7 +162,7 @@ impl Plane {
     pub(super) fn surface(&self, time: f64) -> Surface<'_> {
         let mut velocity = self.normal * self.motion.state(time + self.phase).velocity;
         if let Some(slide) = &self.slide {
-            // To the right along a floor or a lid, and up along a side.
+            // The direction is to the right along a floor or a lid, and up along a side.
             velocity += self.normal.perp().abs() * slide.speed(time);
         }
         let surface = Surface::new(self.normal, velocity).with_response(self.conduct.response());
@@ -178,14 +179,14 @@ impl Plane {
     pub(super) fn moved(&self, time: f64) -> Option<(DVec2, f64)> {
         let (low, high) = self.motion.reach();
         let displacement = self.motion.state(time + self.phase).displacement;
-        // The phase of a piston depends on the time origin, and tells nothing.
+        // The phase of a piston depends on the time origin, and has no meaning.
         let is_piston = self.motion.stroke().is_some();
         let phase = if is_piston { 0.0 } else { self.motion.phase(time + self.phase) };
-        // Adding zeros leaves no zero with a sign.
+        // Adding zeros turns negative zeros into positive ones.
         (low < high).then(|| (displacement * self.normal + DVec2::ZERO, phase))
     }
 
-    /// Returns whether a disk is so near that it may overlap the wall at some phase of the motion.
+    /// Returns whether a disk is near enough to overlap the wall at some phase of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
         position.dot(self.normal) - self.place - radius <= self.highest

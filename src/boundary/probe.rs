@@ -1,10 +1,10 @@
-//! Questions to a boundary about one place at one time, and their answers.
+//! Queries to a boundary about one position at one time, and their results.
 
 use glam::DVec2;
 
 use crate::{Disk, Kind};
 
-/// A disk at a place and a time, about which a boundary is asked.
+/// A disk at a position and a time, with which a boundary is queried.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container, Probe};
@@ -33,13 +33,13 @@ impl Probe {
         Self { position, radius, kind: Kind::DEFAULT, time }
     }
 
-    /// Creates a probe with the place, radius and kind of a disk.
+    /// Creates a probe with the position, radius and kind of a disk.
     #[inline]
     pub const fn of(disk: &Disk, time: f64) -> Self {
         Self { position: disk.position(), radius: disk.radius(), kind: disk.kind(), time }
     }
 
-    /// Returns the same probe at another place.
+    /// Returns the same probe at another position.
     #[must_use]
     #[inline]
     pub const fn with_position(self, position: DVec2) -> Self {
@@ -92,15 +92,14 @@ impl Probe {
     }
 }
 
-/// The deepest overlap of a disk, and the thing that it overlaps: a wall by its index for a
-/// [`Boundary`](super::Boundary), a [`Partner`](crate::observable::Partner) for a
-/// [`Simulation`](crate::Simulation::overlap).
+/// The deepest overlap of a disk, with its partner: a wall by its index for a [`Boundary`](super::Boundary),
+/// a [`Partner`](crate::observable::Partner) for a [`Simulation`](crate::Simulation::overlap).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Overlap<T = usize> {
-    /// The thing that the disk overlaps.
+    /// The partner that the disk overlaps.
     pub with: T,
-    /// Depth to which the disk reaches into it, positive.
+    /// Depth to which the disk reaches into its partner, positive.
     pub depth: f64,
 }
 
@@ -111,7 +110,7 @@ impl<T> Overlap<T> {
         Self { with, depth }
     }
 
-    /// Returns the deepest of some overlaps; a depth that is not positive is no overlap.
+    /// Returns the deepest overlap, or `None` if no depth is positive.
     #[inline]
     pub(crate) fn deepest(all: impl Iterator<Item = Self>) -> Option<Self> {
         all.filter(|overlap| overlap.depth > 0.0).max_by(|one, other| one.depth.total_cmp(&other.depth))

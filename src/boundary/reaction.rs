@@ -1,8 +1,8 @@
-//! Blows of disks against walls, and the reactions of walls that have a mass.
+//! Impacts of disks on walls, and the reactions of walls that have a mass.
 
 use glam::DVec2;
 
-/// The blow of a disk against a wall, as the wall receives it.
+/// The impact of a disk on a wall, as the wall receives it.
 ///
 /// ```
 /// use granular_edmd::boundary::Impact;
@@ -20,13 +20,13 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// Creates a blow that gives this impulse to a wall at a point, at this offset from the time origin.
+    /// Creates an impact that gives this impulse to a wall at a point, at this offset from the time origin.
     #[inline]
     pub const fn new(wall: usize, impulse: DVec2, point: DVec2, time: f64) -> Self {
         Self { wall, impulse, couple: 0.0, point, time }
     }
 
-    /// Returns the same blow with a couple (an angular impulse in addition to the impulse at its point).
+    /// Returns the same impact with a couple (an angular impulse in addition to the impulse at its point).
     #[must_use]
     #[inline]
     pub const fn with_couple(self, couple: f64) -> Self {
@@ -64,13 +64,13 @@ impl Impact {
     }
 }
 
-/// The answer of a boundary to a blow.
+/// The reaction of a boundary to an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Reaction {
-    /// All walls move on as before.
+    /// All walls move as before.
     #[default]
     None,
-    /// The wall that was hit moves otherwise from now on.
+    /// The motion of the wall has changed.
     Moved,
 }

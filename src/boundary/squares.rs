@@ -1,4 +1,4 @@
-//! A grid of squares, to find the disks near a place.
+//! A grid of squares, which finds the disks near a position.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -62,7 +62,7 @@ impl Squares {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
 
-    /// Returns whether a disk of this radius at this place overlaps none of those placed.
+    /// Returns whether a disk of this radius at this position overlaps none of the placed disks.
     pub(crate) fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
         self.near(site, radius).all(|other| {
             let contact = radius + placed[other].radius();
@@ -71,8 +71,8 @@ impl Squares {
     }
 }
 
-/// A hash of the numbers of a square, faster than the usual one. It need not resist attacks: the places come
-/// from the program itself.
+/// A hash of the column and row of a square, faster than the standard hash. It need not resist attacks: the
+/// places come from the program itself.
 #[derive(Default)]
 struct Mixer(u64);
 
@@ -89,7 +89,7 @@ impl Hasher for Mixer {
     }
 
     fn finish(&self) -> u64 {
-        // The table uses the low bits, few of which depend on the whole number.
+        // The table uses the low bits, and only a few of these depend on all bits of the number.
         self.0 ^ (self.0 >> 32)
     }
 }
@@ -110,7 +110,7 @@ impl Axis {
         Self { origin: low, size: (high - low) / count, count: Some(count as i64) }
     }
 
-    /// Returns the intervals between two places, each of them once.
+    /// Returns the intervals between two positions, each of them once.
     fn between(&self, low: f64, high: f64) -> impl Iterator<Item = i64> + Clone + use<> {
         let index = |place: f64| ((place - self.origin) / self.size).floor() as i64;
         let (first, last, count) = (index(low), index(high), self.count);

@@ -63,7 +63,7 @@ impl<'a> Surface<'a> {
         Self { response, ..self }
     }
 
-    /// Returns the same surface of another kind.
+    /// Returns the same surface with another kind.
     #[must_use]
     #[inline]
     pub const fn with_kind(self, kind: Kind) -> Self {
@@ -95,7 +95,7 @@ impl<'a> Surface<'a> {
         Self { mass, ..self }
     }
 
-    /// Returns the same surface, which resists forces along itself as this mass does.
+    /// Returns the same surface with this mass against forces along the surface.
     #[must_use]
     #[inline]
     pub const fn with_tangential_mass(self, tangential_mass: f64) -> Self {
@@ -115,8 +115,8 @@ pub enum Response<'a> {
     Thermal(Thermal),
     /// The wall takes the disk out of the run.
     ///
-    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin: the
-    /// wall receives all of the momentum.
+    /// Observers see a last collision, after which the disk has the velocity of the wall and no spin: the
+    /// wall receives all of the relative momentum.
     Absorbing,
 }
 
@@ -131,8 +131,8 @@ impl fmt::Debug for Response<'_> {
     }
 }
 
-/// A thermal wall: a disk that touches it leaves as if it came from a gas of the wall's temperature, at rest
-/// behind the wall.
+/// A thermal wall: a disk that touches it leaves like a disk from a gas at rest behind the wall, at the
+/// wall's temperature.
 ///
 /// The normal speed has the flux-weighted density $`(m v/T_0)\,e^{-m v^2/2T_0}`$; the tangential velocity and
 /// the angular velocity are Gaussian with variances $`T_0/m`$ and $`T_0/I`$. The slip variant redraws only
@@ -160,7 +160,7 @@ impl Thermal {
         Ok(Self { temperature: positive("wall temperature", temperature)?, slip: false })
     }
 
-    /// Returns the same wall with slip: tangential and angular velocity stay as they are.
+    /// Returns the same wall with slip: the tangential and the angular velocity stay unchanged.
     pub const fn with_slip(self) -> Self {
         Self { slip: true, ..self }
     }
@@ -170,7 +170,7 @@ impl Thermal {
         self.temperature
     }
 
-    /// Returns whether tangential and angular velocity stay as they are.
+    /// Returns whether the tangential and the angular velocity stay unchanged.
     pub const fn slip(&self) -> bool {
         self.slip
     }

@@ -21,7 +21,7 @@ impl Touch {
 }
 
 impl FirstTouch<Touch> {
-    /// Returns the time up to which there is no touch: the time of the touch if one was found.
+    /// Returns the time up to which there is no touch, which is the time of the touch if there is one.
     #[inline]
     pub fn time(&self) -> f64 {
         match self {
@@ -30,10 +30,10 @@ impl FirstTouch<Touch> {
         }
     }
 
-    /// Returns the earlier one of two answers about the same flight.
+    /// Returns the earlier of two results for the same flight.
     ///
-    /// Of touches at the same time, the wall with the smaller index counts. A boundary that puts walls into
-    /// another one, as [`Obstacles`](super::Obstacles) does, combines the answers in this way.
+    /// Of touches at the same time, the wall with the smaller index counts. A boundary that adds walls to
+    /// another boundary, as [`Obstacles`](super::Obstacles) does, combines the results in this way.
     #[inline]
     pub fn or(self, other: Self) -> Self {
         let is_first = match (&self, &other) {

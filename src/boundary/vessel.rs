@@ -20,8 +20,8 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest numbers of periods that a part may extend over, in one direction and in all. Each brick has an
-/// image for each of them, and may overlap a large part of the cells.
+/// Largest numbers of periods over which a part may extend: in one direction, and the product of both. Each
+/// brick has an image for each period, and each image may overlap a large part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in
@@ -31,9 +31,9 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
 /// A disk must be free of the container's walls and of each part: two blocks make a hopper, and a polygon can
-/// have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
-/// repeated: a part that reaches beyond one side comes in again at the other, however far it reaches. They
-/// are added, replaced and removed by name, also between runs
+/// have pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
+/// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
+/// added, replaced and removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
 /// Initial states keep clear of all parts, as these are at time 0. To pack disks densely among parts that
@@ -84,7 +84,7 @@ pub struct Vessel {
     filled: Vec<Vec<u32>>,
     /// The radii of all arcs with disks inside, in order, each with the index of its wall.
     hollows: Vec<(f64, usize)>,
-    /// Time origin, from which added parts get their phases.
+    /// Time origin, from which the phases of added parts follow.
     origin: f64,
 }
 
@@ -178,7 +178,7 @@ impl Vessel {
         parts.into_iter().try_fold(Self::new(container), |vessel, (name, part)| vessel.with(name, part))
     }
 
-    /// Returns the same vessel with one more part.
+    /// Returns the same vessel with an additional part.
     ///
     /// # Errors
     /// The same as for [`put`](Self::put).
@@ -189,12 +189,12 @@ impl Vessel {
 
     /// Puts a part into the vessel.
     ///
-    /// Its walls come after the walls of all other parts.
+    /// The walls of the part come after the walls of all other parts.
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
     /// walls. If the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. The vessel then stays as it was.
+    /// both, or its motion is lost in the rounding of its coordinates. The vessel then stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
@@ -213,7 +213,7 @@ impl Vessel {
     /// The indices of the walls after it become smaller.
     ///
     /// # Errors
-    /// If there is no part of this name. The vessel then stays as it was.
+    /// If there is no part of this name. The vessel then stays unchanged.
     pub fn remove(&mut self, name: &str) -> Result<Part, VesselError> {
         let removed = self.parts.remove(self.place_of(name)?);
         self.number();
@@ -223,8 +223,8 @@ impl Vessel {
     /// Replaces the part of this name, and returns the old one.
     ///
     /// # Errors
-    /// If there is no part of this name, and the same as for [`put`](Self::put). The vessel then stays as it
-    /// was.
+    /// If there is no part of this name, or for the reasons of [`put`](Self::put). The vessel then stays
+    /// unchanged.
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
         let place = self.place_of(name)?;
         let placed = Placed::new(name.to_owned(), part);
@@ -282,7 +282,7 @@ impl Vessel {
         &self.container
     }
 
-    /// Numbers the walls, and builds the index of them.
+    /// Numbers the walls, and builds their index.
     fn number(&mut self) {
         self.walls.clear();
         for (number, placed) in self.parts.iter_mut().enumerate() {

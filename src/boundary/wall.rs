@@ -38,7 +38,7 @@ impl fmt::Display for Wall {
     }
 }
 
-/// An error: a wall cannot be changed in this way.
+/// The error of a change that a wall does not allow.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -53,7 +53,7 @@ pub enum WallError {
     /// The container has no such wall, because it is open above or periodic there.
     #[error("the container has no wall \"{wall}\"")]
     Missing {
-        /// The wall asked for.
+        /// The requested wall.
         wall: Wall,
     },
     /// The settings of the wall would be lost: the wall would be taken away, or move otherwise.
@@ -67,7 +67,7 @@ pub enum WallError {
     Motion {
         /// The wall.
         wall: Wall,
-        /// The answer of the motion.
+        /// The violation of the contract of motions.
         violation: Violation,
     },
     /// The motion jumps back, and the wall on the other side would jump into the disks.

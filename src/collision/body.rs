@@ -23,8 +23,8 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Returns the properties of a wall that resists as these masses do along its normal and along its
-    /// surface; with infinite masses, it takes any impulse without a change of its motion.
+    /// Returns the properties of a wall with these masses against impulses along its normal and along its
+    /// surface. Infinite masses keep the motion of the wall unchanged.
     pub(crate) const fn of_wall(kind: Kind, radius: f64, [normal, tangential]: [f64; 2]) -> Self {
         let (inverse_mass, tangential_compliance) = (1.0 / normal, 1.0 / tangential);
         let (spin_response, inverse_inertia) = (0.0, 0.0);
@@ -87,7 +87,8 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
 #[inline]
 fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64, couple: f64) -> Body {
     let spin = body.angular_velocity - tangential * material.spin_response;
-    // A rule that never gives a couple pays nothing for it: the comparison is known when it is compiled.
+    // The comparison costs nothing for a rule that never gives a couple, since the compiler then knows its
+    // result.
     let spin = if couple == 0.0 { spin } else { spin - couple * material.inverse_inertia };
     Body { velocity: body.velocity + kick * material.inverse_mass, angular_velocity: spin }
 }

@@ -1,4 +1,4 @@
-//! Contacts, as a rule sees them.
+//! Contacts, in the form that rules receive.
 
 use std::fmt;
 
@@ -46,8 +46,8 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Creates a contact of two disks that have never collided before, homogeneous, of radius 1/2 and of the
-    /// default kind, which turn alike.
+    /// Creates a contact of two homogeneous disks of radius 1/2, of the default kind and of equal spins, that
+    /// have never collided before.
     #[inline]
     pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
         Self {
@@ -108,13 +108,14 @@ impl Contact {
         self.normal_mass
     }
 
-    /// Returns the effective mass μ_t of the tangential direction, rotation included.
+    /// Returns the effective mass μ_t of the tangential direction, which includes rotation.
     #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass
     }
 
-    /// Returns the time since either partner last collided with anything; infinite if neither ever has.
+    /// Returns the time since either partner last collided with anything, or infinity if neither has
+    /// collided.
     #[inline]
     pub const fn time_since_last_collision(&self) -> f64 {
         self.time_since_last_collision

@@ -47,7 +47,7 @@ impl<R> ContactDuration<R> {
         Self { tangential_response, ..self }
     }
 
-    /// Returns the rule inside, which decides all other collisions.
+    /// Returns the inner rule, which decides all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
@@ -68,7 +68,7 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
         }
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such models could not be distinguished.
+    /// Returns `None` if the inner rule has no fingerprint: two such models could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration).text(response))

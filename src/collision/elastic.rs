@@ -1,9 +1,9 @@
-//! The rule that loses nothing.
+//! The rule without any loss of energy.
 
 use super::{CollisionRule, Contact, Impulse, KnownRule};
 use crate::Fingerprint;
 
-/// Smooth elastic collisions: the closing speed is reversed, and the slip stays as it is.
+/// Smooth elastic collisions: the closing speed is reversed, and the slip stays unchanged.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Elastic};

@@ -42,7 +42,7 @@ impl<R> ElasticBelow<R> {
     /// Creates the remedy over `rule`: collisions below this closing speed are elastic and frictionless.
     ///
     /// # Errors
-    /// If the speed is not finite and positive. To have no such speed, use the rule alone.
+    /// If the speed is not finite and positive. For no limit, use the rule without this remedy.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         positive("speed of elastic collisions", speed)?;
         Ok(Self { rule, speed, tangential_response: TangentialResponse::default() })
@@ -53,7 +53,7 @@ impl<R> ElasticBelow<R> {
         Self { tangential_response, ..self }
     }
 
-    /// Returns the rule inside, which decides all other collisions.
+    /// Returns the inner rule, which decides all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
@@ -73,7 +73,7 @@ impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
         self.rule.impulse(contact).parting_at_least(self.speed, contact)
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be distinguished.
+    /// Returns `None` if the inner rule has no fingerprint: two such remedies could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed).text(response))

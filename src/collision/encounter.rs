@@ -14,7 +14,7 @@ pub struct Encounter {
     pub first: Disk,
     /// The second disk after the collision.
     pub second: Disk,
-    /// The contact that the rule was given.
+    /// The contact that the rule received.
     pub contact: Contact,
     /// The impulse on the first disk; the second received its opposite.
     pub impulse: Impulse,
@@ -27,7 +27,7 @@ pub struct Encounter {
 pub struct WallEncounter {
     /// The disk after the collision.
     pub disk: Disk,
-    /// The contact that the rule was given.
+    /// The contact that the rule received.
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,

@@ -81,14 +81,14 @@ impl Friction {
         Ok(Self { dynamic_friction, ..self })
     }
 
-    /// Returns the whole impulse of a contact: the `normal` impulse as given, with the tangential impulse
-    /// that it allows.
+    /// Returns the whole impulse of a contact: the given `normal` impulse, with the tangential impulse that
+    /// friction then allows.
     #[inline]
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
         let sticking = inelasticity::tangential_impulse(self.tangential_inelasticity, contact);
         let sliding = (self.dynamic_friction * normal).copysign(sticking);
-        // The code selects and does not branch: contacts stick or slide as if by a coin toss, which no branch
-        // predictor learns.
+        // The code selects instead of branching, since no branch predictor can learn whether a contact sticks
+        // or slides.
         let sticks = sticking.abs() < self.static_friction * normal;
         let tangential = if sticks { sticking } else { sliding };
         Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })

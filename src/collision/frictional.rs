@@ -31,7 +31,7 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 ///
-/// Three numbers in a row are easily exchanged: their order is that of the equations, normal, tangential,
+/// Three numbers in a row are easily exchanged. Their order follows the equations: normal, tangential,
 /// friction. [`Smooth::with_friction`](super::Smooth::with_friction) names them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

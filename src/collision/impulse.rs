@@ -1,4 +1,4 @@
-//! Impulses: the answers of collision rules.
+//! Impulses: the results of collision rules.
 
 use std::fmt;
 
@@ -97,7 +97,7 @@ impl Impulse {
         self.couple
     }
 
-    /// Returns the course that the collision took.
+    /// Returns the regime of the collision.
     #[inline]
     pub const fn regime(&self) -> Regime {
         self.regime
@@ -139,7 +139,8 @@ impl Impulse {
         let normal = self.normal * (contact.closing_speed() - 0.5 * self.normal / contact.normal_mass());
         let tangential =
             self.tangential * (contact.slip_speed() - 0.5 * self.tangential / contact.tangential_mass());
-        // A rule that never gives a couple pays nothing for it: the comparison is known when it is compiled.
+        // The comparison costs nothing for a rule that never gives a couple, since the compiler then knows
+        // its result.
         if self.couple == 0.0 {
             return -(normal + tangential);
         }

@@ -14,12 +14,12 @@ pub(super) fn tangential(value: f64) -> Result<f64, ParameterError> {
     accept((0.0..=1.0).contains(&value), "tangential inelasticity", "in [0, 1]", value)
 }
 
-/// Returns the inelasticity of a normal restitution if that is in `[0, 1]`.
+/// Returns the inelasticity of a normal restitution, which must be in `[0, 1]`.
 pub(super) fn of_normal_restitution(value: f64) -> Result<f64, ParameterError> {
     Ok(0.5 * (1.0 - accept((0.0..=1.0).contains(&value), "normal restitution", "in [0, 1]", value)?))
 }
 
-/// Returns the inelasticity of a tangential restitution if that is in `[-1, 1]`.
+/// Returns the inelasticity of a tangential restitution, which must be in `[-1, 1]`.
 pub(super) fn of_tangential_restitution(value: f64) -> Result<f64, ParameterError> {
     Ok(0.5 * (1.0 - accept((-1.0..=1.0).contains(&value), "tangential restitution", "in [-1, 1]", value)?))
 }

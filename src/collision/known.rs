@@ -83,8 +83,8 @@ impl CollisionRule for KnownRule {
     }
 }
 
-/// Most rules within each other in a file. In a format that does not describe itself, a few bytes can ask for
-/// a rule in a rule in a rule, until the stack is full.
+/// Deepest nesting of rules that is read from a file. In a format that does not describe itself, a few bytes
+/// can nest rules until the stack overflows.
 #[cfg(feature = "serde")]
 const DEEPEST: usize = 16;
 

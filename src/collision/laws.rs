@@ -4,8 +4,8 @@
 //! impulse and its opposite at the contact point. The rule is responsible for separation, energy and
 //! friction, and for symmetry.
 //!
-//! [`check`] asks a rule about tens of thousands of contacts, the same ones for the same seed, and fits into
-//! a plain test:
+//! [`check`] calls a rule for tens of thousands of contacts, the same contacts for the same seed, and fits
+//! into a plain test:
 //!
 //! ```
 //! use granular_edmd::collision::laws::{self, Promises};
@@ -84,7 +84,7 @@ pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violatio
     })
 }
 
-/// Checks all laws except that of energy.
+/// Checks all laws except the law of energy.
 fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     let numbers = [impulse.normal(), impulse.tangential(), impulse.couple()];
     let are_finite = numbers.iter().all(|number| number.is_finite());
@@ -164,7 +164,7 @@ fn check_rolling(contact: &Contact, impulse: Impulse, coefficient: f64) -> Resul
     )
 }
 
-/// Returns whether an impulse is none, or acts against this speed.
+/// Returns whether an impulse is zero, or acts against this speed.
 fn opposes(impulse: f64, speed: f64) -> bool {
     impulse == 0.0 || impulse.signum() * speed > 0.0
 }

@@ -13,7 +13,7 @@ use crate::{Fingerprint, ParameterError};
 /// A grain at rest then bounces at $`v_c`$, as if the ground trembled. Each collision transfers at least the
 /// momentum $`\mu v_c`$, so a contact that carries the mean force $`F`$ has at most $`F/\mu v_c`$ collisions
 /// in a unit of time, however much the rule loses. The cost of matter at rest is therefore known beforehand,
-/// and friction stays as it is.
+/// and friction stays unchanged.
 ///
 /// **The rule gains energy** where surfaces close more slowly than they part, at most
 /// $`\tfrac12\mu(v_c^2 - v_n^2)`$. Friction and faster collisions take this energy away. Matter at rest keeps
@@ -48,7 +48,7 @@ impl<R> LeastRebound<R> {
         Ok(Self { rule, speed: positive("least speed of rebound", speed)? })
     }
 
-    /// Returns the rule inside, which decides all faster rebounds.
+    /// Returns the inner rule, which decides all faster rebounds.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
@@ -67,7 +67,7 @@ impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
         if raised.normal() > impulse.normal() { raised.with_regime(Regime::LeastRebound) } else { raised }
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be distinguished.
+    /// Returns `None` if the inner rule has no fingerprint: two such remedies could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed))
     }

@@ -43,7 +43,7 @@ pub struct RollingFriction<R> {
 }
 
 impl<R> RollingFriction<R> {
-    /// Creates rolling friction of this coefficient μ_r over `rule`.
+    /// Creates a rule that adds rolling friction with the coefficient μ_r to `rule`.
     ///
     /// # Errors
     /// If the coefficient is not finite, or negative.
@@ -51,7 +51,7 @@ impl<R> RollingFriction<R> {
         Ok(Self { rule, coefficient: non_negative("coefficient of rolling friction", coefficient)? })
     }
 
-    /// Returns the rule inside, which decides everything but the couple.
+    /// Returns the inner rule, which decides everything but the couple.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
@@ -73,7 +73,7 @@ impl<R: CollisionRule> CollisionRule for RollingFriction<R> {
         impulse.with_couple(impulse.couple() + couple)
     }
 
-    /// Returns `None` if the rule inside has no fingerprint: two such rules could not be distinguished.
+    /// Returns `None` if the inner rule has no fingerprint: two such rules could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("RollingFriction").part(self.rule.fingerprint()?).number(self.coefficient))
     }

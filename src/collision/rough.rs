@@ -1,4 +1,4 @@
-//! Rough disks: the surfaces never slide.
+//! Rough disks, whose surfaces never slide.
 
 use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, inelasticity};
 use crate::{Fingerprint, ParameterError};

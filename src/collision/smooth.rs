@@ -3,7 +3,7 @@
 use super::{CollisionRule, Contact, Impulse, KnownRule, inelasticity};
 use crate::{Fingerprint, ParameterError};
 
-/// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential one.
+/// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential impulse.
 ///
 /// The normal impulse is $`\Delta_n = 2(1-q_n)\mu v_n`$.
 ///

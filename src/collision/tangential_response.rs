@@ -1,8 +1,8 @@
-//! The tangential direction of contacts that a remedy makes elastic.
+//! The tangential impulse in contacts that a remedy makes elastic.
 
 use super::{CollisionRule, Contact, Elastic, Impulse, Regime};
 
-/// The tangential impulse in a contact that [`ContactDuration`](super::ContactDuration) or
+/// The choice of the tangential impulse in a contact that [`ContactDuration`](super::ContactDuration) or
 /// [`ElasticBelow`](super::ElasticBelow) makes elastic.
 ///
 /// Published codes differ in this choice, so it is explicit here.

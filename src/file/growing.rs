@@ -1,4 +1,4 @@
-//! Files that grow by whole pieces.
+//! Files that grow by complete pieces.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use super::Locked;
 
-/// Bytes that can be written and cut off: a file, or its stand-in for tests.
+/// A medium that can be written and cut off: a file, or a stand-in for tests.
 pub(crate) trait Medium {
-    /// Writes bytes from a place on.
+    /// Writes bytes from a position on.
     fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()>;
-    /// Cuts the bytes to this length.
+    /// Cuts the medium to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
 }
 
@@ -37,7 +37,7 @@ impl Medium for Locked {
     }
 }
 
-/// A file that grows by whole pieces. If a write fails, the piece is cut off again.
+/// A file that grows by complete pieces. If a write fails, the piece is cut off again.
 #[derive(Debug)]
 pub(crate) struct Growing<M: Medium> {
     pub(crate) path: PathBuf,
@@ -71,7 +71,7 @@ impl<M: Medium> Growing<M> {
         Ok(())
     }
 
-    /// Writes after the last whole piece, and cuts off what may follow.
+    /// Writes after the last complete piece, and cuts off everything that may follow.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         let is_covered = self.is_cut && bytes.len() >= self.ending.len();
         self.is_cut = false;
@@ -88,7 +88,7 @@ impl<M: Medium> Growing<M> {
 mod tests {
     use super::*;
 
-    /// A drive with room for this many bytes.
+    /// A drive with room for a limited number of bytes.
     struct Small {
         bytes: Vec<u8>,
         room: usize,
@@ -110,7 +110,7 @@ mod tests {
     }
 
     /// Writes pieces of ten bytes, each with an ending of two that names the piece, to drives of many sizes.
-    /// After a failure the medium is as it was, and once there is room the same piece can be written.
+    /// After a failure the medium is unchanged, and once there is room the same piece can be written.
     #[test]
     fn a_full_disk_keeps_whole_pieces() {
         for room in 0..60 {

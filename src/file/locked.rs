@@ -3,12 +3,12 @@
 use std::fs::{File, TryLockError};
 use std::io;
 
-/// A file whose lock this process holds; dropping it gives the lock back.
+/// A file whose lock this process holds. Dropping the value releases the lock.
 #[derive(Debug)]
 pub struct Locked(File);
 
 impl Locked {
-    /// Waits until nobody else has the lock of a file, and takes it.
+    /// Waits until no other owner has the lock of a file, and locks the file.
     ///
     /// # Errors
     /// If the file system has no locks.
@@ -17,7 +17,7 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Takes the lock of a file, unless somebody has it.
+    /// Locks a file that nobody else has locked.
     ///
     /// # Errors
     /// If somebody has the lock, or the file system has no locks.
@@ -26,8 +26,8 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Takes the lock of a file, unless somebody has it. Goes on without a lock where the system has none,
-    /// and outside Unix, where a lock could keep other programs from reading.
+    /// Locks a file that nobody else has locked. Continues without a lock where the system has no locks, and
+    /// outside Unix, where a lock could keep other programs from reading.
     ///
     /// # Errors
     /// [`WouldBlock`](io::ErrorKind::WouldBlock) if somebody has the lock.
@@ -46,8 +46,8 @@ impl Locked {
 
 impl Drop for Locked {
     fn drop(&mut self) {
-        // A process that was forked meanwhile, to start another program, may have the file open, too. Closing
-        // the file here would then not release the lock.
+        // A process that was forked in the meantime to start another program may also have the file open.
+        // Closing the file here would then not release the lock.
         let _ = self.0.unlock();
     }
 }

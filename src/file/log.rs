@@ -1,4 +1,4 @@
-//! Logs: files that grow by whole pieces, each with a head, a checksum and contents.
+//! Logs: files that grow by complete pieces, each with a header, a checksum and contents.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -6,13 +6,14 @@ use std::path::Path;
 
 use super::{Damage, Growing, Seal};
 
-/// First bytes of every piece, by which the next one is found after a damage.
+/// First bytes of every piece, by which the next piece is found after damage.
 const MARK: [u8; 4] = *b"\xabPC\n";
 
-/// Number of bytes of the head of a piece.
+/// Number of bytes in the header of a piece.
 pub const HEAD: usize = 16;
 
-/// Bytes before the contents: mark, head, length, check of these, checksum of the contents.
+/// Bytes before the contents: mark, header, length, a checksum of these three, and a checksum of the
+/// contents.
 const BEFORE: usize = 4 + HEAD + 4 + 8 + 16;
 
 /// Bytes before the first piece: first bytes and version of the format.
@@ -20,9 +21,9 @@ const START: u64 = 12;
 
 /// A log: a file to which one process appends, while any number of others may read.
 ///
-/// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or a
-/// torn one at the end, which the next piece overwrites. Nothing locks the file: whoever appends must be
-/// alone.
+/// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or an
+/// incomplete piece at the end, which the next piece overwrites. Nothing locks the file: whoever appends must
+/// be alone.
 ///
 /// ```
 /// use granular_edmd::file::{Log, Seal, read_piece};
@@ -45,39 +46,39 @@ pub struct Log {
     file: Growing<File>,
 }
 
-/// The head of a piece, and the place of its contents.
+/// The header of a piece, and the position of its contents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Piece {
-    /// The head, for an index.
+    /// The header, for an index.
     pub head: [u8; HEAD],
-    /// Place of the contents in the file.
+    /// Position of the contents in the file.
     pub start: u64,
     /// Number of bytes of the contents.
     pub length: u32,
 }
 
 impl Piece {
-    /// Creates the piece with this head whose contents stand at this place.
+    /// Creates a piece from its header and the position of its contents.
     pub const fn new(head: [u8; HEAD], start: u64, length: u32) -> Self {
         Self { head, start, length }
     }
 }
 
-/// The pieces of a log, from some place on.
+/// The pieces of a log, from a given position on.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Pieces {
-    /// The pieces that are whole, in their order. Their checksums are not compared.
+    /// The complete pieces, in their order. Their checksums are not compared.
     pub pieces: Vec<Piece>,
-    /// End of the last one: the next look begins here.
+    /// End of the last complete piece, where the next reading begins.
     pub end: u64,
-    /// True if something that is no piece stands before a piece.
+    /// True if bytes that are not a piece precede a piece.
     pub is_damaged: bool,
 }
 
 impl Log {
-    /// Opens a log to append to it, which is created if it is not there.
+    /// Opens a log to append to it, and creates the log if it does not exist.
     ///
     /// # Errors
     /// If the file cannot be opened, or is of another format or version ([`io::ErrorKind::InvalidData`]).
@@ -92,7 +93,7 @@ impl Log {
         Ok(Self { file })
     }
 
-    /// Appends a piece, whole or not at all.
+    /// Appends a piece, completely or not at all.
     ///
     /// # Errors
     /// If the system cannot write it, or the contents have 4 GiB or more.
@@ -116,7 +117,7 @@ impl Log {
         self.file.medium.sync_data()
     }
 
-    /// Finds the pieces of a log from a place on: 0, or the [end](Pieces::end) of an earlier look.
+    /// Finds the pieces of a log from a position on: 0, or the [end](Pieces::end) of an earlier reading.
     ///
     /// # Errors
     /// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
@@ -126,8 +127,8 @@ impl Log {
         Ok(Pieces { pieces, end, is_damaged })
     }
 
-    /// Shows the pieces of a log from a place on, one by one, as [`read`](Self::read) finds them; returns the
-    /// end of the last one, and whether something that is no piece stands before a piece.
+    /// Passes the pieces of a log from a position on, one by one, to a closure, as [`read`](Self::read) finds
+    /// them. Returns the end of the last piece, and whether bytes that are not a piece precede a piece.
     ///
     /// # Errors
     /// The same as for [`read`](Self::read).
@@ -152,7 +153,7 @@ impl Log {
     }
 }
 
-/// Reads the contents of a piece, or tells that they are damaged.
+/// Reads the contents of a piece, or returns an error if they are damaged.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -167,7 +168,7 @@ pub fn read_piece(file: &mut File, piece: &Piece) -> io::Result<Result<Vec<u8>, 
     Ok(if blake3::hash(&contents).as_bytes()[..16] == bytes { Ok(contents) } else { Err(Damage::Changed) })
 }
 
-/// Returns whether a log begins as it should; false if it is cut short there.
+/// Returns whether a log begins with the right bytes; false if it is cut short before their end.
 fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
     let mut start = Vec::new();
     input.take(START).read_to_end(&mut start)?;
@@ -181,7 +182,7 @@ fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
     Err(io::Error::new(io::ErrorKind::InvalidData, told))
 }
 
-/// Finds the next whole piece at a place or after it, and goes behind it.
+/// Finds the next complete piece at a position or after it, and moves to its end.
 fn next(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
     if length.saturating_sub(place) < BEFORE as u64 {
         return Ok(None);
@@ -199,7 +200,7 @@ fn next(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Opti
     Ok(Some(piece))
 }
 
-/// Finds a whole piece after something that is none.
+/// Finds a complete piece after bytes that are not a piece.
 fn search(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
     let mut rest = Vec::new();
     input.seek(SeekFrom::Start(place))?;
@@ -212,7 +213,7 @@ fn search(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Op
     Ok(found)
 }
 
-/// Returns the piece that begins at a place of a file of this length, if one does that is whole.
+/// Returns the complete piece that begins at a position of a file of this length, if there is one.
 fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
     let (checked, rest) = before.split_at(4 + HEAD + 4);
     let head = *checked[4..].first_chunk()?;
@@ -240,7 +241,7 @@ mod tests {
         found.iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
     }
 
-    /// However a log is cut, its whole pieces stay, and the next piece follows them. Whatever byte is
+    /// However a log is cut, its complete pieces stay, and the next piece follows them. Whatever byte is
     /// changed, no other piece is lost, and none is read as what it is not.
     #[test]
     fn whole_pieces_survive_cuts_and_damage() {

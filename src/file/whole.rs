@@ -1,4 +1,4 @@
-//! Writing of files, whole or not at all.
+//! Writing of files, completely or not at all.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Beginning and ending of the names of files that are being written.
 const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 
-/// Writes a file whole or not at all. A reader never sees half of it, and if the write fails, an older file
-/// of that name stays.
+/// Writes a file completely or not at all. A reader never sees half of it, and if the write fails, an older
+/// file of that name stays.
 ///
 /// The bytes go to a temporary file in the same folder, which then takes the name of the file. Any number of
 /// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
@@ -23,7 +23,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Draft::with(path, bytes)?.finish()
 }
 
-/// Writes a file as [`write_whole`] does, but in a loss of power it may be lost or torn.
+/// Writes a file as [`write_whole`] does, except that a loss of power may lose or damage the file.
 ///
 /// # Errors
 /// If the system cannot write it.
@@ -31,8 +31,8 @@ pub fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Draft::with(path, bytes)?.place()
 }
 
-/// A file that is written piece by piece, and takes its name when it is whole. A draft that is dropped leaves
-/// nothing.
+/// A file that is written piece by piece, and gets its name when it is complete. A draft that is dropped
+/// leaves nothing.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,
@@ -41,7 +41,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// Begins a file beside its place.
+    /// Begins a file under a temporary name in the same folder.
     ///
     /// # Errors
     /// If the path names no file, or the system cannot create one beside it.
@@ -70,10 +70,10 @@ impl Draft {
         Ok(draft)
     }
 
-    /// Puts the file in its place, where it outlasts a loss of power.
+    /// Renames the finished file to its final name, so that it survives a loss of power.
     ///
     /// # Errors
-    /// If the system cannot write it. An older file of that name is then as it was.
+    /// If the system cannot write the file. An older file of that name then stays unchanged.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         self.file.get_ref().sync_all()?;
@@ -86,7 +86,7 @@ impl Draft {
     fn place(mut self) -> io::Result<()> {
         self.file.flush()?;
         fs::rename(&self.temporary, &self.path)?;
-        // Nothing is left to remove.
+        // After the renaming, there is no temporary file to remove.
         self.temporary.clear();
         Ok(())
     }
@@ -94,8 +94,8 @@ impl Draft {
 
 impl Drop for Draft {
     fn drop(&mut self) {
-        // The temporary file is of no use any more. A failure to remove it is ignored, since the first error
-        // is the one to report.
+        // The temporary file is no longer needed. A failure to remove it is ignored, since the first error is
+        // the one to report.
         if !self.temporary.as_os_str().is_empty() {
             let _ = fs::remove_file(&self.temporary);
         }
@@ -113,11 +113,11 @@ pub fn is_temporary(name: &OsStr) -> bool {
         if is_decimal(process) && is_decimal(count) && is_hexadecimal(random))
 }
 
-/// Returns a name that no other writer has.
+/// Returns a name that no other writer uses.
 ///
-/// The process number tells programs on this host apart, the count tells writers in this process apart, and
-/// the random number tells hosts apart that share a disk. The file's own name is left out, so that the result
-/// cannot become too long.
+/// The process number distinguishes programs on this host, the count distinguishes writers in this process,
+/// and the random number distinguishes hosts that share a disk. The file's own name is left out, so that the
+/// result cannot become too long.
 pub fn unique_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);

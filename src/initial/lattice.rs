@@ -1,4 +1,4 @@
-//! Disks on a lattice.
+//! Placement of disks on a lattice.
 
 use glam::DVec2;
 
@@ -7,15 +7,15 @@ use crate::boundary::{Boundary, Domain, Probe};
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
-/// Number of successive rows without a free place after which the search gives up. Walls may cover the floor,
-/// and under an open top there is no last row.
+/// Number of consecutive rows without a free site after which the search ends. Walls may cover the floor, and
+/// under an open top there is no last row.
 const MOST_EMPTY_ROWS: usize = 1000;
 
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
 ///
-/// Over a floor that moves only vertically, the columns would hop in line for ever, which a run
-/// [warns](crate::simulation::Warning::OneDirection) of. Give the disks small velocities
+/// Over a floor that moves only vertically, the columns would hop in line forever, of which a run
+/// [warns](crate::simulation::Warning::OneDirection). Give the disks small velocities
 /// ([`with_maxwellian_velocities`](super::with_maxwellian_velocities)).
 ///
 /// Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for that. Sites
@@ -154,6 +154,6 @@ fn columns(room: &Domain, spacing: f64) -> (u64, f64) {
 /// Returns the number of rows, which is huge under an open top.
 fn rows(room: &Domain, spacing: f64) -> u64 {
     let intervals = ((room.top - room.bottom) / spacing).floor();
-    // If top and bottom are periodic, a row at the top would be the first one again.
+    // If top and bottom are periodic, a row at the top would coincide with the first row.
     if room.periodic_ends { intervals as u64 } else { (intervals + 1.0) as u64 }
 }

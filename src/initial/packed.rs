@@ -15,7 +15,7 @@ use packing::Packing;
 /// Number of growth steps with too little change after which the disks count as jammed.
 const PATIENCE: usize = 100;
 
-/// Share of the missing area that must be gained in these steps.
+/// Fraction of the missing area that must be gained in these steps.
 const LEAST_GAIN: f64 = 0.05;
 
 /// Relative amount by which disks are enlarged while they are packed, so that no two overlap after rounding.
@@ -27,8 +27,7 @@ const APART: f64 = 1e-9;
 /// The disks start small at random places, and move and collide without loss. Step by step, each of them
 /// grows into the room that it finds, until it has its full radius. Two sizes reach an area fraction of 0.8
 /// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
-/// grains with boundaries between them. The disks have the same order, radii, masses and velocities as
-/// before.
+/// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
 ///
 /// The disks are packed in the interior of the boundary, in which walls must not move. To pack disks around
 /// one that has its place already, put that one into the boundary as
@@ -90,7 +89,8 @@ fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
     PlacementError::NoRoom { count, placed, radius: radii.get(placed).copied().unwrap_or(radius), interior }
 }
 
-/// Moves and grows the disks alternately until all have their radii, or jam in a room of this area.
+/// Moves and grows the disks alternately until all have reached their radii, or are jammed. `area` is the
+/// free area of `room`.
 fn grown<'a, B: Boundary + ?Sized>(
     room: &Enclosure<B>,
     disks: &'a [Disk],

@@ -8,8 +8,8 @@ use crate::quantity::{accept, positive};
 use crate::random::uniform;
 use crate::{Disk, ParameterError};
 
-/// Largest distance from the median of log-normal radii, in standard deviations. Normal numbers made from
-/// doubles do not come as far.
+/// Largest distance from the median of log-normal radii, in standard deviations. No normal number made from a
+/// double is as large.
 const FARTHEST: f64 = 9.0;
 
 /// A distribution of radii within bounds.

@@ -1,4 +1,4 @@
-//! Disks at random places.
+//! Placement of disks at random.
 
 use glam::DVec2;
 use rand::SeedableRng;
@@ -53,7 +53,7 @@ pub fn random<B: Boundary + ?Sized>(
 
 /// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`.
 ///
-/// Everything else is as in [`random`].
+/// In all other respects, the function works like [`random`].
 ///
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one
@@ -93,8 +93,8 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns the rectangle for the center of a disk; `None` if the disk is too large for the interior, or would
-/// overlap its own image at periodic sides or ends.
+/// Returns the rectangle for the center of a disk, or `None` if the disk is too large for the interior, or
+/// would overlap its own image at periodic sides or ends.
 fn room_for(interior: &Domain, radius: f64) -> Option<Domain> {
     let room = room(interior, radius);
     let fits = |period: f64| period == 0.0 || 2.0 * radius <= period;

@@ -1,4 +1,4 @@
-//! Disks of any sizes in rows.
+//! Placement of disks of any sizes in rows.
 
 use glam::DVec2;
 
@@ -48,7 +48,7 @@ pub fn placed_in_rows<B: Boundary + ?Sized>(
     Err(PlacementError::NoRoom { count: disks.len(), placed: most, radius, interior: boundary.interior() })
 }
 
-/// The rows as far as they are filled.
+/// The rows that are being filled.
 struct Rows<'a, B: ?Sized> {
     boundary: &'a B,
     interior: Domain,

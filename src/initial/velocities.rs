@@ -1,4 +1,4 @@
-//! Disks with the velocities of a gas.
+//! The velocities of a gas, for disks at given positions.
 
 use glam::DVec2;
 use rand::SeedableRng;
@@ -10,7 +10,7 @@ use crate::{Disk, ParameterError};
 
 /// Returns the same disks with Maxwellian velocities of this temperature.
 ///
-/// The center of mass is at rest, and all angular velocities stay as they are.
+/// The center of mass is at rest, and all angular velocities stay unchanged.
 ///
 /// Each component is normal with variance $`T/m`$. The total momentum is then removed, in proportion to the
 /// masses.

@@ -32,7 +32,7 @@ pub(crate) fn eight(numbers: &[f64; 8]) -> __m512d {
     unsafe { _mm512_loadu_pd(numbers.as_ptr()) }
 }
 
-/// Reads one number, and none of its neighbors with it.
+/// Reads one number without any of its neighbors.
 #[allow(unsafe_code)]
 #[inline(always)]
 pub(crate) fn one(number: &u32) -> u32 {

@@ -1,4 +1,4 @@
-//! Bisection for the place at which a condition ceases to hold.
+//! Bisection for the number at which a condition ceases to hold.
 
 /// Returns the last number from `inside`, where `holds` is true, toward `outside`, where it is false.
 ///

@@ -67,8 +67,8 @@ pub struct DirectSimulation<R> {
 }
 
 impl<R: CollisionRule> DirectSimulation<R> {
-    /// Creates a gas of these disks, whose places do not matter, with this number of disks per area times
-    /// the contact value, $`n\chi`$.
+    /// Creates a gas of these disks, whose positions do not matter, with this product of the number density
+    /// and the contact value, $`n\chi`$.
     ///
     /// # Errors
     /// If there are fewer than two disks, or the density is not finite and positive.
@@ -85,7 +85,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         &self.disks
     }
 
-    /// Returns the disks, to change them: a driving of a simulation takes them as they are.
+    /// Returns the disks, in order to change them. A driving of a simulation can be applied to them.
     pub fn disks_mut(&mut self) -> &mut [Disk] {
         &mut self.disks
     }
@@ -109,8 +109,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
         finite("time", end)?;
         accept(end >= self.time, "time", "at least the present one", end)?;
         while self.time < end {
-            // The bounds are found anew now and then: a gas that cools becomes slow, and drivings change
-            // disks.
+            // The bounds are computed anew at intervals, because a cooling gas becomes slow and drivings
+            // change disks.
             let largest = |of: fn(&Disk) -> f64| self.disks.iter().map(of).fold(0.0, f64::max);
             (self.widest, self.fastest) =
                 (2.0 * largest(Disk::radius), largest(|disk| disk.velocity().length()));
@@ -119,7 +119,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
                 let pairs = self.density * (self.disks.len() - 1) as f64 * PI;
                 self.time -= libm::log(uniform(&mut self.generator)) / (pairs * self.largest_rate());
                 if self.time >= end {
-                    // Waiting times have no memory, so the next run draws a new one.
+                    // Waiting times have no memory, so the next run draws a new waiting time.
                     self.time = end;
                     return Ok(());
                 }
@@ -129,7 +129,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
         Ok(())
     }
 
-    /// Draws a pair and a direction, and lets it collide with its share of the largest rate.
+    /// Draws a pair and a direction. The pair collides with a probability equal to its rate over the largest
+    /// rate.
     fn attempt(&mut self) -> Result<(), ParameterError> {
         let count = self.disks.len();
         let first = self.index(count);

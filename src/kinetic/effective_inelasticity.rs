@@ -15,7 +15,7 @@ use crate::quantity::{accept, positive};
 ///
 /// in `[0, 1/2]`, for a mean energy change in $`[-T, 0]`$, with $`T`$ the translational temperature. No gas
 /// of smooth disks is outside that range: with restitution zero they lose exactly $`T`$, and they never gain
-/// energy. Disks with friction can lose more, and a Monte Carlo mean can be above zero within its error. The
+/// energy. Disks with friction can lose more, and a Monte Carlo mean can exceed zero within its error. The
 /// function refuses such values instead of clipping them.
 ///
 /// # Errors

@@ -88,7 +88,7 @@ impl IsoLine {
         Ok([pieces(frictions, on(0)), pieces(frictions, on(1))].concat())
     }
 
-    /// Returns both real values of q at a friction, in ascending order, also those outside the plane.
+    /// Returns both real values of q at a friction, in ascending order, including values outside the plane.
     ///
     /// The values solve $`a q^2 - b q + c = 0`$ with
     /// $`c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T`$.

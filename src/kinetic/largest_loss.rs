@@ -7,7 +7,7 @@ use crate::collision::Frictional;
 /// Returns the static friction at which the mean energy loss is largest, for the other coefficients of
 /// `rule`.
 ///
-/// The ratio $`\rho = \kappa_d/\kappa_s`$ also stays as it is (1 if the rule has no friction). At a
+/// The ratio $`\rho = \kappa_d/\kappa_s`$ also stays unchanged (1 if the rule has no friction). At a
 /// stationary point the sticking probability $`s`$ depends on $`\rho`$ and $`q_t`$ alone; for $`\rho = 1`$
 ///
 /// ```math

@@ -22,8 +22,8 @@ const FIRST_ROUND: u64 = 16;
 /// A Monte Carlo average of the energy change per collision, for any rule.
 ///
 /// In units of $`\sqrt S`$ and $`\sqrt V`$ (see [`Maxwellian`]), the closing and the slip speed are the
-/// radius and the height of an isotropic vector of length $`R`$ and polar angle $`\theta`$. Samples are drawn
-/// where they matter:
+/// radius and the height of an isotropic vector of length $`R`$ and polar angle $`\theta`$. Samples are
+/// concentrated where they matter:
 ///
 /// - The angle is drawn uniformly, in 64 strata, so that grazing collisions get more samples than they would
 ///   by chance.

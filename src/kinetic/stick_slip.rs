@@ -22,7 +22,7 @@ impl StickSlip {
         if friction == 0.0 {
             return Self { sine: 0.0, cosine: 1.0 };
         }
-        // Only the ratio of the sides counts. Friction above 1 divides one side instead of multiplying the
+        // Only the ratio of the sides matters. Friction above 1 divides one side instead of multiplying the
         // other, so that neither side overflows at any friction.
         let (opposite, adjacent) =
             if friction > 1.0 { (opposite, adjacent / friction) } else { (opposite * friction, adjacent) };

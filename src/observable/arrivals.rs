@@ -41,9 +41,9 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// Creates an observer of these walls with the intervals of this clock.
+    /// Creates an observer of arrivals at these walls, counted over the intervals between these times.
     ///
-    /// A run with a boundary that has no such wall ends with an error.
+    /// A run whose boundary lacks one of these walls ends with an error.
     pub fn at(walls: impl IntoIterator<Item = usize>, times: SampleTimes) -> Self {
         let (walls, stretch) = (walls.into_iter().collect(), Stretch::new(times));
         Self { walls, stretch, present: 0, times: Vec::new(), counts: Vec::new(), fault: None }
@@ -59,7 +59,7 @@ impl Arrivals {
         &self.counts
     }
 
-    /// Returns the mean number of arrivals for each unit of time, with its error.
+    /// Returns the mean number of arrivals per unit of time, with its error.
     ///
     /// # Errors
     /// If no interval is complete yet.

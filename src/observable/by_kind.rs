@@ -37,12 +37,12 @@ impl<T> OfKind<T> {
         Self { kind, inner }
     }
 
-    /// Returns the observable or observer inside.
+    /// Returns the inner observable or observer.
     pub const fn inner(&self) -> &T {
         &self.inner
     }
 
-    /// Unwraps the observable or observer inside.
+    /// Unwraps the inner observable or observer.
     pub fn into_inner(self) -> T {
         self.inner
     }
@@ -60,7 +60,7 @@ impl<T: Observable> Observable for OfKind<T> {
     }
 }
 
-/// The observable inside gives the columns, with the kind at the end of their names: `center_y_of_kind_1`.
+/// The inner observable defines the columns, with the kind at the end of their names: `center_y_of_kind_1`.
 impl<T: Tabular> Tabular for OfKind<T> {
     fn headings(&self) -> Vec<Heading> {
         let of_kind = |heading: &Heading| format!("{}_of_kind_{}", heading.name(), self.kind.number());
@@ -113,7 +113,7 @@ impl<T: Observer> Observer for OfKind<T> {
 /// An observer that sees only collisions between two kinds, in either order, of two disks or of a disk and a
 /// wall.
 ///
-/// It passes on samples as they are.
+/// It passes samples on unchanged.
 ///
 /// ```
 /// use granular_edmd::Kind;
@@ -141,12 +141,12 @@ impl<T> BetweenKinds<T> {
         Self { kinds: [first, second], inner }
     }
 
-    /// Returns the observer inside.
+    /// Returns the inner observer.
     pub const fn inner(&self) -> &T {
         &self.inner
     }
 
-    /// Unwraps the observer inside.
+    /// Unwraps the inner observer.
     pub fn into_inner(self) -> T {
         self.inner
     }

@@ -15,7 +15,7 @@ use crate::Disk;
 /// circular mean (Bai and Breen 2008): the direction of $`\sum m_i e^{2\pi i x_i/L}`$, as a place in the
 /// domain. It moves along with the disks, also across the seam, and is the center of mass if they are
 /// symmetric about it. It is NaN if the sum vanishes, as for disks that are spread evenly, and noise if it
-/// nearly does. For the way of a center, take displacements of
+/// nearly does. For the path of a center, use displacements of
 /// [unwrapped](crate::boundary::Domain::unwrapped) positions.
 ///
 /// ```
@@ -62,7 +62,7 @@ fn circular_mean(
     period: f64,
     coordinate: impl Fn(DVec2) -> f64,
 ) -> f64 {
-    /// Length of the mean direction that is rounding.
+    /// Length of the mean direction below which it is due to rounding.
     const ROUNDING: f64 = 1e-12;
     let turns = |disk: &Disk| (coordinate(disk.position()) - low) / period;
     let sum: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * direction(TAU * turns(disk))).sum();

@@ -59,7 +59,7 @@ impl CollisionCounts {
         }
     }
 
-    /// Returns the number of disk–disk collisions per disk and time, if all of them were counted in this
+    /// Returns the rate of disk–disk collisions per disk, if all counted collisions happened within this
     /// duration.
     ///
     /// Each collision counts for both partners.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::collision::{Contact, Impulse};
 
-/// The thing that a disk collided with.
+/// The partner of a disk in a collision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Partner {
     /// Another disk, by its index.
@@ -68,10 +68,10 @@ impl Collision {
     ///
     /// The engine fills all fields itself.
     ///
-    /// The other fields have simple values; set those that matter. The normal points up, the position is the
-    /// origin, the velocities and the ids are 0, and the disks have radius 1/2 (a `distance` of 1, or of 1/2
-    /// to a wall). The `energy_change` follows from the impulse, which is right for two disks and for a wall
-    /// at rest.
+    /// The other fields have simple values; set the fields that matter. The normal points up, the position is
+    /// the origin, the velocities and the ids are 0, and the disks have radius 1/2 (a `distance` of 1, or of
+    /// 1/2 to a wall). The `energy_change` follows from the impulse, which is right for two disks and for a
+    /// wall at rest.
     pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
         let distance = match partner {
             Partner::Disk(_) => 1.0,

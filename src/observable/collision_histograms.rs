@@ -39,7 +39,7 @@ pub struct CollisionHistograms {
     obliqueness: Histogram,
     closing_speed: Histogram,
     impulse: Histogram,
-    /// The reason why nothing can be measured in this run.
+    /// The reason why this run's collisions cannot be measured.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }

@@ -1,7 +1,7 @@
 //! Compositions of observers and observables.
 //!
-//! A composed observer passes all messages on to all its parts, but shows a sample only to the parts that
-//! asked for it. Its verdict is the first failure of a part. Without a failure, it stops the run if one of
+//! A composed observer passes all messages on to all its parts, but passes a sample only to the parts that
+//! requested it. Its verdict is the first failure of a part. Without a failure, it stops the run if one of
 //! its parts does.
 
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ forward! { Observer for [&mut T, Box<T>] {
     fn verdict(&mut self) -> Verdict;
 }}
 
-/// Makes observers of the types that hold a number of observers, or one that may be absent.
+/// Implements `Observer` for types that hold several observers, or one that may be absent.
 macro_rules! compose_all {
     ($($holder:ty),+) => {
         $(impl<T: Observer> Observer for $holder {
@@ -74,7 +74,8 @@ macro_rules! compose_all {
 
 compose_all!([T], Vec<T>, Option<T>);
 
-/// Shows the snapshot to an observer that asked for it, but not to its neighbors that wait for later times.
+/// Passes the snapshot to an observer that requested a sample at this time, but not to observers that wait
+/// for later times.
 fn sample_if_due<T: Observer>(observer: &mut T, snapshot: &Snapshot<'_>) {
     if observer.next_sample() <= snapshot.time() {
         observer.on_sample(snapshot);
@@ -87,12 +88,12 @@ fn earlier(first: f64, second: f64) -> f64 {
     if first < second || first.is_nan() { first } else { second }
 }
 
-/// Returns a verdict that stops if one of the two does.
+/// Combines two verdicts: the result stops the run if one of the two does.
 fn either(first: ControlFlow<()>, second: ControlFlow<()>) -> ControlFlow<()> {
     if first.is_break() { first } else { second }
 }
 
-// A macro is needed, because a function cannot be generic over the length of a tuple.
+// The implementations come from a macro, because a function cannot be generic over the length of a tuple.
 macro_rules! compose_tuple {
     ($($name:ident $index:tt),+) => {
         impl<$($name: Observer),+> Observer for ($($name,)+) {

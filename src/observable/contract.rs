@@ -52,10 +52,10 @@ impl ObserverError {
 
 crate::error::from_causes! { ObserverError from &str, String, std::io::Error, ParameterError }
 
-/// An observer's decision on the run: go on, stop here, or fail.
+/// An observer's decision on the run: continue, stop, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
-/// A watcher of a run, which receives each collision, and samples at the times that it asks for.
+/// An observer of a run, which receives each collision, and samples at the times that it requests.
 ///
 /// All methods have a default, which does nothing. All times are absolute, as in
 /// [`Simulation::time`](crate::Simulation::time).
@@ -65,7 +65,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    time, is stopped, or fails.
 /// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
 ///    changed.
-/// 3. `on_sample` is called at the time that `next_sample` asked for, unless that is after the end of the
+/// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
 ///    run. The sample has seen all events up to and at its time. A time before the start of the run is
 ///    sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
@@ -79,11 +79,11 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// takes each step.
 ///
 /// # What an observer guarantees
-/// 1. `next_sample` is never NaN. Its value is infinite if no sample is wanted.
+/// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
 /// 2. After a sample, `next_sample` names a later time than the sample's.
-/// 3. After `on_start`, `next_sample` names no time before the start, except by rounding.
-/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
-///    these calls, and would notice another change too late.
+/// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
+/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine calls `next_sample`
+///    after these calls, and would notice another change too late.
 /// 5. Samples do not depend on how a run is cut: if a run starts at the time at which the last one ended,
 ///    `next_sample` is what it was at the end.
 ///
@@ -111,12 +111,12 @@ pub trait Observer {
         let _ = collision;
     }
 
-    /// Returns the time at which the observer wants the next sample; infinite for never.
+    /// Returns the time of the next sample that the observer requests, or infinity if it requests none.
     fn next_sample(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Receives the sample that was asked for.
+    /// Receives the requested sample.
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let _ = snapshot;
     }
@@ -138,20 +138,21 @@ pub trait Observer {
         let _ = end;
     }
 
-    /// Decides whether the run goes on, stops here, or fails.
+    /// Decides whether the run continues, stops, or fails.
     ///
     /// # Errors
-    /// If the observer cannot go on, for example because a file cannot be written or a quantity has left its
-    /// range. The run then fails, too.
+    /// If the observer cannot continue, for example because a file cannot be written or a quantity has left
+    /// its range. The run then fails, too.
     fn verdict(&mut self) -> Verdict {
         Ok(ControlFlow::Continue(()))
     }
 }
 
-/// Returns the verdict of an observer that may have noticed that it cannot go on.
+/// Returns the verdict of an observer, which fails the run if the observer has noted a fault.
 #[inline]
 pub(crate) fn verdict<E: Into<ObserverError>>(fault: &mut Option<E>) -> Verdict {
-    // The engine asks after each collision, so the usual answer comes first and writes nothing.
+    // The engine asks for a verdict after each collision, so the usual verdict comes first and writes
+    // nothing.
     if fault.is_none() {
         return Ok(ControlFlow::Continue(()));
     }

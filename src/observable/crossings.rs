@@ -48,7 +48,7 @@ pub struct Crossings {
     backward: Vec<u64>,
 }
 
-/// The free flight of a center since this time.
+/// The free flight of a center since `time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Free {
@@ -58,7 +58,8 @@ struct Free {
 }
 
 impl Crossings {
-    /// Creates a counter on the segment between two points, with the intervals of this clock.
+    /// Creates a counter of crossings of the segment between two points, over the intervals between these
+    /// times.
     ///
     /// In a periodic domain, the images of the segment count, too.
     ///
@@ -95,7 +96,7 @@ impl Crossings {
         &self.backward
     }
 
-    /// Returns the mean of forward less backward crossings for each unit of time, with its error.
+    /// Returns the mean number of forward minus backward crossings per unit of time, with its error.
     ///
     /// # Errors
     /// If no interval is complete yet.
@@ -167,7 +168,7 @@ impl Crossings {
         columns.flat_map(rows).map(shift).collect()
     }
 
-    /// Counts all flights up to a snapshot, and takes its disks as they are.
+    /// Counts the crossings of all flights up to a snapshot, and begins new flights with its disks.
     fn look(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
             self.go_on(disk.id(), Free::of(disk, snapshot.time()));
@@ -180,7 +181,7 @@ impl Crossings {
 fn sign_changes([c, b, a]: [f64; 3], end: f64) -> impl Iterator<Item = (f64, bool)> {
     let discriminant = b * b - 4.0 * a * c;
     let root = discriminant.max(0.0).sqrt();
-    // Both zeros in the forms in which nothing cancels.
+    // Both zeros are computed in forms in which nothing cancels.
     let sum = -0.5 * (b + root.copysign(b));
     let (first, second) = (sum / a, c / sum);
     let zeros = if a == 0.0 { [-c / b, f64::NAN] } else { [first.min(second), first.max(second)] };

@@ -33,7 +33,7 @@ pub struct EnergyChange {
     /// The system that is measured, and the end of its latest run.
     #[cfg_attr(feature = "serde", serde(default))]
     system: System,
-    /// The reason why this run cannot be added.
+    /// The reason why the collisions of this run cannot be added.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }

@@ -19,9 +19,9 @@ pub struct FieldCell {
     pub center: DVec2,
     /// Number of disks seen in the cell, over all samples.
     pub count: u64,
-    /// Disks per area that walls leave free.
+    /// Number of disks divided by the area that walls leave free.
     pub number_density: f64,
-    /// Area of the disks per area that walls leave free.
+    /// Area of the disks divided by the area that walls leave free.
     ///
     /// Each disk counts in the cell of its center.
     pub packing_fraction: f64,
@@ -37,12 +37,11 @@ pub struct FieldCell {
 
 /// Density, flow and temperatures on a grid, averaged over samples: for example, to show convection rolls.
 ///
-/// A disk counts in the cell of its center. Densities are those in the free part of a cell, which
+/// A disk counts in the cell of its center. Densities refer to the free part of a cell, which
 /// [`Boundary::area`](crate::boundary::Boundary::area) gives at each sample; a run ends with an error if the
-/// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*,
-/// over all samples. A flow that changes between samples, such as a roll that reverses, counts as
-/// temperature. If $`n`$ disks are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$,
-/// for independent samples.
+/// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*, over all samples.
+/// A flow that changes between samples, such as a roll that reverses, counts as temperature. If $`n`$ disks
+/// are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$, for independent samples.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
@@ -119,7 +118,7 @@ impl Fields {
         let size = self.grid.cell_size();
         let cell = row * self.grid.shape().0 + column;
         let CellSums { count, area, velocity: [x, y], angular_velocity } = self.sums[cell];
-        // A cell without free area has no disks.
+        // A cell without free area holds no disks.
         let free = if self.free[cell] == 0.0 { 1.0 } else { self.free[cell] };
         let seen = size.x * size.y * free;
         let disks = count.max(1) as f64;

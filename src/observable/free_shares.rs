@@ -1,4 +1,4 @@
-//! The shares of regions that walls leave free.
+//! The shares of the areas of regions that walls leave free.
 
 use glam::DVec2;
 
@@ -8,7 +8,7 @@ use crate::ParameterError;
 use crate::boundary::Region;
 use crate::quantity::accept;
 
-/// The free shares of some regions. They are kept as long as no wall has moved.
+/// The free shares of several regions. They are kept as long as no wall has moved.
 ///
 /// They are no part of what was measured: they go into no file, and all are equal.
 #[derive(Debug, Clone, Default)]
@@ -19,8 +19,8 @@ pub(super) struct FreeShares {
 }
 
 impl FreeShares {
-    /// Returns the share of each region that matter can fill at the time of a snapshot; NaN where it is not
-    /// known. The regions must always be the same ones.
+    /// Returns the share of each region that matter can fill at the time of a snapshot, or NaN where the
+    /// share is not known. The regions must always be the same ones.
     pub(super) fn of(&mut self, snapshot: &Snapshot<'_>, regions: impl Iterator<Item = Region>) -> &[f64] {
         let walls = 0..snapshot.wall_count();
         let points: Option<Vec<DVec2>> = walls.map(|wall| snapshot.wall_point(wall)).collect();

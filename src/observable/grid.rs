@@ -82,7 +82,8 @@ impl Grid {
         cells.contains(scaled).then(|| scaled.y as usize * self.columns + scaled.x as usize)
     }
 
-    /// Checks that some of the cells lie inside the domain of a run, which would else measure nothing.
+    /// Checks that some of the cells lie inside the domain of a run. Otherwise, the run would measure
+    /// nothing.
     pub(super) fn check_against(&self, domain: &Domain) -> Result<(), ParameterError> {
         let Region { min, max, .. } = self.region;
         meets("left edge of the grid", [min.x, max.x], [domain.left, domain.right])?;
@@ -101,19 +102,19 @@ impl Grid {
     }
 }
 
-/// Checks that one range meets another, for the name of its lower end.
+/// Checks that a range overlaps another one, with an error that names the range's lower end.
 fn meets(name: &'static str, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> Result<(), ParameterError> {
     let requirement = "where some of the measure is inside the domain";
     accept(low < to && high > from, name, requirement, low).map(|_| ())
 }
 
-/// Checks that some of a profile by height lies inside the domain of a run.
+/// Checks that a part of a profile by height lies inside the domain of a run.
 pub(super) fn check_heights(bins: &Bins, domain: &Domain) -> Result<(), ParameterError> {
     let heights = [bins.edge(0), bins.edge(bins.count())];
     meets("bottom of the profile", heights, [domain.bottom, domain.top])
 }
 
-/// Returns the region if it is finite and has an area.
+/// Returns the region, or an error if it is not finite or has no area.
 pub(super) fn checked_region(region: Region) -> Result<Region, ParameterError> {
     let Region { min, max, .. } = region;
     let edges = [min.x, min.y, max.x, max.y];
@@ -124,7 +125,7 @@ pub(super) fn checked_region(region: Region) -> Result<Region, ParameterError> {
     Ok(region)
 }
 
-/// Returns the region if it lies inside the domain of a run.
+/// Returns the region, or an error if it does not lie inside the domain of a run.
 pub(super) fn inside(region: Region, domain: &Domain) -> Result<Region, ParameterError> {
     let (Region { min, max, .. }, Domain { left, right, bottom, top, .. }) = (region, *domain);
     for (edge, is_inside) in
@@ -135,7 +136,7 @@ pub(super) fn inside(region: Region, domain: &Domain) -> Result<Region, Paramete
     Ok(region)
 }
 
-/// Reads a region from a file that may have none, and checks it with [`checked_region`].
+/// Reads an optional region from a file, and checks it with [`checked_region`].
 #[cfg(feature = "serde")]
 pub(super) fn region_from_file<'de, D: serde::Deserializer<'de>>(
     file: D,
@@ -170,7 +171,7 @@ impl CellSums {
         DVec2::new(self.velocity[0].mean, self.velocity[1].mean)
     }
 
-    /// Checks that disks can have given the sums from a file.
+    /// Checks that the sums from a file are sums over possible disks.
     #[cfg(feature = "serde")]
     pub(super) fn check(&self) -> Result<(), ParameterError> {
         crate::quantity::non_negative("area of the disks in a cell", self.area)?;

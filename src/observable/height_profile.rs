@@ -26,12 +26,12 @@ pub struct DenseLayer {
 }
 
 impl DenseLayer {
-    /// Creates a layer at this height with this packing fraction and the least one below it.
+    /// Creates a layer from its height, its packing fraction, and the least packing fraction below it.
     pub const fn new(height: f64, packing_fraction: f64, least_below: f64) -> Self {
         Self { height, packing_fraction, least_below }
     }
 
-    /// Returns the densest layer of a profile, the lowest of equal ones.
+    /// Returns the densest layer of a profile, and of equally dense layers the lowest.
     ///
     /// The profile gives heights and packing fractions from the bottom up.
     ///
@@ -125,8 +125,8 @@ impl HeightProfile {
         fractions.enumerate().map(|(bin, fraction)| (self.bins.middle(bin), fraction))
     }
 
-    /// Returns the bin with the largest packing fraction, the lowest of equal ones, or `None` before the
-    /// first sample.
+    /// Returns the bin with the largest packing fraction, and of equally dense bins the lowest, or `None`
+    /// before the first sample.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }
@@ -169,7 +169,7 @@ impl Accumulator for HeightProfile {
         let shares = self.shares.of(snapshot, layers(self.bins, &snapshot.domain()));
         self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         let (width, period) = (snapshot.domain().width(), snapshot.domain().periods().y);
-        // The images hold the area beyond a periodic end.
+        // The periodic images provide the areas of disks that extend beyond a periodic end.
         let shifts = [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
         for disk in snapshot.disks() {
             for shift in shifts.clone() {

@@ -52,7 +52,8 @@ pub struct HexaticOrder {
 }
 
 impl HexaticOrder {
-    /// Creates an observable that takes disks within this distance of their centers as neighbors.
+    /// Creates an observable for which disks are neighbors if the distance of their centers is at most
+    /// `range`.
     ///
     /// # Errors
     /// If the range is not finite and positive.

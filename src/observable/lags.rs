@@ -9,13 +9,14 @@ use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
 use crate::{Disk, ParameterError};
 
-/// Displacement between two runs that is rounding, relative to the radius of a disk.
+/// Largest displacement between two runs that counts as rounding, relative to the radius of a disk.
 const ROUNDING: f64 = 1e-9;
 
 /// Largest number of lags.
 const MOST_LAGS: usize = 1 << 20;
 
-/// The last samples of a run, and means over pairs of a sample and a later one: every sample is an origin.
+/// The last samples of a run, and means over pairs of samples. Every sample is the origin of pairs with later
+/// samples.
 ///
 /// Samples are equally spaced. After a gap, or before another run, it forgets the samples so far and keeps
 /// the means.
@@ -29,7 +30,7 @@ pub(super) struct Lags<V> {
     past: VecDeque<V>,
     /// Means for the lags of 0, 1, 2, … intervals.
     means: Vec<BlockedMean>,
-    /// Places of the disks at the end of the latest run.
+    /// Unwrapped positions of the disks at the end of the latest run.
     places: Option<PerDisk<DVec2>>,
 }
 
@@ -104,7 +105,7 @@ impl<V> Lags<V> {
     }
 }
 
-/// Returns the unwrapped places of all disks.
+/// Returns the unwrapped positions of all disks.
 pub(super) fn places_in(snapshot: &Snapshot<'_>) -> PerDisk<DVec2> {
     let domain = snapshot.domain();
     PerDisk::of(snapshot.disks(), |disk| domain.unwrapped(disk))

@@ -13,7 +13,7 @@ use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "observer";
 
-/// Largest number of samples in a short run of the script, and in the last one.
+/// Largest number of samples in a short run of the script, and in the last run.
 const SAMPLES: usize = 50;
 const MANY_SAMPLES: usize = 10_000;
 
@@ -23,13 +23,13 @@ const WALLS: usize = 4;
 const DOMAIN: Domain = Domain::new(0.0, 10.0, 0.0, 10.0);
 const GRAVITY: f64 = 1.0;
 
-/// Rounding of a start time, relative to it.
+/// Rounding of a start time, relative to the time.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
 /// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
-/// samples each, at the times that the observer asks for. The first run starts at time 0 and is cut twice:
+/// samples each, at the times that the observer requests. The first run starts at time 0 and is cut twice:
 /// between two samples, and after a sample; the runs that continue it must ask for the sample that was next.
 /// Then come runs that start later and between two sampling times, at a late time, and before 0; the last one
 /// has ten thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it
@@ -68,16 +68,16 @@ pub fn check<O: Observer + ?Sized>(observer: &mut O) -> Result<(), Violation> {
     Script { samples: MANY_SAMPLES, ..last }.run(0.0, None).map(drop)
 }
 
-/// The end of a run.
+/// The state of the clock at the end of a run.
 struct End {
     now: f64,
-    /// Time of the next sample that was wanted.
+    /// Time of the next sample that the observer requested.
     next: f64,
     goes_on: bool,
 }
 
 impl End {
-    /// Returns the next sample that a run which goes on from here must take.
+    /// Returns the time of the next sample that a continuation of the run must take.
     fn wanted(&self) -> Option<f64> {
         Some(self.next).filter(|_| self.goes_on)
     }
@@ -99,8 +99,8 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Self { observer, now: start, wanted: f64::INFINITY, collisions: 0, samples: SAMPLES }
     }
 
-    /// Runs the script, and on by a share of the time to the next sample. A run that continues another one
-    /// must ask for the sample `kept`.
+    /// Runs the script, then continues for a share of the time to the next sample. A run that continues
+    /// another one must ask for the sample `kept`.
     fn run(mut self, share: f64, kept: Option<f64>) -> Result<End, Violation> {
         self.observer.on_start(&snapshot(self.now, &disks(0)));
         self.wanted = self.next_sample()?;
@@ -123,7 +123,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(End { now: self.now, next: self.wanted, goes_on })
     }
 
-    /// Runs collisions until the next sample, or a few times if no sample is wanted.
+    /// Runs collisions until the next sample, or a few collisions if no sample is requested.
     fn collide(&mut self) -> Result<bool, Violation> {
         let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
         for _ in 0..3 {
@@ -138,7 +138,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(true)
     }
 
-    /// Takes the sample that is due, or none if the clock names no time.
+    /// Takes the sample that is due, if the clock names a time.
     fn sample(&mut self) -> Result<bool, Violation> {
         if !self.wanted.is_finite() {
             return Ok(true);
@@ -178,7 +178,7 @@ fn disks(round: usize) -> Vec<Disk> {
     (0..DISKS).filter_map(|index| disk(index, round).ok()).collect()
 }
 
-/// Returns one of three disks, at one of a few places.
+/// Returns one of three disks, at one of a few positions.
 fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
     let (place, turn) = ((1 + 3 * index) as f64, (round % 7) as f64);
     Disk::new(DVec2::new(place, 1.0 + turn), 0.5)?

@@ -1,8 +1,8 @@
-//! Marks, by which observers know systems and their walls again.
+//! Marks, by which observers recognize systems and their walls.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A mark that nothing else in this process has; 0 until it is given.
+/// A mark that is unique in this process; 0 until it is assigned.
 ///
 /// It goes into no file, and measurements that differ in marks alone are equal.
 #[derive(Debug, Clone, Copy, Default)]
@@ -12,18 +12,18 @@ impl Mark {
     /// No mark.
     pub(super) const NONE: Self = Self(0);
 
-    /// Returns a mark that was never given before.
+    /// Returns a new mark.
     pub(crate) fn new() -> Self {
         static NEXT: AtomicUsize = AtomicUsize::new(1);
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Returns whether both are known, and the same.
+    /// Returns whether both marks are assigned and equal.
     pub(super) const fn is_same(self, other: Self) -> bool {
         self.0 == other.0 && self.0 != 0
     }
 
-    /// Returns whether both are known, and not the same.
+    /// Returns whether both marks are assigned and different.
     pub(super) const fn is_other(self, other: Self) -> bool {
         self.0 != other.0 && self.0 != 0 && other.0 != 0
     }

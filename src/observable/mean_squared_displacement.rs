@@ -12,9 +12,9 @@ use crate::statistics::{BlockedMean, Estimate};
 /// self-diffusion.
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
-/// periodic sides and ends. A drift of all disks counts as displacement. Each lag takes the disks that
-/// are there at both of its ends. If the periods of the domain change, time jumps, or disks are put
-/// elsewhere between two runs, the observer begins with new origins. The errors come from blocks of origins.
+/// periodic sides and ends. A drift of all disks counts as displacement. Each lag uses the disks that are
+/// present at both of its ends. If the periods of the domain change, time jumps, or disks are put elsewhere
+/// between two runs, the observer begins with new origins. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///
@@ -88,7 +88,7 @@ impl MeanSquaredDisplacement {
     }
 }
 
-/// Returns the mean squared distance between two places of each disk.
+/// Returns the mean squared distance between two positions of each disk.
 fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
     from.mean_with(to, |from, to| from.distance_squared(*to))
 }

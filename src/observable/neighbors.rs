@@ -7,13 +7,13 @@ use crate::boundary::{Domain, Squares};
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
-/// The disks of a snapshot, and which of them are near each other; made by [`Snapshot::neighbors`].
+/// The disks of a snapshot, searchable for disks near each other; made by [`Snapshot::neighbors`].
 pub struct Neighbors<'a> {
     disks: &'a [Disk],
     domain: Domain,
     squares: Squares,
     range: f64,
-    /// Largest components of a vector between two disks that is shorter than those to all images.
+    /// Largest components of a vector between two disks that is shorter than the vectors to all images.
     half: DVec2,
 }
 
@@ -29,8 +29,8 @@ pub struct Neighbor {
 }
 
 impl<'a> Neighbors<'a> {
-    /// Finds those among some disks for which a condition holds. The range must be positive, and no more than
-    /// half of a period.
+    /// Builds the search among the disks for which a condition holds. The range must be positive, and no more
+    /// than half of a period.
     pub(super) fn among(
         disks: &'a [Disk],
         domain: Domain,
@@ -51,15 +51,15 @@ impl<'a> Neighbors<'a> {
         self.range
     }
 
-    /// Iterates over the neighbors of a disk, in no particular order but always in the same one; none if
-    /// there is no disk of this index.
+    /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. Without a disk of this
+    /// index, there are no neighbors.
     pub fn of(&self, disk: usize) -> impl Iterator<Item = Neighbor> {
         let from = self.disks.get(disk).map(Disk::position);
         let near = from.into_iter().flat_map(move |from| self.near(from));
         near.filter(move |neighbor| neighbor.index != disk)
     }
 
-    /// Iterates over the disks within the range of a place.
+    /// Iterates over the disks within the range of a position.
     pub fn near(&self, place: DVec2) -> impl Iterator<Item = Neighbor> {
         self.squares.near(place, self.range).filter_map(move |index| {
             let straight = self.disks[index].position() - place;

@@ -16,7 +16,7 @@ pub struct ConvectionOrder {
 }
 
 impl ConvectionOrder {
-    /// Creates order parameters with these values.
+    /// Creates the order parameters of one roll and of two rolls from their values.
     pub const fn new(one_roll: f64, two_rolls: f64) -> Self {
         Self { one_roll, two_rolls }
     }

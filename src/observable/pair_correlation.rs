@@ -11,7 +11,7 @@ use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
 
-/// Part of the range by which walls may come nearer than the range, which is rounding.
+/// Fraction of the range by which walls may be nearer than the range, to allow for rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The pair correlation function g(r), also called radial distribution function.
@@ -73,7 +73,7 @@ pub struct PairCorrelation {
     centers: RunningMean,
     /// Number of partners in the region, over its area.
     partner_density: RunningMean,
-    /// Numbers of possible centers in the box, of possible partners of each, and of pairs.
+    /// Numbers of possible centers in the box, of possible partners of each center, and of pairs.
     numbers: [RunningMean; 3],
 }
 
@@ -102,7 +102,7 @@ impl PairCorrelation {
         Self { kinds: Some([first, second]), ..self }
     }
 
-    /// Returns the same observer, which counts pairs around the disks in a region.
+    /// Returns the same observer for pairs around the disks in a region.
     ///
     /// # Errors
     /// If an edge of the region is not finite, or the region has no area.
@@ -181,8 +181,8 @@ impl PairCorrelation {
     }
 }
 
-/// Returns a region that reaches further by a length on each side; in a periodic direction, the whole domain
-/// if it would reach across the seam.
+/// Returns a region enlarged by a length on each side. In a periodic direction, the result extends over the
+/// whole domain if it would otherwise cross the edge.
 fn grown(region: Region, by: f64, domain: &Domain) -> Region {
     let (whole, mut grown) = (domain.region(), Region::new(region.min - by, region.max + by));
     for (axis, is_periodic) in [domain.periodic_sides, domain.periodic_ends].into_iter().enumerate() {

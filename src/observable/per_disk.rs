@@ -1,4 +1,4 @@
-//! Values of single disks, which are found again by the ids of the disks.
+//! Values of single disks, identified by the ids of the disks.
 
 use crate::Disk;
 use crate::disk::numbered;
@@ -39,8 +39,8 @@ impl<T> PerDisk<T> {
         self.0.iter().map(|(id, value)| (*id, value))
     }
 
-    /// Returns the mean of a function of the two values of a disk, over the disks that are in both; NaN if
-    /// there are none.
+    /// Returns the mean of a function of a disk's two values, over the disks that have both, or NaN if no
+    /// disk has both.
     pub fn mean_with(&self, other: &Self, function: impl Fn(&T, &T) -> f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
         let mut others = other.0.iter().peekable();
@@ -56,9 +56,9 @@ impl<T> PerDisk<T> {
 }
 
 impl<T> From<Vec<(u64, T)>> for PerDisk<T> {
-    /// Takes ids and values in any order.
+    /// Creates the values from ids and values in any order.
     fn from(mut entries: Vec<(u64, T)>) -> Self {
-        // A run of the same disks has them in order already.
+        // As long as the disks of a run stay the same, their ids are in order already.
         entries.sort_by_key(|(id, _)| *id);
         Self(entries)
     }

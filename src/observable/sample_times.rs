@@ -1,4 +1,4 @@
-//! The clock that tells observers when to sample.
+//! The clock that sets the sampling times of observers.
 
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
@@ -7,8 +7,8 @@ use crate::quantity::{finite, positive};
 /// origin, rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Rounding of the same relative to the interval. The origin may be far larger than the time, as before time
-/// 0, and the time has its rounding.
+/// Rounding of both times relative to the interval. Before time 0, for example, the origin may be far larger
+/// than the time, and the time then has the origin's rounding.
 const PART: f64 = 1e-9;
 
 /// Smallest ratio of the interval to the time. Rounding then moves a sampling time by a sixteenth of the
@@ -57,7 +57,7 @@ pub struct SampleTimes {
     interval: f64,
     /// The first sampling time.
     ///
-    /// Without it, sampling times are counted from time 0 in both directions.
+    /// If it is `None`, sampling times are counted from time 0 in both directions.
     first: Option<f64>,
     /// Number of the upcoming sampling time.
     beat: i64,
@@ -128,7 +128,7 @@ impl SampleTimes {
         self.started = true;
     }
 
-    /// Goes to the first sampling time of a run that has no sample yet.
+    /// Sets the first sampling time of a run that has no sample yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
             // The cast saturates. Rounding of a large quotient may miss the number by one, which `rounding`

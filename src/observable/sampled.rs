@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use super::{Collision, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 
-/// A measure that adds up snapshots, whenever it is given one.
+/// A measurement that accumulates snapshots.
 ///
 /// In a run, [`Sampled`] gives it the snapshots at set times. A program that takes snapshots itself, such as
 /// the samples of a study, calls [`add`](Self::add).
@@ -80,7 +80,7 @@ pub trait Accumulator {
 pub struct Sampled<A> {
     accumulator: A,
     sample_times: SampleTimes,
-    /// The reason why nothing can be measured in this run.
+    /// The reason why the snapshots of this run cannot be measured.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }

@@ -41,7 +41,7 @@ pub struct Series<Q: Observable> {
     values: Vec<Q::Value>,
     #[cfg_attr(feature = "serde", serde(skip))]
     system: System,
-    /// The reason why this run cannot be added.
+    /// The reason why the samples of this run cannot be added to the series.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }
@@ -73,7 +73,8 @@ impl<Q: Observable> Series<Q> {
         self.times.iter().copied().zip(&self.values)
     }
 
-    /// Returns the mean of a number of each value, with its error from blocks ([`block_average`]).
+    /// Returns the mean of a number that a closure takes from each value, with its error from blocks
+    /// ([`block_average`]).
     ///
     /// # Errors
     /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
@@ -108,7 +109,7 @@ impl<Q: Observable> Series<Q> {
 impl<Q: Observable> Observer for Series<Q> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
         let time = start.time();
-        // The run may have ended on the last sample, up to rounding.
+        // The previous run may have ended on the last sample, up to rounding.
         let rounding = self.sample_times.rounding(time);
         let goes_on = self.times.last().is_none_or(|&last| time >= last - rounding);
         let requirement = "not before the last sample of the series; clear it for another run";

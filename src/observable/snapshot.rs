@@ -11,8 +11,8 @@ use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
 ///
-/// The run does not see changes of these copies. They are made when somebody asks for them, so the start of a
-/// run costs nothing for an observer that only reads the time.
+/// The run does not see changes of these copies. They are made on request, so the start of a run costs
+/// nothing for an observer that only reads the time.
 #[derive(Debug, Clone)]
 pub struct Snapshot<'a> {
     time: f64,
@@ -25,7 +25,7 @@ pub struct Snapshot<'a> {
     marks: [Mark; 2],
 }
 
-/// The disks of a run as they move, which a snapshot copies if it is asked for them.
+/// The moving disks of a run, which a snapshot copies only on request.
 pub(crate) trait Moving {
     /// Returns the number of disks.
     fn count(&self) -> usize;
@@ -49,7 +49,7 @@ impl fmt::Debug for Disks<'_> {
     }
 }
 
-/// The boundary of a run, and the time of a snapshot as the boundary counts it.
+/// The boundary of a run, and the time of a snapshot as an offset from the boundary's time origin.
 #[derive(Clone, Copy)]
 struct Walls<'a> {
     boundary: &'a dyn Boundary,
@@ -71,8 +71,8 @@ impl<'a> Snapshot<'a> {
         Self { time, disks, domain, gravity, walls: None, wall_count: 0, marks }
     }
 
-    /// Creates a snapshot of disks as they move, at an absolute time and at its offset, with the walls around
-    /// them.
+    /// Creates a snapshot of moving disks, at an absolute time and its offset, with the walls around the
+    /// disks.
     pub(crate) fn of_run(
         time: f64,
         offset: f64,
@@ -93,7 +93,7 @@ impl<'a> Snapshot<'a> {
         Self { walls: Some(Walls { boundary, time }), wall_count: boundary.wall_count(), ..self }
     }
 
-    /// Returns the same snapshot with walls of which only the number is known, for tests of observers.
+    /// Returns the same snapshot with a number of walls but no boundary, for tests of observers.
     #[must_use]
     pub fn with_wall_count(self, wall_count: usize) -> Self {
         Self { wall_count, ..self }
@@ -125,12 +125,13 @@ impl<'a> Snapshot<'a> {
         self.len() == 0
     }
 
-    /// Returns the number of walls, whose indices are less than it; 0 for a snapshot without walls.
+    /// Returns the number of walls, or 0 for a snapshot without walls. Indices of walls are less than this
+    /// number.
     pub const fn wall_count(&self) -> usize {
         self.wall_count
     }
 
-    /// Returns a point of a wall, which moves with the wall; `None` if it is not known.
+    /// Returns a point that moves with a wall, or `None` if the boundary knows no such point.
     ///
     /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the place
     /// of the wall.
@@ -138,7 +139,8 @@ impl<'a> Snapshot<'a> {
         self.walls.and_then(|walls| walls.boundary.wall_point(wall, walls.time))
     }
 
-    /// Returns the velocity of a wall's surface at its [point](Self::wall_point); `None` if it is not known.
+    /// Returns the velocity of a wall's surface at its [point](Self::wall_point), or `None` if the point is
+    /// not known.
     pub fn wall_velocity(&self, wall: usize) -> Option<DVec2> {
         let (walls, point) = (self.walls?, self.wall_point(wall)?);
         Some(walls.boundary.surface(wall, point, walls.time).velocity)
@@ -179,18 +181,18 @@ impl<'a> Snapshot<'a> {
         (0..self.wall_count).filter_map(moved).collect()
     }
 
-    /// Returns the area of the places in `region` at which the center of a disk of this radius is free;
-    /// `None` if it is not known.
+    /// Returns the area of the part of `region` in which the center of a disk of this radius is free, or
+    /// `None` if the boundary does not know the area.
     ///
-    /// With a radius of 0, it is the area that matter can fill.
+    /// With a radius of 0, the result is the area that matter can fill.
     pub fn area(&self, region: &Region, radius: f64) -> Option<f64> {
         self.walls.and_then(|walls| walls.boundary.area(region, radius, walls.time))
     }
 
-    /// Returns the share of a region that matter can fill; `None` if it is not known. A snapshot without
-    /// walls knows of nothing that is not free.
+    /// Returns the share of a region that matter can fill, or `None` if the share is not known. A snapshot
+    /// without walls knows of nothing that is not free.
     pub(crate) fn free_share(&self, region: &Region) -> Option<f64> {
-        /// Share from which on all is free, up to rounding.
+        /// Smallest share that counts as completely free, up to rounding.
         const WHOLE: f64 = 1.0 - 1e-12;
         let Some(Walls { boundary, time }) = self.walls else { return Some(1.0) };
         let Some(area) = boundary.area(region, 0.0, time) else {
@@ -200,17 +202,17 @@ impl<'a> Snapshot<'a> {
         Some(if share > WHOLE { 1.0 } else { share })
     }
 
-    /// Returns whether no wall ever comes into a region in which disks are free.
+    /// Returns whether a region is free of walls at all times, and not inside one.
     pub(crate) fn is_clear(&self, region: &Region) -> bool {
         let middle = region.min + 0.5 * (region.max - region.min);
-        // Four walls are those at the sides and ends of the domain.
+        // Up to four walls are the walls at the sides and ends of the domain.
         self.walls.map_or(self.wall_count <= 4, |Walls { boundary, time }| {
             let is_free = |place| boundary.overlap(&Probe::new(place, 0.0, time)).is_none();
             !boundary.may_touch(region, 0.0) && is_free(middle)
         })
     }
 
-    /// Returns the rectangle in which initial states are placed, or the domain if the walls are not known.
+    /// Returns the rectangle for initial states, or the domain if the walls are not known.
     pub(crate) fn interior(&self) -> Domain {
         self.walls.map_or(self.domain, |walls| walls.boundary.interior())
     }
@@ -220,7 +222,7 @@ impl<'a> Snapshot<'a> {
         self.marks[0]
     }
 
-    /// Returns the mark of the walls, which are others once others were set.
+    /// Returns the mark of the walls, which changes when other walls are set.
     pub(super) const fn walls_mark(&self) -> Mark {
         self.marks[1]
     }
@@ -258,7 +260,8 @@ impl<'a> Snapshot<'a> {
         self.walls.map_or_else(Vec::new, |walls| walls.boundary.wall_lines(walls.time))
     }
 
-    /// Returns a snapshot of other disks, for example of some of these, in the same domain at the same time.
+    /// Returns a snapshot of other disks, for example of a part of the present disks, in the same domain at
+    /// the same time.
     #[must_use]
     pub const fn with_disks<'b>(&self, disks: &'b [Disk]) -> Snapshot<'b>
     where

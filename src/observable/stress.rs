@@ -88,7 +88,7 @@ pub struct Stress {
     kinetic: Tensor,
     collisional: Tensor,
     total: Tensor,
-    /// The reason why nothing can be measured in this run.
+    /// The reason why the stress cannot be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }
@@ -148,8 +148,8 @@ impl Stress {
         }
     }
 
-    /// Returns the fraction of the segment between two places that lies in the region, summed over the images
-    /// of the segment in a periodic box.
+    /// Returns the fraction of the segment between two positions that lies in the region, summed over the
+    /// images of the segment in a periodic box.
     fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {
         let Some(region) = self.region else { return 1.0 };
         let share = |image| share_in(&region, from + image, to + image);
@@ -162,7 +162,7 @@ impl Stress {
         region.area() * self.shares.of(snapshot, std::iter::once(region))[0]
     }
 
-    /// Checks that a run has a finite area that is known.
+    /// Checks that the area of a run's domain is finite and known.
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         let domain = start.domain();
         let region = self.region.map_or(Ok(domain.region()), |region| inside(region, &domain))?;

@@ -1,12 +1,12 @@
-//! Stretches of time between samples, over which impulses are summed.
+//! Intervals of time between samples, over which impulses are summed.
 
 use super::SampleTimes;
 
-/// The stretch of time since the latest sample.
+/// The interval of time since the latest sample, called a stretch.
 ///
-/// A stretch counts if it is a whole interval of the clock. If a run begins between two sampling times, its
-/// first stretch is shorter and does not count. A run that begins where the previous run ended continues the
-/// stretch of that run.
+/// A stretch counts if it is a complete interval between two sampling times. If a run begins between two
+/// sampling times, its first stretch is shorter and does not count. A run that begins where the previous run
+/// ended continues the stretch of that run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct Stretch {
@@ -35,7 +35,7 @@ impl Stretch {
         !goes_on
     }
 
-    /// Forgets the start of the stretch. It then does not count.
+    /// Forgets the start of the stretch, which then does not count.
     pub(super) const fn forget(&mut self) {
         self.start = None;
     }

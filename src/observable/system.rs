@@ -1,4 +1,4 @@
-//! The system that an observer measures, which must not be exchanged for another one.
+//! The system that an observer measures. A later run must have the same system.
 
 use super::Snapshot;
 use super::marks::Mark;
@@ -33,7 +33,7 @@ impl System {
         accept(goes_on, "start of the run", requirement, time).map(drop)
     }
 
-    /// Notes the system of a run, whenever it begins.
+    /// Notes the system of a run, which may start at any time.
     pub(super) fn is_same(&mut self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         let is_same = !self.mark.is_other(start.system_mark());
         let requirement = "of the same system; clear the observer for another system, or take a new one";

@@ -1,4 +1,4 @@
-//! Measures as tables in text.
+//! Tables of measurements as text.
 
 use std::io::{self, Write};
 
@@ -11,7 +11,7 @@ pub(super) const STRESS: &str = "mass/time^2";
 /// The unit of an energy or a temperature.
 pub(super) const ENERGY: &str = "energy";
 
-/// A measure whose results are rows of numbers, each with a name and a unit.
+/// A measurement whose results are rows of numbers, each number with a name and a unit.
 ///
 /// All measures of this module are tables: a [`Series`] has a row for each time, a
 /// [`PairCorrelation`](super::PairCorrelation) for each distance, [`Fields`](super::Fields) for each cell. A
@@ -49,8 +49,8 @@ pub trait Table {
     /// Writes the table as comma-separated values: a line of headings, such as `center_y [length]`, and a
     /// line for each row.
     ///
-    /// The heading of a pure number has no unit. Numbers read back to the same bits. An undefined number is
-    /// `NaN`.
+    /// The heading of a pure number has no unit. Reading the numbers back gives the same bits. An undefined
+    /// number is `NaN`.
     ///
     /// ```
     /// use granular_edmd::boundary::Domain;
@@ -126,7 +126,7 @@ pub(super) fn row(exact: &[f64], estimated: &[Estimate]) -> Vec<f64> {
     exact.iter().copied().chain(estimated.iter().flat_map(numbers)).collect()
 }
 
-/// Returns the headings of histograms side by side, by the names and units of what they count.
+/// Returns the headings of histograms side by side, from the names and units of the counted quantities.
 pub(super) fn histogram_headings<const COUNT: usize>(names: [(&str, &str); COUNT]) -> Vec<Heading> {
     let columns = |(name, unit): (&str, &str)| {
         let inverse = if unit == "1" { unit.to_owned() } else { format!("1/({unit})") };
@@ -160,7 +160,7 @@ fn labels(table: &impl Table) -> io::Result<Vec<String>> {
     Ok(headings.iter().map(label).collect())
 }
 
-/// Returns a row, if it has a number for each label.
+/// Returns a row, or an error if its length differs from the number of labels.
 fn complete<'a>(row: &'a [f64], labels: &[String]) -> io::Result<&'a [f64]> {
     if row.len() == labels.len() {
         return Ok(row);

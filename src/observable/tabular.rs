@@ -29,13 +29,13 @@ impl Heading {
 }
 
 impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
-    /// Takes the name and the unit.
+    /// Creates a heading from its name and unit.
     fn from((name, unit): (N, U)) -> Self {
         Self::new(name, unit)
     }
 }
 
-/// An observable whose values are rows of numbers, each with a name and a unit.
+/// An observable whose values are rows of numbers, each number with a name and a unit.
 ///
 /// [`OrderParameters`](super::OrderParameters), [`CenterOfMass`](super::CenterOfMass),
 /// [`Energies`](super::Energies), [`Temperatures`](super::Temperatures) and
@@ -86,7 +86,7 @@ pub trait Tabular: Observable {
     /// Returns the names and units of the columns.
     fn headings(&self) -> Vec<Heading>;
 
-    /// Adds the numbers of a value to a row.
+    /// Appends the numbers of a value to a row.
     fn add_numbers(&self, value: &Self::Value, row: &mut Vec<f64>);
 }
 

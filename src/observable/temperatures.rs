@@ -17,7 +17,7 @@ pub struct Temperature {
 }
 
 impl Temperature {
-    /// Creates temperatures with these values.
+    /// Creates temperatures from the horizontal, vertical and rotational temperature.
     pub const fn new(horizontal: f64, vertical: f64, rotational: f64) -> Self {
         Self { horizontal, vertical, rotational }
     }

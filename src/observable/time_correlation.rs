@@ -8,7 +8,7 @@ use super::{Heading, Observable, Observer, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Estimate;
 
-/// A value that can be correlated with another one of the same type.
+/// A value that can be correlated with another value of the same type.
 ///
 /// Implement it for the value of a custom observable. Return NaN if two values have no product.
 ///
@@ -35,7 +35,7 @@ impl InnerProduct for DVec2 {
     }
 }
 
-/// The product is the mean of the products of the two values of a disk, over the disks that are in both.
+/// The product is the mean of the products of each disk's two values, over the disks that have both.
 impl<T: InnerProduct> InnerProduct for PerDisk<T> {
     fn inner_product(&self, other: &Self) -> f64 {
         self.mean_with(other, T::inner_product)

@@ -11,7 +11,7 @@ use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate, RunningMean};
 use crate::{Disk, ParameterError};
 
-/// Rounding of a velocity, relative to the speed of sound, that many collisions may add up to.
+/// Largest rounding of a velocity after many collisions, relative to the speed of sound.
 const ROUNDING: f64 = 1e-6;
 
 /// Number of moments: of shear, of compression and of heat. Each has two components.
@@ -42,7 +42,7 @@ type Moments = [DVec2; MOMENTS];
 ///
 /// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
 /// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible.
-/// Velocities are those about the center of mass. All integrals are exact; samples only set the lags.
+/// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
 ///
 /// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
@@ -79,7 +79,7 @@ type Moments = [DVec2; MOMENTS];
 pub struct TransportCoefficients {
     stretch: Stretch,
     domain: Option<Domain>,
-    /// The disks, as they fly since the latest collision or sample; none before the first sample.
+    /// The motions of the disks since the latest collision or sample; empty before the first sample.
     movers: Vec<Mover>,
     /// Time up to which the moments are known.
     time: f64,
@@ -96,7 +96,7 @@ pub struct TransportCoefficients {
     /// Growth of the moment of compression beyond the drift, over the longest lag.
     excess: RunningMean,
     temperature: RunningMean,
-    /// The reason why nothing can be measured in this run.
+    /// The reason why the coefficients cannot be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }
@@ -137,7 +137,7 @@ impl Mover {
             + self.moment_of_inertia * self.angular_velocity * self.angular_velocity)
     }
 
-    /// Returns what this disk adds to the rates.
+    /// Returns the contribution of this disk to the rates.
     fn rates(&self) -> Moments {
         let Self { velocity, mass, .. } = *self;
         of_tensor(mass * velocity, velocity, self.energy() * velocity)
@@ -153,8 +153,8 @@ impl Mover {
     }
 }
 
-/// Returns the moments of a momentum that goes over a vector, and of heat. Shear has two components that are
-/// equal in an isotropic gas; compression has one, which stands twice.
+/// Returns the moments of momentum and heat that are carried along a vector. Shear has two components that
+/// are equal in an isotropic gas; compression has one, which stands twice.
 fn of_tensor(momentum: DVec2, way: DVec2, heat: DVec2) -> Moments {
     let (xx, yy) = (momentum.x * way.x, momentum.y * way.y);
     let shear = 0.5 * (momentum.x * way.y + momentum.y * way.x);
@@ -199,22 +199,22 @@ impl TransportCoefficients {
 
     /// Returns the bulk viscosity ζ.
     pub fn bulk_viscosity(&self) -> Estimate {
-        // The pressure of the first interval is not quite the pressure of the run. The difference makes the
-        // mean square of the moment grow by its own square, which is not viscosity.
+        // The pressure in the first interval differs slightly from the pressure in the whole run. The
+        // difference makes the mean square of the moment grow by its own square, which is not viscosity.
         let interval = self.stretch.sample_times.interval();
         let (longest, half) = (self.lags[1].longest(), self.lags[1].longest() / 2);
         let excess = self.excess.mean() / (longest as f64 * interval);
         self.coefficient(1, excess * excess * (longest + half) as f64 * interval)
     }
 
-    /// Returns the thermal conductivity λ, for disks of one mass; NaN for others, in which energy also goes
-    /// with the diffusion of the masses.
+    /// Returns the thermal conductivity λ for disks of equal mass, or NaN for other disks, in which the
+    /// diffusion of the masses also carries energy.
     pub fn thermal_conductivity(&self) -> Estimate {
         self.coefficient(2, 0.0).scaled(1.0 / self.temperature())
     }
 
-    /// Iterates over the lags as times, with the mean squared moments of shear and of heat, for a look at
-    /// where they grow linearly.
+    /// Iterates over the lags as times, with the mean squared moments of shear and of heat, which show where
+    /// the moments grow linearly.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, [Estimate; 2])> {
         self.lags[0].iter().zip(self.lags[2].iter()).map(|((time, shear), (_, heat))| (time, [shear, heat]))
     }
@@ -231,15 +231,16 @@ impl TransportCoefficients {
         slope.about(mean).scaled(0.5 / (area * self.temperature()))
     }
 
-    /// Brings the moments up to a time.
+    /// Advances the moments to a time.
     fn advance(&mut self, time: f64) {
         let rates = self.rates;
         add(&mut self.moments, &rates, time - self.time);
         self.time = time;
     }
 
-    /// Keeps the motions of this snapshot if only collisions have changed them, which leaves them the same up
-    /// to rounding. Otherwise keeps the old ones, so that further runs are refused, too.
+    /// Stores the motions of this snapshot, and checks that they equal the expected motions up to rounding,
+    /// as they do if only collisions have changed them. Otherwise keeps the old motions, so that further runs
+    /// are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;

@@ -175,7 +175,7 @@ fn about(
     (peculiar, freedom)
 }
 
-/// Returns a moment of some numbers, divided by its mean for normal numbers of the same count and sum of
+/// Returns a moment of several numbers, divided by its mean for normal numbers of the same count and sum of
 /// squares.
 ///
 /// `moment` is the sum of the numbers to the power `order`, and `squares` the sum of their squares. Each

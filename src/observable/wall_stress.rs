@@ -47,7 +47,7 @@ use crate::statistics::{BlockedMean, Estimate};
 pub struct WallStress {
     stretch: Stretch,
     walls: BTreeMap<usize, Received>,
-    /// The reason why nothing can be measured in this run.
+    /// The reason why the stress cannot be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }
@@ -68,7 +68,7 @@ impl WallStress {
         Self { stretch: Stretch::new(times), walls: BTreeMap::new(), fault: None }
     }
 
-    /// Returns the same observer, which also watches the wall of this index and length.
+    /// Returns the same observer, also for the wall of this index and length.
     ///
     /// # Errors
     /// If the length is not finite and positive.
@@ -89,7 +89,7 @@ impl WallStress {
         self.walls.get(&wall).map(|wall| wall.means[1].estimate())
     }
 
-    /// Forgets all that was measured so far.
+    /// Forgets all measurements so far.
     pub fn clear(&mut self) {
         self.stretch.forget();
         for received in self.walls.values_mut() {

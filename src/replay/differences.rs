@@ -19,8 +19,8 @@ const HALVINGS: u32 = 40;
 pub struct Differences {
     /// The first collision of a disk with other partners; `None` if all partners are the same.
     pub partners: Option<OtherPartner>,
-    /// The time at which a disk is first farther from its place in the other run than the tolerance; `None`
-    /// if none ever is at the end of an interval.
+    /// The first time at which a disk is farther from its position in the other run than the tolerance;
+    /// `None` if no disk is at the end of any interval.
     pub apart: Option<TooFarApart>,
 }
 
@@ -34,7 +34,7 @@ pub struct OtherPartner {
     pub collisions: [Replayed; 2],
 }
 
-/// A disk that is far from its place in the other run.
+/// A disk that is far from its position in the other run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct TooFarApart {
@@ -42,7 +42,7 @@ pub struct TooFarApart {
     pub id: u64,
     /// Absolute time.
     pub time: f64,
-    /// Distance between both places.
+    /// Distance between the two positions.
     pub distance: f64,
 }
 
@@ -58,7 +58,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         failed: [bool; 2],
     ) -> Result<Option<OtherPartner>, RunError> {
         let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
-        // For each disk, the collisions of the run that is ahead, and which of the two that is.
+        // For each disk, the collisions of the run that is ahead, and the number of this run.
         let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
         let mut are_over = [false; 2];
         while are_over != [true; 2] {
@@ -117,7 +117,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Some(apart))
     }
 
-    /// Returns the disk that is farthest from its place in the other run, if it is farther than the
+    /// Returns the disk that is farthest from its position in the other run, if the distance exceeds the
     /// tolerance.
     fn farthest((first, second): Pair<'_, R, B, S>, tolerance: f64) -> Option<TooFarApart> {
         let domain = first.boundary().domain();
@@ -133,7 +133,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     }
 }
 
-/// Returns the disk or wall that this disk has met: the id of the disk, or else the wall.
+/// Returns the partner with which this disk collided: the id of a disk, or else a wall.
 fn partner_of(replayed: &Replayed, id: u64) -> (Option<u64>, Option<Partner>) {
     match replayed.partner_id {
         Some(partner) => (Some(if partner == id { replayed.id } else { partner }), None),

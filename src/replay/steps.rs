@@ -1,4 +1,4 @@
-//! A run taken collision by collision, with the ids of its disks.
+//! A run that advances collision by collision, with the ids of its disks.
 
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -20,7 +20,7 @@ pub struct Replayed {
     pub collision: Collision,
 }
 
-/// A run taken collision by collision, each with the ids of its disks.
+/// A run that advances by one collision at a time, and identifies the disks of each collision by their ids.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
@@ -39,7 +39,7 @@ pub struct Steps<R, B, S> {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
-    /// Begins with this run.
+    /// Creates the steps of this run.
     pub const fn new(run: Simulation<R, B, S>) -> Self {
         Self { run }
     }
@@ -49,8 +49,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
         &self.run
     }
 
-    /// Goes to the next collision; without one up to and at the absolute time `end`, the run goes there and
-    /// the result is `None`.
+    /// Advances to the next collision, or to the absolute time `end` if no collision happens up to and at
+    /// that time; the result is then `None`.
     ///
     /// # Errors
     /// The same as for [`Simulation::step_until`].

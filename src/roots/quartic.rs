@@ -17,8 +17,8 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 /// It means the same as [`first_descent`], which handles polynomials of degree two and less:
 /// - An open gap counts at the first zero through which it falls.
 /// - A gap that is closed and closes further counts immediately, at time 0.
-/// - A gap that is closed but rises counts when it closes next. If it has not opened by then, it counts when
-///   it falls back to its first value.
+/// - A closed gap that rises counts when it closes next or, if it never opens, when it falls back to its
+///   first value.
 ///
 /// The result is `None` if a coefficient is not finite. `end` may be infinite. The search uses only `+ - * /`
 /// and, for degree two, the square root, so its bits are the same on every platform.
@@ -101,7 +101,7 @@ fn derivative(&[_, c1, c2, c3, c4]: &Coefficients) -> Coefficients {
 }
 
 fn middle(low: f64, high: f64) -> f64 {
-    // Not half of the sum, because the sum may overflow.
+    // The code does not halve the sum, because the sum may overflow.
     low + 0.5 * (high - low)
 }
 
@@ -124,8 +124,8 @@ impl Marks {
         self.times[..self.count].windows(2).map(|pair| (pair[0], pair[1]))
     }
 
-    /// Returns the times at which a polynomial changes its sign, if its derivative changes its sign at these
-    /// marks.
+    /// Returns the times at which a polynomial changes its sign. `self` holds the times at which its
+    /// derivative does.
     ///
     /// Between two marks the polynomial is monotonic, so it changes its sign at most once. No change can be
     /// missed, however close two of them are.

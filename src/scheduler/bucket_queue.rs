@@ -49,17 +49,17 @@ pub struct BucketQueue {
     due: Vec<f64>,
     /// The disks of each bucket of the page.
     buckets: Piles,
-    /// Number of buckets that have been opened: those before this one.
+    /// Number of opened buckets, all of them at the start of the page.
     opened: usize,
     /// The events of the open buckets, in order.
     open: Vec<Entry>,
-    /// Number of open events that are over.
+    /// Number of open events that have passed.
     over: usize,
     /// Number of open events that have been named as upcoming.
     named: usize,
     /// Events that were set within the time of the open buckets, after these had been opened.
     late: BinaryHeap<Reverse<Entry>>,
-    /// The answer to `earliest`.
+    /// The result of `earliest`.
     first: Entry,
     page: Page,
     /// Number of events set since the page was turned.
@@ -112,7 +112,8 @@ impl BucketQueue {
         self.due[entry.disk] == entry.due()
     }
 
-    /// Writes down the time of a disk.
+    /// Adds a disk to the bucket of its time, or to the heap if the bucket is open already. A disk that is
+    /// due after the page is added nowhere.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
         let bucket = self.page.bucket(due);
@@ -185,7 +186,7 @@ impl BucketQueue {
         self.opened += 1;
     }
 
-    /// Deals all events out to a new page.
+    /// Distributes all events over a new page.
     #[cold]
     #[inline(never)]
     fn turn_page(&mut self) {
@@ -220,7 +221,7 @@ impl BucketQueue {
             *wait = due - first;
             count += 1;
         }
-        // Only the earliest times of the sample tell how dense events are. A disk at rest may wait almost
+        // Only the earliest times of the sample show how dense the events are. A disk at rest may wait almost
         // forever.
         let (_, &mut wait, _) = waits.select_nth_unstable_by(count / SOON, f64::total_cmp);
         (stride * (count / SOON + 1)) as f64 / wait

@@ -24,7 +24,7 @@ pub(crate) const LARGE_SYSTEM: usize = 30_000;
 pub struct BySize {
     tree: TournamentTree,
     queue: BucketQueue,
-    /// True if the queue is in use and the tree is empty; otherwise it is the other way round.
+    /// True if the queue is in use and the tree is empty; false if the tree is in use and the queue is empty.
     is_large: bool,
 }
 

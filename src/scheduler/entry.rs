@@ -36,7 +36,7 @@ impl Entry {
         f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
     }
 
-    /// Returns the answer of [`EventScheduler::earliest`](super::EventScheduler::earliest) for this entry as
+    /// Returns the result of [`EventScheduler::earliest`](super::EventScheduler::earliest) if this entry is
     /// the first.
     #[inline]
     pub(super) fn answer(self) -> (usize, f64) {

@@ -17,9 +17,9 @@ const PART: &str = "scheduler";
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
 /// have from none to some ten thousand disks, and up to three million operations. They contain times that
-/// advance, go back, or are before the last answer; ties and times that differ by their last bits, both
+/// advance, go back, or are before the last result; ties and times that differ only in their last bits, both
 /// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
-/// many and no disks. Each question is asked twice. Now and then the scripts ask for
+/// many and no disks. Each query is made twice. At intervals, the scripts call
 /// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" says
 /// which planted faults the check finds. The scripts never change within a version.
 ///
@@ -94,7 +94,7 @@ impl<S: EventScheduler> Performance<S> {
         Ok(())
     }
 
-    /// Checks the answer. The closure `after` describes the last operation.
+    /// Checks the scheduler's earliest event. The closure `after` describes the last operation.
     fn compare(&self, after: impl FnOnce() -> String) -> Result<(), Violation> {
         let expected = self.oracle.earliest();
         let (given, again) = (self.scheduler.earliest(), self.scheduler.earliest());
@@ -111,9 +111,9 @@ impl<S: EventScheduler> Performance<S> {
         Err(Violation::new(PART, "earliest", found))
     }
 
-    /// Asks for upcoming disks, as the engine does in large systems.
+    /// Queries upcoming disks, as the engine does in large systems.
     fn look_ahead(&mut self) -> Result<(), Violation> {
-        // Any numbers will do for the disks that the engine has collected already.
+        // Arbitrary numbers serve as the disks that the engine has collected already.
         let kept = [usize::MAX, usize::MAX, 0, 1];
         let mut named = kept.to_vec();
         self.scheduler.upcoming(&mut named);
@@ -125,7 +125,7 @@ impl<S: EventScheduler> Performance<S> {
     }
 }
 
-/// Returns an answer of a scheduler in words.
+/// Returns a scheduler's result as text.
 fn told((disk, due): (usize, f64)) -> String {
     if (disk, due) == NOTHING_DUE { "nothing".to_owned() } else { format!("disk {disk} at {due:?}") }
 }

@@ -1,8 +1,8 @@
-//! The obvious scheduler.
+//! The simplest scheduler.
 
 use super::{EventScheduler, NOTHING_DUE};
 
-/// The obvious scheduler, which looks through all times for the earliest at each call.
+/// The simplest scheduler, which searches all times for the earliest at each call.
 ///
 /// It is slow and obviously right, so all other schedulers are tested against it.
 #[derive(Debug, Clone, Default)]

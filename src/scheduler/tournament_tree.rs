@@ -9,10 +9,10 @@ use crate::instructions::{Instructions, Level};
 use fours::Fours;
 use wide::Wide;
 
-/// A tournament: the earliest disk of each match goes on to the next round, until one is left.
+/// A tournament: the earliest disk of each match enters the next round, until one disk is left.
 ///
 /// Processors that compare four or eight times at once play matches of 32 disks. Others play matches of four,
-/// and so do all with more than 32 768 disks. The answers are the same.
+/// and so do all with more than 32 768 disks. The results are the same.
 #[derive(Debug, Clone, Default)]
 pub struct TournamentTree {
     instructions: Instructions,
@@ -49,7 +49,7 @@ impl EventScheduler for TournamentTree {
             disks if disks <= Wide::<3>::MOST_DISKS => 3,
             _ => 0,
         };
-        // A form that suits stays, with its memory.
+        // A tree of the suitable form is kept, with its memory.
         match (&self.form, rounds) {
             (Form::Fours(_), 0) | (Form::Two(_), 2) | (Form::Three(_), 3) => {}
             (_, 2) => self.form = Form::Two(Wide::new()),

@@ -17,10 +17,11 @@ use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
 
-/// Smallest speed but 0. The squares of slower disks would vanish, and with them their collisions.
+/// Smallest allowed speed other than 0. The squares of slower disks would vanish, and with them their
+/// collisions.
 const SLOWEST: f64 = 1e-100;
 
-/// Largest number of walls of a boundary.
+/// Largest number of walls that a boundary may have.
 const MOST_WALLS: usize = 1 << 16;
 
 /// The inputs of a simulation that is being built; see [`Simulation::builder`].
@@ -37,7 +38,7 @@ pub struct SimulationBuilder<R, B, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
-    /// Starts to build a simulation from the rule of collisions between disks and the walls around them.
+    /// Starts to build a simulation from the collision rule of the disks and the walls around the disks.
     ///
     /// The rule also serves walls without their own rule.
     ///
@@ -130,7 +131,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         if !self.disks.is_empty() {
             check_epoch(&clock, 0.0)?;
         }
-        // Along a direction without an end, gravity puts energy in for ever.
+        // Along a direction without an end, gravity adds energy forever.
         let falls = gravity.acceleration() * boundary.domain().periods();
         let ledger = Ledger::new(self.start_time, bodies.energy(0.0), falls != DVec2::ZERO);
         let mut simulation = Simulation {
@@ -197,7 +198,7 @@ pub(super) fn check_epoch(clock: &Clock, offset: f64) -> Result<(), BuildError> 
     }
 }
 
-/// Returns the number of walls, if the engine can number them.
+/// Returns the number of walls, or an error if there are too many for the engine.
 pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, BuildError> {
     let count = boundary.wall_count();
     accept(count <= MOST_WALLS, "number of walls", "at most 2^16", count as f64)?;
@@ -260,8 +261,8 @@ fn check_overlaps<B: Boundary + ?Sized>(
     let mut found = vec![0; cells.room()];
     for first in 0..disks.len() {
         let count = cells.around(first, &mut found);
-        // A large disk does not search the cells inside itself, so a small disk that lies there must find the
-        // large one.
+        // A large disk does not search the cells inside itself, so a small disk in these cells must find the
+        // large disk.
         let is_asked = |second: usize| second < first || (second > first && cells.is_large(second));
         for &second in found[..count].iter().filter(|&&second| is_asked(second as usize)) {
             let (a, b) = (&disks[second as usize], &disks[first]);

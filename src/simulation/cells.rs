@@ -2,7 +2,7 @@
 //! cells around it.
 //!
 //! A disk passes to a neighbor cell where it leaves its own, widened by a margin (`layout.rs`, `grid.rs`), at
-//! the time that `prediction::cell_exit` gives. Then it looks at the three cells ahead (`Cells::ahead`).
+//! the time that `prediction::cell_exit` gives. Then it searches the three cells ahead (`Cells::ahead`).
 
 mod block;
 mod cell_size;
@@ -34,7 +34,8 @@ pub(super) use layout::{CELLS_PER_DISK, Layout, SPARE_CELLS};
 pub(super) use size_class::SizeClass;
 use size_class::{class_of, count, together};
 
-/// Number of disks that may come or go before they are compared with those for which the cells were made.
+/// Number of disks that may be added or removed before the numbers of disks are compared with the numbers for
+/// which the cells were made.
 pub(super) const SPARE_DISKS: usize = 64;
 
 /// The disks in the cells of a grid.
@@ -69,8 +70,8 @@ impl Cells {
         let largest =
             classes.last().map_or_else(|| SizeClass::of_nobody(&domain).largest, |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
-        // Also where layers are used: this layout says whether the domain has room for the largest disk at
-        // all.
+        // This layout is needed with layers, too: it decides whether the domain has room for the largest disk
+        // at all.
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // All disks share the cells of the largest if periodic sides or ends are too close for layers.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
@@ -155,7 +156,8 @@ impl Cells {
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
         self.change(disk, Contents::remove);
-        // The last disk is found by its old number for the last time, and is written anew under the free one.
+        // The last disk is looked up by its old number for the last time, then written under the number that
+        // became free.
         if disk != last {
             self.change(last, Contents::remove);
         }
@@ -168,8 +170,8 @@ impl Cells {
         }
     }
 
-    /// Writes to `found` the disks that one of this diameter at this place would overlap, and others near it.
-    /// Returns their number.
+    /// Writes to `found` the disks that a disk of this diameter at this place would overlap, and other disks
+    /// near the place. Returns their number.
     pub(super) fn near(&self, position: DVec2, diameter: f64, found: &mut [u32]) -> usize {
         let class = class_of(&self.classes, diameter);
         match self.layers.as_ref().and_then(|layers| Some((layers, layers.of_class(class)?))) {
@@ -212,7 +214,7 @@ impl Cells {
         &self.grid
     }
 
-    /// Returns the number of cells of the smallest class, of those that hold disks, and of their disks.
+    /// Returns three counts for the smallest class: its cells, its occupied cells, and its disks.
     pub(super) fn occupation(&self) -> [usize; 3] {
         let small = (0..self.places.len()).filter(|&disk| !self.is_large(disk));
         let mut taken: Vec<usize> = small.map(|disk| self.grid.index(self.places[disk])).collect();
@@ -228,7 +230,7 @@ impl Cells {
         size_of_val(self.places.as_slice()) + self.contents.bytes() + layers
     }
 
-    /// Writes a disk of any class into its cell, or takes it out of there.
+    /// Writes a disk of any class into its cell, or removes it from the cell.
     fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
             None => self.change_cell(disk, change),
@@ -236,7 +238,8 @@ impl Cells {
         }
     }
 
-    /// Does the same for a disk of the smallest class, also in the ghosts that mirror its cell.
+    /// Writes a disk of the smallest class into its cell and the ghosts that mirror the cell, or removes it
+    /// from them.
     #[inline(always)]
     fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
@@ -273,8 +276,8 @@ impl Cells {
     /// Returns the room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        // A search finds each disk at most once. With layers, the search of a large disk may find all of
-        // them; the room of nine cells is then for the free slots that are copied behind the last disk.
+        // A search finds each disk at most once. With layers, the search of a large disk may find all disks;
+        // the room of nine cells is then for the free slots that are copied behind the last disk.
         if self.layers.is_some() { self.places.len() + self.contents.room(9) } else { self.contents.room(9) }
     }
 
@@ -321,8 +324,8 @@ impl Cells {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
-        // Where two images cannot be told apart, a disk seen from the last cell may be met at another image
-        // now, so all are taken again.
+        // Where two images of a disk cannot be distinguished, a disk within reach of the last cell may now be
+        // met at another image, so all disks within reach are gathered again.
         layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
     }
 
@@ -333,7 +336,8 @@ impl Cells {
         self.ahead_of(self.places[disk], exit, found)
     }
 
-    /// Does the same for a disk that has yet to leave its cell by `exit`.
+    /// Writes to `found` the same disks as [`Self::ahead`], for a disk that has yet to leave its cell by
+    /// `exit`.
     #[inline]
     pub(super) fn ahead_of_next(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
         self.ahead_of(self.next_place(disk, exit), exit, found)
@@ -345,7 +349,8 @@ impl Cells {
         let count = self.contents.gather(first, step, found, 0);
         match &self.layers {
             None => count,
-            // The larger disks are few, so it does not pay to leave out those that were within reach before.
+            // The larger disks are few, so it is not worthwhile to leave out disks that were within reach
+            // before.
             Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }

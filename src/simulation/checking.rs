@@ -1,10 +1,11 @@
-//! Checks of the answers that the engine gets: collisions happen where surfaces touch, no event is lost, and
-//! no disk leaves the domain.
+//! Checks of the results that the engine receives: collisions happen where surfaces touch, no event is lost,
+//! and no disk leaves the domain.
 //!
-//! All parts may be code of the user's. None of them can make the engine panic, but a wall that is not where
-//! it says, or a scheduler that forgets, would let a run end as if nothing had happened. The engine therefore
-//! checks where a check costs next to nothing: at each wall collision, at each new largest overlap, at the
-//! ends of searches for a wall, and at all disks whenever the epoch moves or a run ends.
+//! All parts may be code of the user's. None of them can make the engine panic. But a wall at another
+//! position than it reports, or a scheduler that loses events, would let a run end as if nothing had
+//! happened. The engine therefore checks where a check costs next to nothing: at each wall collision, at each
+//! new largest overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a
+//! run ends.
 
 use glam::DVec2;
 
@@ -25,10 +26,10 @@ const NEAR: f64 = 1.0 / (1_u64 << 30) as f64;
 /// thousands that bounce a hundred thousand times in a corner that closes have up to 1e-8.
 const DEEP: f64 = 1e-6;
 
-/// Number of times that the search for a wall doubles its reach, in order to tell how far away the wall is.
+/// Number of times that the search for a wall doubles its reach, in order to report the distance of the wall.
 const MOST_DOUBLINGS: usize = 100;
 
-/// Number of roundings by which a place may be wrong.
+/// Largest error of a position, in units of its rounding.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -50,13 +51,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Returns the disk as it is now, as a boundary is asked about it.
+    /// Returns a probe of the disk as it is now, for queries to the boundary.
     pub(super) fn probe(&self, disk: usize) -> Probe {
         let Material { radius, kind, .. } = self.bodies.material(disk);
         Probe::new(self.bodies.position(disk, self.clock.now), radius, self.clock.now).with_kind(kind)
     }
 
-    /// Keeps an overlap that is larger than all before, if it can be rounding.
+    /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
     /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in
     /// which the disk is, which may be another wall than the one that it touched.
@@ -73,7 +74,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             Partner::Disk(other) => self.bodies.radius(disk).min(self.bodies.radius(other)),
             Partner::Wall(_) => self.bodies.radius(disk),
         };
-        // A depth that is not a number would stay the largest for ever.
+        // A depth that is not a number would stay the largest forever.
         if depth.is_nan() || depth > DEEP * radius + self.rounding_at(disk, partner) {
             return Err(self.false_contact(disk, inside, depth).into());
         }
@@ -90,7 +91,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (now, radius) = (self.clock.now, probe.radius());
         let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
         // A wall that jumps away from the disks may have done so in the rounding of the time. The engine
-        // never asks about times before the epoch.
+        // never passes times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);
         if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {
             return Ok(());
@@ -103,9 +104,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns the error by which the gap between a disk and its partner may differ from zero.
     ///
-    /// Places are rounded relative to their distance from the origin, and to the way since the epoch. The
-    /// time of a touch is rounded as absolute times are, since some walls know no others. In this time, the
-    /// disk goes on, and so does the wall.
+    /// Positions are rounded relative to their distance from the origin, and to the distance traveled since
+    /// the epoch. The time of a touch is rounded as absolute times are, since some walls know no others.
+    /// Meanwhile, both the disk and the wall move.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);
@@ -121,8 +122,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         FARTHEST * self.bodies.typical_diameter / self.clock.epoch_length
     }
 
-    /// Checks a disk that came to the horizon of a search without a touch: a wall that let it pass would find
-    /// no other.
+    /// Checks a disk that reached the horizon of a search without a touch: no later search would find a wall
+    /// that the disk has passed.
     pub(super) fn check_passed(&self, disk: usize) -> Outcome<()> {
         let probe = self.probe(disk);
         match self.boundary.overlap(&probe) {
@@ -175,7 +176,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         RunError::Boundary { disk, time: self.time(), fault }
     }
 
-    /// Asks the boundary again for an impossible touch, in order to report it.
+    /// Repeats the search that returned an impossible touch, in order to report the touch.
     #[cold]
     pub(super) fn impossible_touch(&self, disk: usize) -> RunError {
         let now = self.clock.now;

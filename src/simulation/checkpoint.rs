@@ -1,4 +1,4 @@
-//! Checkpoints: runs saved as data, from which they go on later, bit for bit.
+//! Checkpoints: the saved states of runs, which continue from them later, bit for bit.
 //!
 //! This file contains the format. The file `validation.rs` decides which contents are a possible state, and
 //! `resumption.rs` turns them into a run.
@@ -29,8 +29,8 @@ use crate::{Disk, Fingerprint};
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANEDMD", 8);
 
-/// Everything on which the future of a run depends, except its rule and its boundary. The numbers of walls
-/// that [react](Boundary::react) are kept.
+/// A saved run: everything on which its future depends, except its rule and its boundary. The numbers of
+/// walls that [react](Boundary::react) are kept.
 ///
 /// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
@@ -76,7 +76,7 @@ struct Saved {
     gravity: DVec2,
     trajectories: Vec<Trajectory>,
     spins: Vec<Spin>,
-    /// Numbers of periods that each disk has passed; empty if none has passed any.
+    /// Numbers of periods that each disk has crossed; empty if no disk has crossed a period.
     images: Vec<[i32; 2]>,
     identities: Identities,
     typical_diameter: f64,
@@ -107,7 +107,7 @@ pub enum CheckpointError {
         /// The cause.
         source: io::Error,
     },
-    /// The contents of a file are no checkpoint that can be used.
+    /// The contents of a file are not a usable checkpoint.
     #[error("cannot use the checkpoint {}", .path.display())]
     File {
         /// The file.
@@ -141,20 +141,20 @@ pub enum CheckpointError {
     /// The boundary has another domain than the saved run.
     #[error("the checkpoint is of a run in the domain {saved}; the boundary's is {given}")]
     Domain {
-        /// The domain of the run that was saved.
+        /// The domain of the saved run.
         saved: Domain,
-        /// The domain of the boundary given.
+        /// The domain of the given boundary.
         given: Domain,
     },
-    /// The rule is not the one of the run that was saved.
+    /// The rule differs from the rule of the saved run.
     #[error("the checkpoint is of a run with another rule; `with_another_rule` takes this one on purpose")]
     AnotherRule,
-    /// The boundary is not the one of the run that was saved.
+    /// The boundary differs from the boundary of the saved run.
     #[error(
         "the checkpoint is of a run with another boundary; `with_another_boundary` takes this one on purpose"
     )]
     AnotherBoundary,
-    /// The disks do not fit into the other boundary that was given on purpose.
+    /// The disks do not fit into the other boundary that the caller allowed.
     #[error("the disks of the checkpoint do not fit into the boundary")]
     Boundary(#[from] super::BuildError),
 }
@@ -196,12 +196,12 @@ impl Checkpoint {
         decoded(opened(SEAL, bytes)?).map(Self)
     }
 
-    /// Writes the checkpoint to a file, whole or not at all.
+    /// Writes the checkpoint to a file, completely or not at all.
     ///
     /// A reader never sees half of it, even if others write the same file.
     ///
     /// # Errors
-    /// If the file cannot be written. An older file of that name is then as it was.
+    /// If the file cannot be written. An older file of that name then stays unchanged.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CheckpointError> {
         write_whole(path.as_ref(), &self.to_bytes()?).map_err(failed("write", path.as_ref()))
     }
@@ -281,7 +281,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),
             generator: self.generator.clone(),
-            // The next look is no part of the state.
+            // The number of events until the next check is not part of the state.
             clock: Clock { events_to_look: 0, ..self.clock },
             counters: self.counters,
             ledger: self.ledger,

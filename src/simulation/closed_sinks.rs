@@ -1,4 +1,4 @@
-//! Sinks that no disk can reach, because walls hold its center off.
+//! Sinks that no disk can reach, because walls keep centers away from them.
 
 use std::collections::BTreeMap;
 
@@ -13,11 +13,12 @@ use crate::{Flight, Kind};
 /// Distance from a wall at which a flight to it starts, in radii.
 const AWAY: f64 = 1.5;
 
-/// Speed of such a flight, relative to the speed of a typical disk: walls hardly move meanwhile.
+/// Speed of such a flight, relative to the speed of a typical disk. The speed is high, so that walls hardly
+/// move during the flight.
 const FAST: f64 = 1e3;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns the first sink that no disk can touch now, as its walls lie in or beside others.
+    /// Returns the first sink that no disk can touch now, because its walls lie in or beside other walls.
     ///
     /// The smallest disk of each kind flies from both sides to places all along the walls.
     #[cold]

@@ -1,4 +1,4 @@
-//! Driving in the bulk: all disks are changed at set times, between which the run goes on as usual.
+//! Driving in the bulk: changes of all disks at set times, between which the run continues as usual.
 //!
 //! | driving | change |
 //! |---|---|
@@ -36,8 +36,8 @@ use crate::{Disk, ParameterError};
 ///    must leave them inside and apart, and says so to the check.
 /// 2. A kick treats disks alike wherever they are in the list, and may get none.
 /// 3. The same driving gives the same kicks to the same disks, to the bit: its random numbers are its own.
-/// 4. The clock goes on: after a kick it names a later time, and the same one each time it is asked. A run
-///    that is cut into pieces has the same kicks.
+/// 4. The clock advances: after a kick it returns a later time, and the same time at each call. A run that is
+///    cut into pieces has the same kicks.
 /// 5. If it promises so, the total momentum stays, up to rounding.
 ///
 /// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults it finds. The engine

@@ -1,4 +1,4 @@
-//! Changes for all disks at once: a new epoch, cells of another size, new predictions of all events.
+//! Changes that affect all disks together: a new epoch, cells of another size, new predictions of all events.
 
 use super::Simulation;
 use super::cells::{CellSize, Cells, SPARE_DISKS};
@@ -18,13 +18,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.reset_scheduler();
     }
 
-    /// Tells the scheduler the times of all events.
+    /// Passes the times of all events to the scheduler.
     pub(super) fn reset_scheduler(&mut self) {
         let mut due = std::mem::take(&mut self.scratch.due);
         due.clear();
         due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));
         if !self.inlets.is_empty() {
-            // Seats for disks that are still to come.
+            // Room for disks that are added later.
             due.resize(due.len() + due.len() / 4 + SPARE_DISKS, f64::INFINITY);
         }
         self.scratch.seats = due.len();
@@ -36,7 +36,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Moves the epoch on by whole epochs to just before the offset `due`, and the present to `due`.
+    /// Moves the epoch by whole epochs to just before the offset `due`, and sets the present to `due`.
     #[cold]
     #[inline(never)]
     pub(super) fn move_epoch(&mut self, due: f64) -> Outcome<()> {
@@ -50,7 +50,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Moves the epoch on by this time.
+    /// Moves the epoch forward by this time.
     pub(super) fn shift_epoch(&mut self, by: f64) {
         self.bodies.shift(by);
         self.clock.shift(by);
@@ -58,7 +58,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.reset_scheduler();
     }
 
-    /// Changes to larger or smaller cells, if those suit the events since the epoch last moved.
+    /// Changes to larger or smaller cells, if another size suits the events since the epoch last moved.
     ///
     /// The choice depends on the state alone, so it is the same on every run. After a change, all events are
     /// predicted anew from the present.
@@ -78,8 +78,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Makes new cells for the present disks, and for one of a `further` diameter, and predicts all events
-    /// anew. Returns whether the domain has room for such cells; if not, everything stays as it was.
+    /// Makes new cells for the present disks and for a disk of the diameter `further`, and predicts all
+    /// events anew. Returns false, and changes nothing, if the domain has no room for such cells.
     pub(super) fn renew_cells(&mut self, size: CellSize, further: Option<f64>) -> bool {
         let (bodies, now) = (&self.bodies, self.clock.now);
         let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.radius(disk)));

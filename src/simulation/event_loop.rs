@@ -1,11 +1,12 @@
 //! The event loop, which finds the next event, carries it out, and predicts what follows.
 //!
-//! This file shows one collision from top to bottom. [`Simulation::next_due`] asks the scheduler, and
-//! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
-//! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
-//! The arithmetic of predictions is in `prediction.rs`, and epochs are in `epoch.rs`. If rounding leaves
-//! partners approaching after a collision, `parting.rs` makes them part. All answers of the parts are checked
-//! in `checking.rs`. None of these files calls back into the event loop.
+//! This file shows one collision from top to bottom. [`Simulation::next_due`] queries the scheduler, and
+//! [`Simulation::advance`] carries out the event. [`Simulation::collide`] lets the rule decide
+//! (`resolution.rs`) and kicks both disks. It then predicts the next event of each disk, and passes its time
+//! to the scheduler (`forecasting.rs`). The arithmetic of predictions is in `prediction.rs`, and epochs are
+//! in `epoch.rs`. If rounding leaves partners approaching after a collision, `parting.rs` makes them part.
+//! All results of rules, boundaries and schedulers are checked in `checking.rs`. None of these files calls
+//! back into the event loop.
 
 use glam::DVec2;
 
@@ -144,7 +145,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         let is_plain = matches!(surface.response, Response::Shared | Response::Rule(_));
         self.ledger.has_source |= !is_plain || surface.velocity != DVec2::ZERO;
-        // Before the touch is checked: a sink for centers takes disks that lie deep in its wall.
+        // The removal comes before the check of the touch, since disks may lie deep in the wall of a sink for
+        // centers.
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
         }
@@ -155,8 +157,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.wall_collisions += 1;
         self.count_regime(&collision);
         self.kick(disk, &kick);
-        // The wall reacts before the disk's next flight is searched, which must see the wall as it moves from
-        // now on.
+        // The wall reacts before the disk's next flight is predicted, since the prediction needs the new
+        // motion of the wall.
         let reaction = self.boundary.react(&impact_of(&collision, wall, self.clock.now));
         self.find_next(disk);
         if parts {
@@ -170,14 +172,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::WallCollision { disk, wall })
     }
 
-    /// Ends the flights anew that may meet a wall which now moves otherwise. Their partners stay the same.
+    /// Predicts anew the ends of all flights that may meet this wall, whose motion has changed. The predicted
+    /// partners of the disks stay the same.
     #[cold]
     #[inline(never)]
     fn end_flights_that_may_meet(&mut self, wall: usize) {
         for disk in 0..self.bodies.len() {
             let (region, at_wall) = self.cells.region(disk);
             let Forecast { exit, exit_due: until, wall: expected, .. } = *self.forecast(disk);
-            // A touch that was expected may be later now, or never.
+            // A predicted touch may now happen later, or not at all.
             let was_to_meet = exit == Exit::Wall && usize::from(expected) == wall;
             let may_meet = || self.boundary.may_meet(wall, &region, self.bodies.radius(disk), until);
             if at_wall && (was_to_meet || may_meet()) {
@@ -228,8 +231,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
-        // The answer is no for a velocity that is not a number. Spins need no test: an impulse that makes the
-        // spin NaN makes the velocity NaN, too.
+        // The result is false for a velocity that is not a number. Spins need no test: an impulse that makes
+        // the spin NaN makes the velocity NaN, too.
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
 
@@ -256,8 +259,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Begins a shorter epoch for disks of these velocities in the free-fall frame.
     ///
-    /// The place of a fast disk at the epoch would be so far away that it would lack digits. For this reason,
-    /// the epoch moves before the kick and not after it.
+    /// After the kick, the position of a fast disk at the old epoch would be so far away that it would lack
+    /// digits. The epoch therefore moves before the kick.
     #[cold]
     #[inline(never)]
     pub(super) fn begin_epoch_at(&mut self, velocities: impl Iterator<Item = DVec2>) -> Outcome<()> {

@@ -22,7 +22,7 @@ pub enum Event {
 
 /// The reason why a run ended without an error.
 ///
-/// The run can go on from there, with the same bits.
+/// The run can continue from there, with the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunEnd {
@@ -30,10 +30,10 @@ pub enum RunEnd {
     Time,
     /// An observer stopped the run; see [`Observer::verdict`](crate::observable::Observer::verdict).
     Observer,
-    /// The run had all the collisions that it may have; see
+    /// The run reached its largest number of collisions; see
     /// [`Limits::with_most_collisions`](super::Limits::with_most_collisions).
     Collisions,
-    /// The run took all the time that it may take; see
+    /// The run reached its largest wall-clock time; see
     /// [`Limits::with_wall_clock`](super::Limits::with_wall_clock).
     WallClock,
     /// The flag that interrupts the run was set; see
@@ -61,30 +61,30 @@ pub struct Counters {
     /// Collisions whose surfaces parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound).
     pub least_rebound_collisions: u64,
-    /// Energy that the collisions which gained energy put in.
+    /// Energy added by the collisions that gained energy.
     pub energy_of_rebounds: f64,
-    /// Passages of a disk from one neighbor cell to another.
+    /// Passages of disks from one neighbor cell to another.
     pub cell_crossings: u64,
     /// Predicted collisions that were out of date when they came up, since the partner had had another
     /// collision. They were predicted anew.
     pub repredictions: u64,
-    /// Searches for a wall that found none up to their horizon, and were taken up again.
+    /// Searches for a wall that found no touch up to their horizon, and were continued from there.
     pub horizons: u64,
-    /// Changes of the size of the neighbor cells. All events are then predicted anew.
+    /// Changes of the size of the neighbor cells. Each change predicts all events anew.
     pub cell_resizes: u64,
-    /// Largest overlap of two disks at a collision. A larger one than rounding ends the run.
+    /// Largest overlap of two disks at a collision. An overlap larger than rounding ends the run.
     pub max_overlap: f64,
-    /// Largest overlap of a disk and a wall at a collision. A larger one than rounding ends the run.
+    /// Largest overlap of a disk and a wall at a collision. An overlap larger than rounding ends the run.
     pub max_wall_overlap: f64,
-    /// Disks that sinks took out.
+    /// Disks that sinks removed.
     pub removals: u64,
-    /// Disks that inlets let in.
+    /// Disks that inlets added.
     pub insertions: u64,
-    /// Walls that were suddenly elsewhere when the boundary was set between runs.
+    /// Jumps of walls: a boundary set between runs had a wall at another position.
     pub wall_jumps: u64,
-    /// Farthest way of such a wall.
+    /// Largest displacement of such a wall.
     pub farthest_jump: f64,
-    /// The wall that jumped so far.
+    /// Index of the wall with this displacement.
     pub jumped_wall: u16,
 }
 

@@ -1,4 +1,4 @@
-//! The same disks with another rule, boundary or scheduler, which may be of another type.
+//! Exchange of the rule, boundary or scheduler for another one, which may have another type.
 
 use super::builder::fit;
 use super::traffic::check_inlets;
@@ -11,7 +11,7 @@ use crate::scheduler::EventScheduler;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the same simulation with another rule, which may be of another type.
     ///
-    /// It goes on as after [`set_rule`](Self::set_rule).
+    /// It continues as after [`set_rule`](Self::set_rule).
     ///
     /// ```
     /// # use granular_edmd::{Simulation, boundary::Container, initial};
@@ -39,7 +39,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns the same simulation with other walls, which may be of another type.
     ///
-    /// It goes on as after [`set_boundary`](Self::set_boundary).
+    /// It continues as after [`set_boundary`](Self::set_boundary).
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls.
@@ -55,7 +55,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(simulation)
     }
 
-    /// Exchanges parts, and leaves the rest as it is.
+    /// Exchanges parts, and leaves everything else unchanged.
     fn exchanged<R2, B2, S2>(self, new: impl FnOnce(R, B, S) -> (R2, B2, S2)) -> Simulation<R2, B2, S2> {
         let Self { wall_count, bodies, cells, clock, generator, .. } = self;
         let Self { counters, lookahead, instructions, scratch, inlets, ledger, marks, .. } = self;

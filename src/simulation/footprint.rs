@@ -17,9 +17,9 @@ pub struct Footprint {
     pub bytes_per_disk: f64,
     /// Number of neighbor cells of the smallest disks.
     pub cells: usize,
-    /// Number of these cells that hold disks.
+    /// Number of the smallest disks' cells that hold disks.
     pub occupied_cells: usize,
-    /// Number of the disks in these cells.
+    /// Number of the smallest disks, which are in these cells.
     pub disks_in_cells: usize,
     /// Name of the scheduler.
     pub scheduler: String,
@@ -28,7 +28,7 @@ pub struct Footprint {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns what the simulation takes at present.
+    /// Returns the memory, cells and instructions that the simulation uses at present.
     pub fn footprint(&self) -> Footprint {
         let [cells, occupied_cells, disks_in_cells] = self.cells.occupation();
         let name = std::any::type_name::<S>().rsplit("::").next().unwrap_or_default();

@@ -15,7 +15,7 @@ use crate::scheduler::EventScheduler;
 pub(super) const HORIZON: f64 = 2.0;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Finds the next event of a disk among all its neighbors, and tells the scheduler.
+    /// Finds the next event of a disk among all its neighbors, and passes its time to the scheduler.
     pub(super) fn predict(&mut self, disk: usize) {
         self.find_next(disk);
         self.schedule(disk);
@@ -82,14 +82,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         earliest_collision(self.instructions, &self.bodies, periods, disk, found, count, now, known)
     }
 
-    /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.
+    /// Sets `earliest` as the next collision of a disk whose next collision was `known` before.
     ///
     /// The code does not branch on whether they are the same. The answer is known last of all, and a
     /// misprediction would undo much work.
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
         let nobody = earliest.partner as usize >= self.bodies.len();
-        // The disk stands in for nobody, since the count of some disk is read in any case.
+        // Without a partner, the disk's own index stands in, since some disk's count is read in any case.
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
         // A known collision keeps the count of its own prediction. With the partner's present count, a
         // prediction that the partner's last collision has outdated would count as valid.
@@ -98,7 +98,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.forecast_mut(disk).set_collision(earliest, collisions);
     }
 
-    /// Tells the scheduler when the next event of a disk is due.
+    /// Passes the time of a disk's next event to the scheduler.
     #[inline(always)]
     pub(super) fn schedule(&mut self, disk: usize) {
         self.scheduler.set(disk, self.forecast(disk).due());
@@ -117,7 +117,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Finds the time and the way in which a disk's flight in its cell ends.
+    /// Finds when and where a disk's flight in its cell ends.
     #[inline(always)]
     pub(super) fn end_flight(&mut self, disk: usize) {
         self.instructions.run(
@@ -154,7 +154,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 (horizon, Exit::Horizon)
             }
             FirstTouch::NotBefore(open) if open > now => (open, Exit::Horizon),
-            // The search gets no further, so neither would the run.
+            // The search makes no progress, so the run would not either.
             FirstTouch::NotBefore(_) => (now, Exit::Impossible),
         };
         let forecast = self.forecast_mut(disk);

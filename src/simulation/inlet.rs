@@ -13,10 +13,11 @@ use crate::{Disk, Kind, ParameterError};
 
 /// An inlet: it lets disks into a run, at set times and at random places of a rectangle.
 ///
-/// Each time it opens, [`new`](Self::new) lets in one disk, and [`refill`](Self::refill) all disks that sinks
-/// have taken out since. A disk for which it finds no room waits until the inlet opens again, and the others
-/// wait behind it. A disk that comes in has a new [id](Disk::id) and the largest index, and has collided with
-/// nothing yet. This takes the same time however many disks there are.
+/// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
+/// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it
+/// finds no room waits until the inlet opens again, and the others wait behind it. A disk that enters has a
+/// new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same time
+/// however many disks there are.
 ///
 /// An inlet is a part of the state of a run, and so of its checkpoints, with the disks that wait.
 ///
@@ -39,7 +40,7 @@ use crate::{Disk, Kind, ParameterError};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Inlet {
-    /// Lower left and upper right corner of the rectangle.
+    /// Lower left and upper right corners of the rectangle that holds the new centers.
     places: [DVec2; 2],
     source: Source,
     pub(super) times: SampleTimes,
@@ -47,7 +48,7 @@ pub struct Inlet {
     pub(super) waiting: VecDeque<Disk>,
 }
 
-/// The disks that come in.
+/// The disks that enter through the inlet.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Source {
@@ -66,13 +67,13 @@ impl Inlet {
     /// Creates an inlet that lets in one disk at each of these times: a copy of one of the models, drawn at
     /// random.
     ///
-    /// Its center is in the rectangle between the two places, the lower left and the upper right corner. The
-    /// copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models have
-    /// no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws, for
-    /// example.
+    /// Its center is in the rectangle with the corners `places`: first the lower left, then the upper right.
+    /// The copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models
+    /// have no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws,
+    /// for example.
     ///
     /// # Errors
-    /// If there are no models, or the places are not finite or not in this order.
+    /// If there are no models, or the corners are not finite or not in this order.
     pub fn new(
         places: [DVec2; 2],
         models: impl IntoIterator<Item = Disk>,
@@ -82,13 +83,13 @@ impl Inlet {
         Self::of(places, Source::New(models.into_iter().collect()), times, seed)
     }
 
-    /// Creates an inlet that puts back what sinks have taken out, at each of these times.
+    /// Creates an inlet that puts back the disks that sinks have removed, at each of these times.
     ///
     /// A disk comes back at the given velocity and without a spin, and keeps its radius, mass, inertia and
-    /// kind. Of several such inlets, the one with the fewest disks that wait gets the next.
+    /// kind. If there are several such inlets, the inlet with the fewest waiting disks gets the next disk.
     ///
     /// # Errors
-    /// If the velocity is not one that a disk may have, or the places are not finite or not in this order.
+    /// If a disk cannot have the velocity, or the corners are not finite or not in this order.
     pub fn refill(
         places: [DVec2; 2],
         velocity: DVec2,
@@ -141,7 +142,7 @@ impl Inlet {
         Ok(self)
     }
 
-    /// Returns the disks of which copies come in.
+    /// Returns the models, whose copies enter.
     pub(super) fn models(&self) -> &[Disk] {
         if let Source::New(models) = &self.source { models } else { &[] }
     }
@@ -151,17 +152,17 @@ impl Inlet {
         2.0 * self.models().iter().map(Disk::radius).fold(0.0, f64::max)
     }
 
-    /// Returns the velocity at which disks come back, if the inlet puts back what sinks take out.
+    /// Returns the velocity of returning disks if the inlet puts back disks that sinks remove.
     pub(super) fn velocity_of_return(&self) -> Option<DVec2> {
         if let Source::TakenOut { velocity, .. } = self.source { Some(velocity) } else { None }
     }
 
-    /// Returns whether the inlet puts back what sinks take out.
+    /// Returns whether the inlet puts back disks that sinks remove.
     pub(super) fn takes_back(&self) -> bool {
         matches!(self.source, Source::TakenOut { .. })
     }
 
-    /// Takes a disk that a sink has taken out.
+    /// Receives a disk that a sink has removed.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         if let Source::TakenOut { velocity, kind } = self.source {
             let model = Disk::at_rest(gone.radius(), gone.mass(), gone.inertia_factor(), gone.kind());
@@ -170,7 +171,7 @@ impl Inlet {
         }
     }
 
-    /// Begins to let disks in at this time, and goes on to the next one.
+    /// Starts an opening at this time, and advances to the next opening.
     pub(super) fn open(&mut self, time: f64) {
         self.times.advance_past(time);
         if let Source::New(models) = &self.source {
@@ -179,7 +180,7 @@ impl Inlet {
         }
     }
 
-    /// Returns a disk at a random place of the inlet, as one that has no id yet.
+    /// Returns a disk without an id at a random position of the inlet.
     pub(super) fn placed(&mut self, disk: &Disk) -> Option<Disk> {
         let [low, high] = self.places;
         let mut along = |low: f64, high: f64| low + (high - low) * uniform(&mut self.generator);

@@ -8,9 +8,9 @@ use super::{Counters, RunEnd};
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two looks at the wall clock and at the flag of another thread. They are many
-/// enough that the looks cost next to nothing, and few enough that a limit is noticed immediately, even if
-/// each event takes all the steps that a search for a moving wall may take.
+/// Number of events between two checks of the wall clock and of the flag of another thread. The number is
+/// large enough that the checks cost next to nothing, and small enough that a limit is noticed immediately,
+/// even if each event takes all the steps that a search for a moving wall may take.
 const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
@@ -95,7 +95,7 @@ impl<'a> Limits<'a> {
         Ok(Self { least_progress: Some(non_negative("least progress", time_per_event)?), ..self })
     }
 
-    /// Returns what is left of the limits after these collisions and this wall-clock time.
+    /// Returns the remaining limits after these collisions and this wall-clock time.
     pub(super) fn rest(&self, collisions: u64, spent: Duration) -> Self {
         let most_collisions = self.most_collisions.saturating_sub(collisions);
         let wall_clock = self.wall_clock.map(|time| time.saturating_sub(spent));
@@ -150,7 +150,7 @@ impl<'a> Watch<'a> {
         self.deadline.is_some_and(|deadline| Instant::now() >= deadline).then_some(RunEnd::WallClock)
     }
 
-    /// Returns the number of events after which the limits must be looked at again.
+    /// Returns the number of events until the next check of the limits.
     ///
     /// No more events than collisions left: the run then ends exactly at the last one.
     pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {

@@ -6,14 +6,14 @@ use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
 /// Number of disks that come into sight between two steps of a request: first the disk is requested, then the
-/// cells that its event needs, then its neighbors in those cells.
+/// cells that its event needs, then its neighbors in these cells.
 const LATER: usize = 12;
 
 /// The disks that last came into sight. For each, the disk itself is requested from memory first, then the
 /// cells that its event needs, and then its neighbors there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookahead {
-    /// Place at which the next disk is written.
+    /// Index at which the next disk is written.
     next: usize,
     disks: [u32; 2 * LATER],
     /// Memory for the disks that come into sight.
@@ -21,10 +21,9 @@ pub(super) struct Lookahead {
 }
 
 impl Lookahead {
-    /// Requests the data of the next events from memory. The slice `found` is room for the neighbors of a
-    /// disk.
+    /// Prefetches the data of the next events. The slice `found` is a buffer for the neighbors of a disk.
     ///
-    /// The work pays only if the caches do not hold the system, since it takes many instructions.
+    /// Prefetching is worthwhile only for systems too large for the caches, since it takes many instructions.
     #[inline(never)]
     pub(super) fn look<S: EventScheduler + ?Sized>(
         &mut self,
@@ -61,19 +60,19 @@ impl Lookahead {
     }
 }
 
-/// Requests the next event of a disk, and its place.
+/// Prefetches the next event of a disk, and its place in the cells.
 #[inline]
 fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
     prefetch(&bodies.particles, disk);
     cells.prefetch_place(disk);
 }
 
-/// Requests the partner of a disk, or the cells ahead of it.
+/// Prefetches the partner of a disk, or the cells ahead of the disk.
 #[inline]
 fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
     let forecast = bodies.particles[disk].forecast;
     if !forecast.is_collision() {
-        // It does not pay to find the cells ahead of a large disk, since such a disk passes few cells.
+        // The cells ahead of a large disk are not prefetched, since such a disk crosses few cells.
         if !cells.is_large(disk) {
             cells.prefetch_ahead(disk, forecast.exit);
         }
@@ -86,7 +85,7 @@ fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
     cells.prefetch_around(disk);
 }
 
-/// Requests the trajectories of the disks with which a disk may collide.
+/// Prefetches the trajectories of the disks with which a disk may collide.
 #[inline]
 fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [u32]) {
     let forecast = bodies.particles[disk].forecast;

@@ -9,14 +9,14 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, ParameterError};
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Replaces each disk by what `change` makes of its index and its present state.
+    /// Replaces each disk by the result of `change` for its index and its present state.
     ///
     /// The order, the [ids](Disk::id) and the times of the last collisions stay. All events are predicted
     /// anew. For the bits, see [`insert`](Self::insert).
     ///
     /// # Errors
     /// If `change` fails, a disk that has moved or grown does not fit, or a disk becomes so fast that times
-    /// as late as the present are too coarse. The simulation then stays as it was.
+    /// as late as the present are too coarse. The simulation then stays unchanged.
     ///
     /// ```
     /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};
@@ -37,7 +37,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.replace_disks(&disks.collect::<Result<Vec<_>, _>>()?)
     }
 
-    /// Takes these disks for those that there are.
+    /// Replaces the present disks by these disks.
     pub(super) fn replace_disks(&mut self, disks: &[Disk]) -> Result<(), BuildError> {
         check_speeds(disks.iter().map(Disk::velocity))?;
         let stay = |(index, disk): (usize, &Disk)| {
@@ -49,7 +49,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let mut bodies = self.bodies.clone();
         bodies.replace(disks, self.clock.now);
         check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
-        // The place of a fast disk at a far epoch would lack digits, so the epoch moves first.
+        // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.replace(disks, self.clock.now);
         if let Some((wall_count, cells)) = fitted {

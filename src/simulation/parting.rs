@@ -11,7 +11,7 @@ use crate::observable::Collision;
 use crate::scheduler::EventScheduler;
 
 /// Largest number of pushes, each twice as strong as the last, with which two partners are made to part. If
-/// these fail, the partners are left as they are.
+/// these fail, the partners stay unchanged.
 const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, relative to the speeds of the disks, above which it is not rounding: the
@@ -50,8 +50,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Makes a disk leave a wall if engine and boundary disagree about its motion.
     ///
     /// Because its speed is rounded, a disk can part from the wall in the engine's arithmetic and approach it
-    /// in the boundary's. A disk that rests on a wall does not part from it, and is left as it is. The pushes
-    /// are added to the collision, so that its impulse and energy are what the disk receives.
+    /// in the boundary's. A disk that rests on a wall does not part from it, and stays unchanged. The pushes
+    /// are added to the collision, so that its impulse and energy are the impulse and energy that the disk
+    /// receives.
     #[cold]
     #[inline(never)]
     pub(super) fn leave_wall(&mut self, disk: usize, wall: usize, collision: &mut Collision) {

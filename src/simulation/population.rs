@@ -24,9 +24,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk, or has the id of another; the error
-    /// names its index. If there
-    /// would be too many disks, the domain is too small for a disk, or a disk is so fast that times as late
-    /// as the present are too coarse. The simulation then stays as it was.
+    /// names its index. If there would be too many disks, the domain is too small for a disk, or a disk is so
+    /// fast that times as late as the present are too coarse. The simulation then stays unchanged.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;
@@ -56,7 +55,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let mut bodies = self.bodies.clone();
         bodies.insert(&new, self.clock.now);
         check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
-        // The place of a fast disk at a far epoch would lack digits, so the epoch moves first.
+        // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.insert(&new, self.clock.now);
         (self.wall_count, self.cells) = (wall_count, cells);
@@ -71,7 +70,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If the boundary's domain cannot hold the other disks any more, which happens only if the boundary
-    /// breaks its contract. The simulation then stays as it was.
+    /// breaks its contract. The simulation then stays unchanged.
     pub fn remove(&mut self, mut chosen: impl FnMut(usize, &Disk) -> bool) -> Result<Vec<Disk>, BuildError> {
         let all = self.disks();
         let leaves: Vec<bool> = all.iter().enumerate().map(|(index, disk)| chosen(index, disk)).collect();
@@ -90,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(removed)
     }
 
-    /// Predicts all events anew after disks have come or gone.
+    /// Predicts all events anew after disks were added or removed.
     pub(super) fn begin_anew(&mut self) {
         self.lookahead = Lookahead::default();
         self.ledger.has_source = true;

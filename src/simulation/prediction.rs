@@ -21,7 +21,7 @@ use vector::pairs;
 /// instructions, and no branch depends on whether a pair approaches: such a branch is a coin toss.
 pub(super) const LANES: usize = 4;
 
-/// The relative positions and velocities of some pairs.
+/// The relative positions and velocities of several pairs.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pairs {
     x: [f64; LANES],
@@ -32,7 +32,7 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// Returns the time until each pair touches; infinite for never.
+    /// Returns the time until each pair touches, or infinity if it never does.
     ///
     /// With the separation r, the relative velocity v and the contact distance σ, the pair touches at the
     /// smaller root of v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two
@@ -43,8 +43,8 @@ impl Pairs {
     ///
     /// The method is stable event detection (Bannerman et al. 2014). A pair that touches or overlaps by
     /// rounding collides immediately while it approaches, and never while it recedes. If an overlap of 1e-16
-    /// were a reason to wait for the other root, the disks would pass through each other. If it were a
-    /// collision in any case, a pair that has just collided would collide forever.
+    /// were a reason to wait for the other root, the disks would pass through each other. If every such
+    /// overlap were a collision, a pair that has just collided would collide forever.
     #[inline]
     fn wait(&self) -> [f64; LANES] {
         let mut wait = [0.0; LANES];
@@ -77,7 +77,8 @@ impl Best {
         Self { due: [known.due; LANES], partner: [u64::from(known.partner); LANES] }
     }
 
-    /// Takes collisions that are earlier. Of equal times, the smaller partner wins.
+    /// Replaces the known collision in each lane where a new one is earlier. Of equal times, the smaller
+    /// partner wins.
     #[inline]
     fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {
         for lane in 0..LANES {
@@ -111,8 +112,8 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Returns whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic
-/// would round differently, and a pair that seems to part here could be predicted to collide.
+/// Returns whether two disks approach each other, in exactly the arithmetic of [`earliest_collision`]. Other
+/// arithmetic would round differently, and a pair that seems to part here could be predicted to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, periods: DVec2, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());

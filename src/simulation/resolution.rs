@@ -73,7 +73,7 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
         separation.y = nearest_image(separation.y, periods.y);
     }
     let distance = separation.length();
-    // Two centers in one place have no direction between them, and a NaN would spread to both disks.
+    // Two centers at the same position have no direction between them, and a NaN would spread to both disks.
     let normal = if distance > 0.0 { separation / distance } else { DVec2::Y };
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
     let (first, second) = (bodies.body(disk), bodies.body(partner));
@@ -120,7 +120,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
     let (leaving, contact, impulse) = match surface.response {
-        // These walls decide the motion, and the impulse follows. The contact is the same under any rule.
+        // Thermal walls and sinks decide the motion, and the impulse follows from it. The contact is the same
+        // under any rule.
         Response::Thermal(_) | Response::Absorbing => {
             let leaving = match surface.response {
                 Response::Thermal(thermal) => emitted(&thermal, &arriving, surface, mass, inertia, generator),
@@ -187,7 +188,7 @@ pub(super) fn failed(collision: &Collision, wall: Option<String>) -> RunError {
     RunError::NotFinite(Box::new(FailedCollision { disk, partner, wall, time, contact, impulse }))
 }
 
-/// Returns the blow that a wall receives in a collision at this offset.
+/// Returns the impact that a wall receives in a collision at this offset.
 #[inline]
 pub(super) fn impact_of(collision: &Collision, wall: usize, offset: f64) -> Impact {
     let impulse = collision.impulse;

@@ -11,10 +11,10 @@ use crate::collision::CollisionRule;
 use crate::observable::Observer;
 use crate::scheduler::EventScheduler;
 
-/// The point to which a run has come.
+/// The reason why a run pauses or ends.
 enum Reached {
     Collision(Event),
-    /// The run has come to the time until which it should go.
+    /// The run has reached its target time.
     Time,
     Limit(RunEnd),
 }
@@ -40,14 +40,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// Returns what ended the run.
     ///
-    /// The run calls the observer at its start, at each collision, at the samples that the observer asks for,
+    /// The run calls the observer at its start, at each collision, at the samples that the observer requests,
     /// and at its end, even if it ends with an error. If the observer stops the run, the present is the time
-    /// of the collision or sample at which the observer did so. Whatever ends the run, the next one goes on
+    /// of the collision or sample at which the observer did so. However the run ends, the next run continues
     /// from there with the same bits.
     ///
     /// # Errors
     /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
-    /// scheduler or observer gives an impossible answer, times become too coarse, or an observer fails. The
+    /// scheduler or observer returns an impossible result, times become too coarse, or an observer fails. The
     /// simulation then keeps the state of that time.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
@@ -57,8 +57,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.guarded(|run| run.watched_run(limits, observer)).map_err(|error| *error)
     }
 
-    /// Does a piece of work, unless a panic tore an earlier one. A part that panics in the midst of an event
-    /// leaves disks whose next events are not known.
+    /// Performs some work on the run, unless a panic interrupted earlier work. A part that panics in the
+    /// midst of an event leaves disks whose next events are not known.
     #[inline]
     fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Outcome<T>) -> Outcome<T> {
         if std::mem::replace(&mut self.ledger.is_running, true) {
@@ -86,26 +86,26 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             ),
             stopped => stopped.map(|_| RunEnd::Observer),
         };
-        // After fewer events than disks, a look at all disks would cost more than the run. A scheduler that
-        // names none at all is noticed when an epoch is over.
+        // After fewer events than disks, a check of all disks would cost more than the run. A scheduler that
+        // names no disk at all is noticed when an epoch is over.
         let is_long = self.counters.events() - events >= self.len() as u64
             || self.time() - start >= self.clock.epoch_length;
         let is_due = ended.is_ok() && is_long;
         let ended = if is_due { self.check_all(self.clock.now).and(ended) } else { ended };
         observer.on_end(&self.snapshot());
-        // A verdict to stop comes too late now. A failure, of a last write for example, must still be
-        // reported.
+        // At this point, a verdict to stop has no effect. A failure, of a last write for example, must still
+        // be reported.
         let last = self.verdict_of(observer);
         ended.and_then(|end| last.map(|_| end))
     }
 
-    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it.
+    /// Advances to the next collision and returns it, unless the collision is after the absolute time `end`.
     ///
     /// If there is none, goes to `end` and returns `None`.
     ///
     /// The observer sees only the collision: `on_start`, `on_sample` and `on_end` are not called, so the
     /// observer's clock stands still. If the observer fails, the step returns an error. A verdict to stop has
-    /// no effect, since the caller takes each step.
+    /// no effect, since the caller decides on each step.
     ///
     /// ```
     /// # use granular_edmd::glam::DVec2;
@@ -145,7 +145,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
     }
 
-    /// Goes from sample to sample until a limit.
+    /// Advances from sample to sample until a limit.
     #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
         let end = watch.end();
@@ -169,7 +169,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                     return Ok(RunEnd::Observer);
                 }
             }
-            // Before a sample at the same time, which then sees the new disks.
+            // Inlets open before a sample at the same time, so that the sample sees the new disks.
             if opening <= stop {
                 self.open_inlets(opening, observer)?;
                 continue;
@@ -208,17 +208,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
-        // The difference is rounded, and must not take the run back behind its last event.
+        // The difference is rounded, and must not set the run back to a time before its last event.
         self.clock.now = self.clock.now.max(stop - self.clock.origin);
         Ok(Reached::Time)
     }
 
-    /// Looks at the limits and at the progress of the run, before the next event. Returns the limit that was
-    /// reached, if one was.
+    /// Checks the limits and the progress of the run before the next event. Returns the limit that the run
+    /// has reached, if any.
     #[cold]
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {
-        // Whatever ends the run here, the next one looks before its first event.
+        // However the run ends here, the next run checks its limits before its first event.
         self.clock.events_to_look = 1;
         if let Some(end) = watch.reached(&self.counters) {
             return Ok(Some(end));
@@ -242,7 +242,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
     }
 
-    /// Asks the observer whether the run goes on.
+    /// Asks the observer whether the run continues.
     #[inline]
     fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
         observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))

@@ -15,13 +15,14 @@ const SLOW: f64 = 1e-9;
 /// Number of windows in which a run without losses may hardly advance.
 const PATIENCE: u32 = 64;
 
-/// Number of windows, each like the one before, after which such a run is stuck.
+/// Number of consecutive equal windows after which a run without losses is stuck.
 const STUCK: u32 = 2;
 
-/// Time, relative to an epoch, over which the velocity of a wall is compared with the way of its surface.
+/// Time, relative to an epoch, over which the reported velocity of a wall is compared with the mean velocity
+/// of its surface.
 const MOMENT: f64 = 1e-6;
 
-/// Relative difference of these two that is rounding.
+/// Largest relative difference of these velocities that counts as rounding.
 const ALIKE: f64 = 1e-3;
 
 /// Share of the energy, or of the closing speed, that is rounding.
@@ -46,7 +47,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
     }
 
-    /// Returns whether a run in which time hardly advances before this event will not go on.
+    /// Returns whether a run in which time hardly advances before this event is stuck.
     ///
     /// A lossless collision may be one of many that end by themselves: a light disk between a wall and a
     /// heavy disk that comes near. Such a run has more time, as long as its windows differ. If they are
@@ -105,7 +106,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Returns whether a wall's geometry comes toward a disk at another speed than the wall's surface says.
+    /// Returns whether a wall's geometry approaches a disk at another speed than the wall's surface reports.
     ///
     /// The depth of a larger disk that stays where it is grows at the speed of the wall.
     fn moves_otherwise(&self, disk: usize, wall: usize, due: f64) -> bool {
@@ -121,7 +122,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         (speed - told).abs() > ALIKE * (speed.abs() + told.abs() + typical)
     }
 
-    /// Returns the remedy that fits the rule's answer to a slower contact like this.
+    /// Returns the remedy that fits the rule's impulse in the same contact at a lower speed.
     fn remedy_for(&self, contact: &Contact, rule: &dyn CollisionRule) -> Remedy {
         let typical = self.bodies.typical_diameter / self.clock.epoch_length;
         // The speed is halved, because disks may bounce exactly at the limiting speed of a remedy, where

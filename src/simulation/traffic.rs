@@ -1,9 +1,9 @@
-//! Disks that come and go during a run, one at a time.
+//! Insertion and removal of single disks during a run.
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
 //! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
-//! of date: their collision count does not match the disk that has this index now. They are made anew when
-//! they come up, as for any partner that has collided since.
+//! of date: their collision count does not match the disk that has this index now. The engine replaces them
+//! when they are due, as for any partner that has collided since.
 
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
@@ -16,18 +16,18 @@ use crate::quantity::accept;
 use crate::scheduler::EventScheduler;
 use crate::{Disk, ParameterError};
 
-/// Number of places that an inlet tries for a disk each time it opens.
+/// Number of positions that an inlet tries for a disk at each opening.
 const TRIES: u32 = 32;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Adds an inlet, which lets disks in from now on.
     ///
-    /// At equal times, it does so after all events of disks and before a sample. Inlets take turns in the
-    /// order in which they were added.
+    /// At equal times, the inlet opens after all events of disks and before a sample. Inlets take turns in
+    /// the order in which they were added.
     ///
     /// # Errors
     /// If the inlet is not in the domain, or a model does not fit into the boundary, just fills a hollow of a
-    /// wall, or moves at a speed below 1e-100. The simulation then stays as it was.
+    /// wall, or moves at a speed below 1e-100. The simulation then stays unchanged.
     pub fn add_inlet(&mut self, mut inlet: Inlet) -> Result<(), BuildError> {
         check_inlets(&self.boundary, std::slice::from_ref(&inlet))?;
         check_speeds(inlet.models().iter().map(Disk::velocity).chain(inlet.velocity_of_return()))?;
@@ -51,7 +51,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         std::mem::take(&mut self.inlets)
     }
 
-    /// Returns the absolute time at which an inlet opens next; infinite without inlets.
+    /// Returns the absolute time at which the next inlet opens, or infinity without inlets.
     pub(super) fn next_opening(&self) -> Outcome<f64> {
         let mut next = f64::INFINITY;
         for opening in self.inlets.iter().map(|inlet| inlet.times.upcoming()) {
@@ -111,7 +111,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             && self.boundary.overlap(&Probe::of(disk, now)).is_none()
     }
 
-    /// Gives a disk that a sink took out to the inlet that puts such disks back.
+    /// Passes a disk that a sink removed to the inlet that puts such disks back.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         let inlets = self.inlets.iter_mut().filter(|inlet| inlet.takes_back());
         if let Some(inlet) = inlets.min_by_key(|inlet| inlet.waiting()) {
@@ -135,9 +135,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.keep_cells_suitable();
     }
 
-    /// Puts a disk in where there is room for it, into cells that suit it.
+    /// Inserts a disk at a free position, into cells that suit it.
     fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
-        // The place of a disk at an epoch long ago would lack digits, and so would the place of a fast disk.
+        // The position of a disk at a distant epoch would lack digits, as would the position of a fast disk.
         if self.clock.now > self.clock.epoch_length {
             self.move_epoch(self.clock.now)?;
         }

@@ -1,4 +1,4 @@
-//! Warnings: what a run noticed and survived.
+//! Warnings: facts that a run noticed and survived.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,25 +13,25 @@ use crate::error::Rounded;
 use crate::observable::{Partner, Temperatures};
 use crate::scheduler::EventScheduler;
 
-/// Fewest collisions of which a share says something.
+/// Fewest collisions for which a share is meaningful.
 const FEWEST: u64 = 1000;
 
-/// Contact duration, relative to the time between two collisions of a disk, that is long.
+/// Smallest contact duration that counts as long, relative to the time between two collisions of a disk.
 const LONG: f64 = 0.05;
 
-/// Way of a typical disk in the contact duration, in diameters, below which matter is at rest.
+/// Distance that a typical disk moves in the contact duration, in diameters, below which matter is at rest.
 const FAR: f64 = 0.005;
 
-/// Speed across an axis, relative to the speed along it, that is none.
+/// Largest speed across an axis, relative to the speed along the axis, that counts as zero.
 const STRAIGHT: f64 = 1e-9;
 
-/// Gain of energy, relative to the energy, that is no rounding.
+/// Largest relative gain of energy that counts as rounding.
 const GAIN: f64 = 1e-9;
 
 /// Fewest disks at an inlet that count as a jam.
 const JAM: usize = 1000;
 
-/// Way of a wall that counts as a jump, relative to a typical diameter.
+/// Smallest displacement of a wall that counts as a jump, relative to a typical diameter.
 const JUMP: f64 = 1e-6;
 
 /// A fact that a run noticed and survived, and that its caller may not have wanted.
@@ -46,9 +46,9 @@ pub enum Warning {
     WallJumped {
         /// The wall that jumped farthest.
         wall: usize,
-        /// The name of that wall, if the simulation was asked.
+        /// The name of the wall, if the simulation itself was asked for its warnings.
         name: Option<String>,
-        /// The way of that wall.
+        /// The displacement of the wall.
         by: f64,
         /// Number of jumps of all walls.
         jumps: u64,
@@ -57,7 +57,7 @@ pub enum Warning {
     /// criterion, $`t_c\,\omega_c \ll 1`$, where $`\omega_c`$ is the rate of the collisions that the model
     /// did not change. It removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a flow.
     LongContactDuration {
-        /// The contact duration, as far as collisions showed it, times the rate of a disk's collisions.
+        /// The contact duration, as estimated from the collisions, times the rate of a disk's collisions.
         share_of_time: f64,
         /// Number of collisions that the contact-duration model made elastic.
         elastic: u64,
@@ -66,17 +66,17 @@ pub enum Warning {
     },
     /// More than half of the collisions parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow,
-    /// the speed is too high, and the energy that it puts in keeps the disks moving.
+    /// the speed is too high, and the energy that it adds keeps the disks moving.
     MostlyLeastRebound {
         /// Number of collisions that the remedy decided.
         raised: u64,
         /// Number of all collisions, with disks or walls.
         collisions: u64,
-        /// Energy that it put in.
+        /// Energy added by the remedy.
         energy: f64,
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
-    /// them aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small
+    /// them aside. Rows of a lattice over a floor that moves vertically hop like this forever. Any small
     /// velocities at the start mend it, for example by
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
@@ -97,8 +97,8 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk can get to a sink, and none has been taken out: walls are in its way, such as those nearer
-    /// than a radius to a line for centers. A gate that opens later is a harmless cause.
+    /// No disk can reach a sink, and none has been removed: walls block the sink, such as walls nearer than a
+    /// radius to a line for centers. A gate that opens later is a harmless cause.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
@@ -262,8 +262,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         (!has_source && is_more).then_some(Warning::EnergyGained { before, now })
     }
 
-    /// Counts the walls that are elsewhere in another boundary at this moment. Walls are the same if their
-    /// names are.
+    /// Counts the walls that have another position in another boundary at the present time. Walls are the
+    /// same if their names are.
     pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
         let before = places(&self.boundary, self.clock.now);
         for (name, (wall, here)) in places(other, self.clock.now) {

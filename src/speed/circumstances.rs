@@ -10,7 +10,7 @@ use crate::instructions::Instructions;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Circumstances {
-    /// Name of the processor, as far as the system tells it.
+    /// Name of the processor, if the system reports it.
     pub processor: String,
     /// Number of processors.
     pub processors: usize,
@@ -26,7 +26,7 @@ pub struct Circumstances {
 }
 
 impl Circumstances {
-    /// Returns the circumstances of this moment.
+    /// Returns the present circumstances.
     pub fn present() -> Self {
         let known = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let name = known.lines().find(|line| line.starts_with("model name"));

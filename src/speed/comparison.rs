@@ -1,4 +1,4 @@
-//! Two runs in alternation, and what their times say about each other.
+//! Comparison of the speeds of two runs, which alternate.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::observable::Observer;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError};
 
-/// Number of pairs of stretches.
+/// Number of pairs of measured intervals.
 const ROUNDS: usize = 201;
 
 /// Number of ratios on either side of the interval. Of 201 tosses of a coin, fewer than 79 or more than 122
@@ -53,7 +53,7 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
     Ok(meter.report(&run))
 }
 
-/// The time of a collision in one run over that in another, from alternating stretches.
+/// The ratio of the times per collision in two runs, from alternating intervals.
 ///
 /// Stretches of the two runs follow each other in pairs, and each pair gives a ratio, so what slows both
 /// cancels. Stretches of one run do the same work each time, from the same state. A rule with other physics
@@ -98,20 +98,20 @@ pub enum Finding {
 }
 
 impl Comparison {
-    /// Compares stretches of two runs, 201 of each. Stretches of a few milliseconds are best: 10 000
+    /// Compares two runs over 201 intervals of each. Stretches of a few milliseconds are best: 10 000
     /// collisions.
     ///
     /// # Errors
-    /// Those of the stretches.
+    /// The errors of the two closures.
     pub fn between<E>(
         mut first: impl FnMut() -> Result<RunReport, E>,
         mut other: impl FnMut() -> Result<RunReport, E>,
     ) -> Result<Self, E> {
-        // The first stretch of each fills the caches and does not count.
+        // The first interval of each run fills the caches and does not count.
         let events = [first()?.events_per_collision, other()?.events_per_collision];
         let (mut firsts, mut others) = (Vec::with_capacity(ROUNDS), Vec::with_capacity(ROUNDS));
         for round in 0..ROUNDS {
-            // The order changes, so that neither always has what the other leaves in the caches.
+            // The order alternates, so that neither run always starts with the caches that the other leaves.
             if round % 2 == 0 {
                 firsts.push(first()?.nanoseconds_per_collision);
                 others.push(other()?.nanoseconds_per_collision);

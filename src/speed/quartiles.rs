@@ -12,11 +12,11 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Quartiles {
-    /// A quarter of the values is below.
+    /// A quarter of the values are below this one.
     pub low: f64,
-    /// Half of the values is below.
+    /// Half of the values are below this one.
     pub median: f64,
-    /// A quarter of the values is above.
+    /// A quarter of the values are above this one.
     pub high: f64,
 }
 

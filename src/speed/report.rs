@@ -38,7 +38,7 @@ impl Meter {
         Self { counters, time, stopwatch: Stopwatch::of_thread() }
     }
 
-    /// Returns the report of all that the simulation has done since the start.
+    /// Returns the report of the simulation since the meter was started.
     pub fn report<R: CollisionRule, B: Boundary, S: EventScheduler>(
         &self,
         run: &Simulation<R, B, S>,
@@ -74,7 +74,7 @@ pub struct RunReport {
     pub simulated_time: f64,
     /// Time on the processor in seconds; see [`Stopwatch`].
     pub seconds: f64,
-    /// Time on the processor of a collision, with all other events that come with it.
+    /// Processor time per collision, including all other events.
     pub nanoseconds_per_collision: f64,
     /// Collisions in a second.
     pub collisions_per_second: f64,
@@ -84,7 +84,7 @@ pub struct RunReport {
     pub events_per_collision: f64,
     /// Events by kind.
     pub counters: Counters,
-    /// Share of the time that the observers took, if it is known; see [`Self::with_bare`].
+    /// Share of the time spent in observers, if known; see [`Self::with_bare`].
     pub observer_share: Option<f64>,
     /// Memory, cells, scheduler and instructions at the end.
     pub footprint: Footprint,
@@ -93,7 +93,8 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// Returns the same report with the share of the observers, from the report of the same run without any.
+    /// Returns the same report with the observers' share of the time, from the report of the same run without
+    /// observers.
     ///
     /// ```
     /// use granular_edmd::observable::EnergyChange;

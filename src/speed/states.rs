@@ -1,4 +1,4 @@
-//! The standard states: runs that have settled, always with the same bits.
+//! The standard states: settled runs, with the same bits in every program.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,7 +15,7 @@ use crate::simulation::{BuildError, Limits, RunError};
 use crate::wall::BiParabolic;
 use crate::{Disk, ParameterError, Simulation};
 
-/// An error: a standard state cannot be made. Only [`gas`] has a parameter that can be wrong.
+/// The error of a standard state that cannot be created. Only [`gas`] has a parameter that can be wrong.
 #[derive(Debug, Error)]
 #[error(transparent)]
 pub struct StateError(Box<dyn std::error::Error + Send + Sync>);

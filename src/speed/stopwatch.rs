@@ -33,7 +33,7 @@ impl Stopwatch {
     }
 }
 
-/// Returns the seconds that this thread has had on processors.
+/// Returns the processor time of this thread, in seconds.
 fn seconds_of_thread() -> Option<f64> {
     // The kernel books the time of a task when the task gives up the processor, or some milliseconds later.
     std::thread::sleep(Duration::from_nanos(1));

@@ -77,7 +77,7 @@ impl Bins {
         }
     }
 
-    /// Returns the bin of a number, or `None` outside all bins.
+    /// Returns the index of the bin that contains a number, or `None` if the number is outside all bins.
     pub(crate) fn find(&self, value: f64) -> Option<usize> {
         let bin = self.at_or_above(value);
         (value >= self.low && bin < self.count).then_some(bin)

@@ -1,4 +1,4 @@
-//! Means of correlated numbers with their errors, without keeping the numbers.
+//! Means and errors of correlated numbers, without keeping the numbers.
 
 use super::plateau::{BlockError, plateau};
 use super::{Estimate, RunningMean};
@@ -28,7 +28,7 @@ pub struct BlockedMean(Vec<Level>);
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Level {
     blocks: RunningMean,
-    /// The last block, while it waits for the next one, with which it makes a larger block.
+    /// The last block, until it forms a larger block with the next.
     waiting: Option<f64>,
 }
 
@@ -64,7 +64,7 @@ impl BlockedMean {
         self.ungrouped().count()
     }
 
-    /// Returns the mean of the numbers; NaN if there were none.
+    /// Returns the mean of the numbers, or NaN without numbers.
     pub fn mean(&self) -> f64 {
         self.ungrouped().mean()
     }
@@ -74,7 +74,7 @@ impl BlockedMean {
         self.ungrouped().sum()
     }
 
-    /// Returns mean and variance of the numbers themselves, without regard to their correlation.
+    /// Returns the mean and the variance of the single numbers, regardless of their correlation.
     pub fn ungrouped(&self) -> RunningMean {
         self.0.first().map_or_else(RunningMean::default, |level| level.blocks)
     }
@@ -87,7 +87,7 @@ impl BlockedMean {
             return Estimate::blocked(whole.mean(), naive, whole.count(), 1.0, false);
         }
         if naive == 0.0 {
-            // Equal samples tell no more than one of them.
+            // Equal samples carry no more information than one of them.
             return Estimate::blocked(whole.mean(), 0.0, whole.count(), whole.count() as f64, false);
         }
         let several = self.0.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);

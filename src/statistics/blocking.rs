@@ -4,7 +4,7 @@ use super::{BlockedMean, Estimate};
 use crate::ParameterError;
 use crate::quantity::accept;
 
-/// Largest sample allowed, so that a sum of squares stays finite.
+/// Largest allowed magnitude of a sample, so that a sum of squares stays finite.
 const LARGEST: f64 = 1e100;
 
 /// Returns the mean of a time series, with an error that accounts for its autocorrelation (Flyvbjerg &

@@ -9,8 +9,8 @@ use std::fmt;
 /// not converged: its error is then a lower bound. An estimate from samples that are independent, or are
 /// assumed to be, says so.
 ///
-/// Printed with a precision, the mean and the error have that many decimals. Without a precision, the error
-/// has two significant digits. A note on the basis of the error follows in words.
+/// A precision in the format sets the number of decimals of the mean and the error. Without a precision, the
+/// error has two significant digits. A note on the basis of the error follows in words.
 ///
 /// ```
 /// use granular_edmd::statistics::{RunningMean, block_average};
@@ -41,7 +41,7 @@ pub struct Estimate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Basis {
-    /// The samples were taken as independent.
+    /// The samples were assumed to be independent.
     Independent,
     /// The error comes from blocks that were long enough.
     Blocks,
@@ -101,7 +101,7 @@ impl Estimate {
         self.samples
     }
 
-    /// Returns the number of consecutive samples that are worth as much as one independent sample.
+    /// Returns the number of consecutive samples that carry as much information as one independent sample.
     ///
     /// The number is $`1 + 2\sum_k\rho_k`$ for autocorrelations $`\rho_k`$. It is 1 if the samples are taken
     /// as independent, or if all are equal.
@@ -109,7 +109,7 @@ impl Estimate {
         self.correlated_samples
     }
 
-    /// Returns the number of independent samples that would tell as much: the number of samples over
+    /// Returns the number of independent samples with the same information: the number of samples over
     /// [`correlated_samples`](Self::correlated_samples).
     pub fn independent_samples(&self) -> f64 {
         self.samples as f64 / self.correlated_samples.max(1.0)
@@ -124,7 +124,7 @@ impl Estimate {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }
 
-    /// Returns whether the error takes the samples as independent.
+    /// Returns whether the error assumes independent samples.
     pub const fn assumes_independence(&self) -> bool {
         matches!(self.basis, Basis::Independent)
     }

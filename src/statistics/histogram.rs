@@ -110,7 +110,7 @@ impl Histogram {
             let density = if shares.count() < 2 {
                 Estimate::blocked(share, (share * (1.0 - share) / all).sqrt(), self.count, 1.0, false)
             } else {
-                // Numbers after the last block are in the mean, too.
+                // The mean also includes the numbers after the last complete block.
                 shares.estimate().about(share)
             };
             let [low, high] = [bin, bin + 1].map(|edge| self.bins.edge(edge));

@@ -14,7 +14,7 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Adds a number, with a weight above zero.
+    /// Adds a number with a positive weight.
     #[inline]
     pub(crate) fn push(&mut self, value: f64, weight: f64) {
         self.weight += weight;
@@ -28,7 +28,7 @@ impl Moments {
 
 #[cfg(feature = "serde")]
 impl Moments {
-    /// Returns these moments if some numbers can have them.
+    /// Returns these moments, or an error if no set of numbers can have them.
     pub(super) fn checked(self) -> Result<Self, crate::ParameterError> {
         use crate::quantity::{accept, finite, non_negative};
         let Self { weight, mean, squares } = self;

@@ -30,7 +30,7 @@ pub(super) struct BlockError {
 }
 
 impl BlockError {
-    /// Returns the error from two or more blocks that are taken as independent.
+    /// Returns the error from two or more blocks that are assumed to be independent.
     pub(super) fn of(blocks: &RunningMean) -> Self {
         let count = blocks.count();
         // The uncertainty of a standard deviation of normal numbers.

@@ -1,4 +1,4 @@
-//! Estimates of several runs combined into one.
+//! Combination of the estimates of several runs.
 
 use super::Estimate;
 use super::plateau::FEWEST_INDEPENDENT;
@@ -56,8 +56,8 @@ impl Estimate {
         });
         // The error of a run of one sample is NaN, which `max` ignores.
         let error = between.max(within).sqrt();
-        // The variance of all samples about their mean is the variance within the runs plus that between
-        // them.
+        // The variance of all samples about their mean is the sum of the variances within the runs and
+        // between the runs.
         let variance = weighted(&Self::variance) + scatter;
         let naive = (variance / samples as f64).sqrt();
         let growth = if naive > 0.0 { error / naive } else { 1.0 };

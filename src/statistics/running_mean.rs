@@ -25,12 +25,12 @@ impl RunningMean {
         self.0.push(value, 1.0);
     }
 
-    /// Returns the count of the numbers.
+    /// Returns how many numbers were added.
     pub const fn count(&self) -> u64 {
         self.0.weight as u64
     }
 
-    /// Returns the mean of the numbers; NaN if there were none.
+    /// Returns the mean of the numbers, or NaN without numbers.
     pub const fn mean(&self) -> f64 {
         if self.0.weight > 0.0 { self.0.mean } else { f64::NAN }
     }
@@ -76,7 +76,7 @@ impl FromIterator<f64> for RunningMean {
     }
 }
 
-/// The mean as files hold it.
+/// The form of the mean in files.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize)]
 #[serde(rename = "RunningMean")]

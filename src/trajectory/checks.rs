@@ -1,4 +1,4 @@
-//! Checks of the disks of a file among each other and against their box.
+//! Checks of the disks of a file against each other and against their box.
 
 use super::overlap::{self, Overlap};
 use super::settings::Settings;
@@ -7,7 +7,7 @@ use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::TOUCHING;
 
-/// Checks the disks of a state, whose lines these are.
+/// Checks the disks of a state, with the lines from which they were read.
 ///
 /// Disks outside of periodic sides are moved into the box. If the settings say so, radii shrink until no
 /// disks overlap; otherwise none may overlap by more than the tolerance.
@@ -52,7 +52,7 @@ pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadEr
     Ok(has_zero)
 }
 
-/// Numbers of periods that a disk can have passed.
+/// Range of the numbers of periods that a disk can have crossed.
 pub(super) const IMAGES: std::ops::RangeInclusive<f64> = -2_147_483_648.0..=2_147_483_647.0;
 
 /// Moves a disk into its box by whole periods, and returns whether it was outside.

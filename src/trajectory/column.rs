@@ -1,4 +1,4 @@
-//! Columns of a file by their meaning, whatever program named them.
+//! The meanings of the columns of a file, under the names of different programs.
 
 /// A property of a disk to which a column can belong. Its number is the slot of its first component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,7 +94,7 @@ pub(super) struct Column {
 }
 
 impl Column {
-    /// Returns the columns of a name that stands for this number of components.
+    /// Returns the columns for a name with this number of components.
     pub(super) fn of(name: &str, count: usize) -> impl Iterator<Item = Self> {
         let plain = name.to_lowercase().replace([' ', '_', '-', '"'], "");
         let name = Some(name.trim().trim_matches('"')).filter(|name| !name.is_empty());
@@ -105,7 +105,7 @@ impl Column {
     }
 }
 
-/// Returns the slot of a column with a name of its own, such as `radius`, `xs` or `velocity.x`.
+/// Returns the slot of a column with a separate name, such as `radius`, `xs` or `velocity.x`.
 fn single(name: &str) -> Option<usize> {
     let axis = |letter: char| "xyzw".find(letter);
     let mut letters = name.chars();

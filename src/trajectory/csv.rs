@@ -32,7 +32,7 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     Ok(table)
 }
 
-/// Creates the error of a text in none of the formats.
+/// Creates the error of a text that has none of the formats.
 fn unknown(line: usize, found: &str) -> ReadError {
     let known = "extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose first line names columns \
                  such as x, y and radius";

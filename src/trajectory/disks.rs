@@ -1,4 +1,4 @@
-//! The disks of a table: each quantity by whatever columns give it.
+//! The disks of a table, with each quantity from the columns that determine it.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ use super::{ReadError, State};
 use crate::boundary::Domain;
 use crate::{Disk, Kind, ParameterError};
 
-/// Largest relative difference of two columns that say the same in few digits.
+/// Largest relative difference of two columns that hold the same quantity in few digits.
 const ALIKE: f64 = 1e-4;
 
 /// Largest component out of the plane, relative to the largest component in the plane.
@@ -75,7 +75,7 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     Ok(disks)
 }
 
-/// Returns the numbers of the kinds that names stand for: the names themselves, or else their order.
+/// Returns the numbers of named kinds: the names themselves if they are numbers, or else their order.
 fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     let names = table.names();
     let numbers: Option<Vec<u16>> = names.iter().map(|name| name.parse().ok()).collect();
@@ -87,10 +87,10 @@ fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     Err(ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found))
 }
 
-/// The values of a row by their slots.
+/// The values of a row, indexed by slot.
 type Slots = [Option<f64>; SLOTS];
 
-/// Returns the values of a row by their slots, if no two columns contradict each other.
+/// Returns the values of a row, indexed by slot, or an error if two columns contradict each other.
 fn slots(table: &Table, values: &[f64], line: usize) -> Result<Slots, ReadError> {
     let mut slots: Slots = [None; SLOTS];
     for ((column, slot), &value) in table.known().zip(values) {
@@ -101,7 +101,7 @@ fn slots(table: &Table, values: &[f64], line: usize) -> Result<Slots, ReadError>
     Ok(slots)
 }
 
-/// Returns the first of two answers, if they are alike.
+/// Returns the first of two values if they agree, or an error if they contradict each other.
 fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f64, ReadError> {
     let most = ALIKE * one.abs().max(other.abs()).max(scale);
     if (one - other).abs() <= most || one.to_bits() == other.to_bits() {
@@ -159,7 +159,7 @@ impl Row<'_> {
         self.slots[quantity as usize + component]
     }
 
-    /// Returns the first of two answers, if both are there and are alike, or else the one that is there.
+    /// Returns the first of two values if they agree, or the only one that is present.
     fn either(
         &self,
         what: &str,
@@ -206,7 +206,7 @@ impl Row<'_> {
         Ok((radius, mass.unwrap_or(1.0)))
     }
 
-    /// Returns a coordinate, and the number of periods that the disk has passed along this axis.
+    /// Returns a coordinate, and the number of periods that the disk has crossed along this axis.
     fn place(&self, axis: usize) -> Result<(f64, i32), ReadError> {
         let name = ["x", "y"][axis];
         let along = |domain: Domain| match axis {
@@ -249,7 +249,7 @@ impl Row<'_> {
         Ok(self.either("velocity", self.get(Velocity, axis), by_momentum, 0.0)?.unwrap_or_default())
     }
 
-    /// Returns the angle; an orientation alone knows it only within a turn.
+    /// Returns the angle. From an orientation alone, it is known only within a turn.
     fn angle(&self) -> Result<f64, ReadError> {
         let half = match (self.get(Orientation, 2), self.get(Orientation, 3)) {
             (Some(z), Some(w)) => Some(libm::atan2(z, w)),
@@ -265,7 +265,7 @@ impl Row<'_> {
         Err(ReadError::unexpected(self.line, "angle", "the same in all columns that tell it", found))
     }
 
-    /// Returns the kind; its number says more than a type, and a type more than a name.
+    /// Returns the kind: from its number if possible, or else from a type, or else from a name.
     fn kind(&self, names: &[u16]) -> Result<Kind, ReadError> {
         let least = f64::from(u8::from(self.table.is_of_lammps));
         let (what, number, least) = match (self.get(Quantity::Kind, 0), self.get(Type, 0), self.get(Name, 0))

@@ -23,7 +23,7 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// A file cannot be used.
+    /// A file cannot be opened, read or written.
     #[error("cannot {action} {}", path.display())]
     Io {
         /// The action that failed.
@@ -39,7 +39,7 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// The name ends in `.gz`, but this program cannot compress.
+    /// The name ends in `.gz`, but this build cannot compress.
     #[error("{} would be compressed, which needs the feature `gzip` of granular-edmd", path.display())]
     Gzip {
         /// The path.
@@ -47,28 +47,28 @@ pub enum RecordError {
     },
     /// The file has no whole frame after which a recorder could continue.
     ///
-    /// The file is left as it is.
+    /// The file stays unchanged.
     #[error("{} has no whole frame to go on from; it is left as it is", path.display())]
     NoFrame {
         /// The path.
         path: PathBuf,
     },
-    /// The file is of another run, since it has another frame, or none, at a time of this run.
+    /// The file belongs to another run, since it has another frame, or no frame, at a time of this run.
     ///
-    /// The file is left as it is.
+    /// The file stays unchanged.
     #[error("{} is of another run: it goes to time {}, and has {} at time {}", path.display(), Readable(*.last),
         if *.is_there { "another frame" } else { "no frame" }, Readable(*.time))]
     AnotherRun {
         /// The path.
         path: PathBuf,
-        /// Time of the frame that was to be recorded.
+        /// Time of the frame to be recorded.
         time: f64,
         /// Time of the last frame in the file.
         last: f64,
         /// True if the file has a frame at this time.
         is_there: bool,
     },
-    /// The run begins after a frame that the file does not have.
+    /// The run begins after the time of a frame that the file lacks.
     #[error("{} ends at time {}, so a run from time {} on would leave out the frame at time {}; go on from an \
         earlier checkpoint, or accept the gap by SampleTimes::starting_at", path.display(), Readable(*.last),
         Readable(*.time), Readable(*.missed))]
@@ -91,7 +91,7 @@ impl From<RecordError> for ObserverError {
 }
 
 impl RecordError {
-    /// Returns a function that adds the action and the file to an error of the system.
+    /// Returns a function that turns an error of the system into this error, with the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
@@ -117,7 +117,7 @@ impl RecordError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The contents of a file are not those that its reader expects.
+    /// The contents of a file are not as its reader expects.
     #[error("cannot use {}", path.display())]
     File {
         /// The path.
@@ -146,15 +146,15 @@ pub enum ReadError {
     End {
         /// Number of the last line.
         line: usize,
-        /// The thing that is missing.
+        /// The name of the missing item.
         what: String,
     },
-    /// A field of a line is not of the form that it must have.
+    /// A field of a line does not have the required form.
     #[error("line {line}: {what} must be {requirement}, but is {found:?}")]
     Unexpected {
         /// Number of the line.
         line: usize,
-        /// The thing that is wrong.
+        /// The name of the wrong item.
         what: String,
         /// The condition that it should have met.
         requirement: String,
@@ -166,7 +166,7 @@ pub enum ReadError {
     Missing {
         /// Number of the line.
         line: usize,
-        /// The thing that is missing.
+        /// The name of the missing item.
         what: String,
     },
     /// The numbers of a line do not make a disk.
@@ -177,7 +177,7 @@ pub enum ReadError {
         /// The parameter that is out of range.
         source: ParameterError,
     },
-    /// Something appears twice.
+    /// A name or value appears twice.
     #[error("line {line}: {what} stands in line {first} already")]
     Doubled {
         /// Number of the second line.
@@ -187,7 +187,7 @@ pub enum ReadError {
         /// The name and value that appear twice.
         what: String,
     },
-    /// The center of a disk is outside the box that the file gives.
+    /// The center of a disk is outside the box in the file.
     #[error("line {line}: the disk at ({}, {}) is outside the box", Readable(*.x), Readable(*.y))]
     Outside {
         /// Number of the line.
@@ -197,7 +197,7 @@ pub enum ReadError {
         /// Vertical position of the center.
         y: f64,
     },
-    /// A file of GSD is damaged, or a frame of it is not one of disks.
+    /// A GSD file is damaged, or one of its frames does not describe disks.
     #[error("{reason}")]
     Gsd {
         /// The frame and the chunk, and the condition that it should have met.

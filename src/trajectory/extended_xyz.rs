@@ -31,7 +31,7 @@ use crate::{Disk, Gravity};
 /// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
 /// ASE, chemfiles, MDAnalysis and OVITO read the columns alike, as far as they know them. Symbols of elements
-/// are there because ASE takes nothing else.
+/// are written because ASE accepts nothing else.
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
 /// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the
@@ -66,7 +66,7 @@ pub struct ExtendedXyz;
 const PROPERTIES: &str = "species:S:1:pos:R:3:kind:I:1:id:I:1:velo:R:3:orientation:R:4:omega:R:3:angle:R:1:\
      radius:R:1:mass:R:1:inertia_factor:R:1:image:I:2:unwrapped:R:2";
 
-/// Symbols of the elements by their numbers; `X` is none.
+/// Symbols of the elements by their numbers; `X` stands for no element.
 const SYMBOLS: &str = "X H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca Sc Ti V Cr Mn Fe Co Ni Cu Zn Ga Ge As Se \
     Br Kr Rb Sr Y Zr Nb Mo Tc Ru Rh Pd Ag Cd In Sn Sb Te I Xe Cs Ba La Ce Pr Nd Pm Sm Eu Gd Tb Dy Ho Er Tm Yb Lu \
     Hf Ta W Re Os Ir Pt Au Hg Tl Pb Bi Po At Rn Fr Ra Ac Th Pa U Np Pu Am Cm Bk Cf Es Fm Md No Lr Rf Db Sg Bh Hs \
@@ -113,7 +113,8 @@ impl Format for ExtendedXyz {
     }
 }
 
-/// Writes the number of gravity that points down, or else the acceleration.
+/// Writes one number, the strength, if gravity points down, and both components of the acceleration
+/// otherwise.
 fn write_gravity(out: &mut dyn Write, gravity: Gravity) -> io::Result<()> {
     if gravity.rightward() == 0.0 {
         return write!(out, "{:?}", gravity.downward());
@@ -141,7 +142,8 @@ fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io:
     write!(out, "{right} {up} {:?} {:?}", unwrapped.x, unwrapped.y)
 }
 
-/// Returns the orientation as the first and the last part of a quaternion, that is by half of the angle.
+/// Returns the orientation as the first and the last component of a quaternion: cosine and sine of half of
+/// the angle.
 pub(super) fn half_turn(disk: &Disk) -> [f64; 2] {
     let half = 0.5 * disk.angle();
     [libm::cos(half), libm::sin(half)]

@@ -101,7 +101,7 @@ pub struct Gsd;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Vtk;
 
-/// The format that the name of the file asks for, in letters of any case.
+/// The format for the ending of the file's name, in letters of any case.
 ///
 /// | ending | format |
 /// |---|---|
@@ -154,7 +154,7 @@ impl fmt::Debug for FileFormat {
 }
 
 impl FileFormat {
-    /// Returns the format that the ending of a name asks for.
+    /// Returns the format for the ending of a name.
     fn of(path: &Path) -> Result<Self, RecordError> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         match name.trim_end_matches(".gz").rsplit_once('.').map(|(_, ending)| ending) {
@@ -170,7 +170,7 @@ impl FileFormat {
         }
     }
 
-    /// Begins a file that is new, or may be there and empty.
+    /// Begins a new file. If `may_exist` is true, an empty file may exist already.
     pub(super) fn create(self, path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
         match self.0 {
             Form::Frames(format) => OneFile::create(path, format, may_exist),
@@ -180,7 +180,7 @@ impl FileFormat {
         }
     }
 
-    /// Continues a file after its last whole frame.
+    /// Continues a file after its last complete frame.
     pub(super) fn reopen(self, path: &Path) -> Result<Sink, RecordError> {
         match self.0 {
             Form::Frames(format) => OneFile::reopen(path, format),

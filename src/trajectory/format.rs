@@ -41,7 +41,7 @@ impl<'a> Frame<'a> {
 /// 3. `skip_frame` returns `None` for a frame that is cut short at any byte, as a process that is killed
 ///    leaves it.
 ///
-/// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` tells which planted faults it
+/// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults it
 /// finds.
 ///
 /// [`Recorder`](super::Recorder) makes each frame whole in memory, so a format may write in small pieces. The
@@ -81,7 +81,7 @@ pub(super) fn whole_line(input: &mut dyn BufRead) -> io::Result<Option<String>> 
     Ok(Some(line.trim_end_matches(['\n', '\r']).to_owned()))
 }
 
-/// Skips this many lines, and returns false if the input has fewer.
+/// Skips `count` lines, and returns false if the input has fewer.
 pub(super) fn skip_lines(input: &mut dyn BufRead, count: usize) -> io::Result<bool> {
     let mut line = Vec::new();
     for _ in 0..count {

@@ -4,9 +4,9 @@ use super::ReadError;
 use super::lines::Text;
 use super::table::Table;
 
-/// A frame that was found in a file, and is read only if it is wanted.
+/// A frame that was found in a file, and is read only on request.
 pub(super) struct Found<'a> {
-    /// The step by which the file calls the frame.
+    /// The step with which the file labels the frame.
     pub(super) step: Option<u64>,
     pub(super) read: Box<dyn FnOnce() -> Result<Table, ReadError> + 'a>,
 }

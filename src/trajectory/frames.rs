@@ -1,11 +1,11 @@
-//! The frames that a file has, by which a recorder knows its own.
+//! The frames of a file, by which a recorder recognizes its own file.
 
 use std::hash::{DefaultHasher, Hasher};
 use std::io;
 
 use super::format::no_frame;
 
-/// The whole frames of a file: their times, digests of their bytes, and the end of the last one.
+/// The complete frames of a file: their times, digests of their bytes, and the end of the last frame.
 #[derive(Debug, Default)]
 pub(super) struct Frames {
     pub(super) times: Vec<f64>,

@@ -19,10 +19,10 @@ use crate::observable::Snapshot;
 #[derive(Debug, Clone, Copy)]
 enum Rows {
     Fixed(u64),
-    /// One for each kind up to the largest.
+    /// One row for each kind up to the largest.
     Kinds,
     Disks,
-    /// One for each wall that moves.
+    /// One row for each moving wall.
     Walls,
 }
 
@@ -68,7 +68,8 @@ const CHUNKS: [(&str, u8, u32, Rows); 24] = [
     ("log/walls/phase", F64, 1, Rows::Walls),
 ];
 
-/// The shape of a frame: its number, its disks, the number of kinds up to the largest, and its moving walls.
+/// The shape of a frame: its number in the file, and its numbers of disks, of kinds (the largest kind plus
+/// one), and of moving walls.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
     number: usize,
@@ -103,7 +104,7 @@ fn write_chunks(frame: &Frame<'_>, out: &mut Vec<u8>) -> io::Result<()> {
     let (center, [width, height]) = seen_box(snapshot);
     out.write_all(&(frame.number() as u64).to_le_bytes())?;
     out.write_all(&[2])?;
-    // Of a box in the plane, readers ignore the depth. The last three numbers are its tilts.
+    // Readers ignore the depth of a two-dimensional box. The last three numbers are its tilts.
     singles(out, [width, height, shown_depth(disks), 0.0, 0.0, 0.0])?;
     out.write_all(&count.to_le_bytes())?;
     for kind in 0..shape.kinds {
@@ -144,8 +145,7 @@ fn write_log(snapshot: &Snapshot<'_>, [x, y]: [f64; 2], out: &mut Vec<u8>) {
     out.extend(walls.iter().flat_map(|wall| wall.2.to_le_bytes()));
 }
 
-/// Returns the center and the size of the box that a file shows. In the file, positions count from the
-/// center.
+/// Returns the center and the size of the box in a file. In the file, positions count from the center.
 ///
 /// The center of an open box is on its bottom, since the center of a box that ends above the highest disk
 /// would move, and with it the positions of all disks.
@@ -164,7 +164,7 @@ fn moment_of_inertia(disk: &Disk) -> f64 {
     disk.inertia_factor() * disk.mass() * disk.radius() * disk.radius()
 }
 
-/// Returns the angular momentum as HOOMD-blue has it: twice the orientation times the momentum in the frame
+/// Returns the angular momentum in HOOMD-blue's form: twice the orientation times the momentum in the frame
 /// of the body, as quaternions.
 fn angular_momentum(disk: &Disk) -> [f64; 4] {
     let ([real, up], momentum) = (half_turn(disk), moment_of_inertia(disk) * disk.angular_velocity());

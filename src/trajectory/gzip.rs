@@ -1,4 +1,4 @@
-//! Compressed trajectories, as a gzip file of one member that is whole after each frame.
+//! Compressed trajectories: gzip files of one member, which is complete after each frame.
 //!
 //! Frames are compressed one by one. Each ends at a whole byte (a sync flush), and the ending of the member
 //! follows the last frame. The next frame takes the place of the ending. A member for each frame would be
@@ -12,7 +12,7 @@ use flate2::{Compression, Crc, Decompress, FlushDecompress, Status};
 use super::format::{Format, no_frame};
 use super::frames::Frames;
 
-/// Beginning of a member: deflated, without a name or a time, of an unknown system.
+/// First bytes of a member: deflated, without a name or a time, from an unknown system.
 const HEAD: [u8; 10] = [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255];
 
 /// The last block of a member, which is empty.
@@ -55,10 +55,10 @@ impl Member {
     }
 }
 
-/// Finds the whole frames of a file, and adds them to the member.
+/// Finds the complete frames of a file, and adds them to the member.
 ///
-/// A frame can end only at the bytes of a sync flush. It does end there if everything since the last frame is
-/// exactly one frame of the format.
+/// A frame can end only at the bytes of a sync flush. A sync flush ends a frame if the bytes since the last
+/// frame are exactly one frame of the format.
 pub(super) fn frames(
     member: &mut Member,
     input: &mut impl BufRead,
@@ -75,7 +75,7 @@ pub(super) fn frames(
     loop {
         let start = packed.len();
         if input.read_until(FLUSHED[3], &mut packed)? == 0 {
-            // A process died in the middle of a frame and left this rest.
+            // A process that was killed in the middle of a frame left these bytes.
             return Ok(frames);
         }
         if !goes_on(&mut inflater, &packed[start..], &mut bytes) {
@@ -96,14 +96,14 @@ pub(super) fn frames(
     }
 }
 
-/// Checks what follows the last whole frame: the ending, or less, or part of a frame over the ending, which a
-/// process wrote that died.
+/// Checks the bytes after the last complete frame: the ending or a part of it, or a part of a frame that a
+/// killed process wrote over the ending.
 ///
-/// An ending of another checksum tells that a frame is damaged. A new ending would hide that for ever.
+/// An ending with another checksum shows that a frame is damaged. A new ending would hide the damage forever.
 fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) -> io::Result<()> {
     let room = (ending.len() + 1).saturating_sub(packed.len());
     input.take(room as u64).read_to_end(&mut packed)?;
-    // The first bit of a frame tells that its block is not the last.
+    // The first bit of a frame shows that its block is not the last.
     let is_frame = packed.first().is_some_and(|first| first & 1 == 0);
     if packed.len() > ending.len() {
         Err(no_frame("a whole frame", "a damaged one"))
@@ -114,7 +114,7 @@ fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) ->
     }
 }
 
-/// Decompresses some bytes of a stream, and returns false at the end of the stream, or where it is damaged.
+/// Decompresses the next bytes of a stream, and returns false at the end of the stream or if it is damaged.
 fn goes_on(inflater: &mut Decompress, mut packed: &[u8], bytes: &mut Vec<u8>) -> bool {
     loop {
         bytes.reserve(4 * packed.len() + 1024);

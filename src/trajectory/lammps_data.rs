@@ -13,17 +13,17 @@ use super::extended_xyz::{shown_depth, shown_top};
 use crate::Disk;
 use crate::disk::numbered;
 
-/// Words in the title that tell the files of this crate from others.
+/// Words in the title that distinguish the files of this crate from other files.
 const WRITER: &str = "written by granular-edmd";
 
 impl State {
     /// Writes a data file of LAMMPS with `atom_style sphere`, for its `read_data`.
     ///
     /// The file has the box, the diameters, densities, positions, images, velocities and angular velocities.
-    /// The type of an atom is the number of its [`Kind`](crate::Kind) plus 1. LAMMPS takes the density as
-    /// that of a sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a state without a box
-    /// gets one around the disks. The format has no place for angles, inertia factors, periodic directions
-    /// and walls.
+    /// The type of an atom is the number of its [`Kind`](crate::Kind) plus 1. LAMMPS interprets the density
+    /// as the density of a sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a state
+    /// without a box gets one around the disks. The format has no place for angles, inertia factors, periodic
+    /// directions and walls.
     ///
     /// A [`Reader`](super::Reader) reads it back to the same bits, except that a mass may
     /// differ by one rounding.

@@ -151,7 +151,7 @@ fn whole_frame(input: &mut dyn BufRead, is_timed: bool) -> io::Result<f64> {
     if is_whole { Ok(time) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
 }
 
-/// Returns the next line, which must be whole.
+/// Returns the next line, which must be complete.
 fn line(input: &mut dyn BufRead) -> io::Result<String> {
     whole_line(input)?.ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
 }

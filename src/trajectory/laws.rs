@@ -12,7 +12,7 @@ use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "format";
 
-/// Number of rounds in which all frames are written, alternately or each one twice.
+/// Number of rounds in which all frames are written, alternately or each frame twice.
 const ROUNDS: usize = 40;
 
 /// Numbers of the frames.
@@ -22,7 +22,7 @@ const NUMBERS: [usize; 6] = [0, 1, 2, 3, 4, 1_000_000];
 /// sixty times, alternately and twice in a row.
 ///
 /// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked as far as it goes. The page
-/// "Validation" tells which planted faults the check finds.
+/// "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.

@@ -5,8 +5,8 @@ use std::io::{BufRead, Read};
 use super::ReadError;
 use crate::boundary::Domain;
 
-/// Most bytes of a line. No line of a file of disks is nearly as long, but a small compressed file can expand
-/// to one that fills the memory.
+/// Largest number of bytes of a line. No line of a file of disks is nearly as long, but a small compressed
+/// file can expand to one that fills the memory.
 pub(super) const LONGEST: u64 = 1 << 20;
 
 /// Some programs begin a text with this character.
@@ -71,13 +71,13 @@ impl<R: BufRead> Input<R> {
         Ok(None)
     }
 
-    /// Returns the next line, which must be there.
+    /// Returns the next line, or an error if there is none.
     pub(super) fn need(&mut self, what: &str) -> Result<(String, usize), ReadError> {
         let end = ReadError::End { line: self.line, what: what.to_owned() };
         self.next()?.ok_or(end)
     }
 
-    /// Returns all lines that are left.
+    /// Returns all remaining lines.
     pub(super) fn rest(mut self) -> Result<Text, ReadError> {
         let mut text = self.text();
         while self.copy(&mut text)? {}
@@ -93,12 +93,12 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Returns whether the last line has no line break, so that its last number may be torn.
+    /// Returns whether the last line lacks a line break, in which case its last number may be incomplete.
     pub(super) fn is_torn(&self) -> bool {
         self.bytes.last().is_some_and(|&last| last != b'\n')
     }
 
-    /// Returns the lines, if they are text.
+    /// Returns the lines, or an error if they are not text.
     pub(super) fn lines(&self) -> Result<Lines<'_>, ReadError> {
         let text = str::from_utf8(&self.bytes).map_err(|error| {
             let before = &self.bytes[..error.valid_up_to()];
@@ -112,13 +112,13 @@ impl Text {
     }
 }
 
-/// Returns the first line of some bytes as text, whatever they are.
+/// Returns the first line of arbitrary bytes as text.
 pub(super) fn lossy(bytes: &[u8]) -> String {
     let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
     String::from_utf8_lossy(&line[..line.len().min(240)]).trim().to_owned()
 }
 
-/// The lines of a [`Text`], one after another.
+/// An iterator over the lines of a [`Text`].
 #[derive(Debug)]
 pub(super) struct Lines<'a> {
     rest: &'a str,
@@ -136,7 +136,7 @@ impl<'a> Lines<'a> {
         self.by_ref().map(|(text, line)| (text.trim(), line)).find(|(text, _)| !text.is_empty())
     }
 
-    /// Returns the next line, which must be there.
+    /// Returns the next line, or an error if there is none.
     pub(super) fn need(&mut self, what: &str) -> Result<(&'a str, usize), ReadError> {
         let end = ReadError::End { line: self.line, what: what.to_owned() };
         self.next().ok_or(end)
@@ -190,7 +190,7 @@ pub(super) fn checked_box(domain: Domain, line: usize) -> Result<Domain, ReadErr
     Err(ReadError::unexpected(line, "the box", "from smaller to larger numbers", found))
 }
 
-/// Returns whether a box is a rectangle, but for rounding.
+/// Returns whether a box is a rectangle, up to rounding.
 pub(super) fn is_upright(sides: [f64; 2], tilts: impl IntoIterator<Item = f64>) -> bool {
     let most = 1e-9 * sides[0].abs().max(sides[1].abs());
     tilts.into_iter().all(|tilt: f64| tilt.abs() <= most)

@@ -1,4 +1,4 @@
-//! Files of recorders, which grow by whole pieces.
+//! Files of recorders, which grow by complete pieces.
 
 use std::fs::File;
 use std::io;
@@ -7,7 +7,7 @@ use std::path::Path;
 use super::RecordError;
 use crate::file::{Growing, Locked};
 
-/// Creates a new file, locked for one recorder, or takes one that is there and empty if it may be.
+/// Creates a new file, locked for one recorder, or opens an existing empty file if this is allowed.
 pub(super) fn create(path: &Path, may_exist: bool) -> Result<Growing<Locked>, RecordError> {
     let mut options = File::options();
     options.read(true).write(true).create(may_exist).create_new(!may_exist);
@@ -22,7 +22,7 @@ pub(super) fn create(path: &Path, may_exist: bool) -> Result<Growing<Locked>, Re
     Ok(Growing::new(path, file, 0, Vec::new()))
 }
 
-/// Returns whether a recorder compresses a file, by its name.
+/// Returns whether a recorder compresses a file with this name.
 pub(super) fn is_gzip(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "gz")
 }

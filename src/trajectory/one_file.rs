@@ -1,4 +1,4 @@
-//! Frames one after another in one file, plain or compressed.
+//! Consecutive frames in one file, plain or compressed.
 
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -19,7 +19,7 @@ pub(super) struct OneFile {
     digests: Vec<u64>,
 }
 
-/// The way in which frames become bytes of the file.
+/// The encoding of frames as bytes of the file.
 #[derive(Debug)]
 enum Packing {
     Plain,
@@ -38,7 +38,7 @@ impl OneFile {
         Ok(Sink::new(media::create(path, may_exist)?, Self { format, packing, digests: Vec::new() }))
     }
 
-    /// Goes on after the last whole frame of a file.
+    /// Continues after the last complete frame of a file.
     pub(super) fn reopen(path: &Path, format: Box<dyn Format + Send + Sync>) -> Result<Sink, RecordError> {
         let mut packing = Packing::of(path)?;
         let file = media::reopen(path)?;
@@ -70,13 +70,13 @@ impl Layout for OneFile {
 }
 
 impl Packing {
-    /// Makes the compressor of a file, if this program can compress.
+    /// Creates the compressor of a file; `None` in a build without compression.
     #[cfg(feature = "gzip")]
     const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
     #[cfg(not(feature = "gzip"))]
     const GZIP: Option<fn() -> Self> = None;
 
-    /// Returns the packing that the name of a file asks for.
+    /// Returns the packing for the name of a file.
     fn of(path: &Path) -> Result<Self, RecordError> {
         match (is_gzip(path), Self::GZIP) {
             (false, _) => Ok(Self::Plain),
@@ -116,7 +116,7 @@ impl Packing {
         if there == ending { Ok(()) } else { file.push(&[], &ending) }
     }
 
-    /// Finds the whole frames of a file.
+    /// Finds the complete frames of a file.
     fn frames(&mut self, input: &mut impl BufRead, format: &dyn Format) -> io::Result<Frames> {
         match self {
             Self::Plain => plain_frames(input, format),

@@ -22,7 +22,8 @@ impl Class {
         Self { side: 2.001 * radius, squares: HashMap::new() }
     }
 
-    /// Tells whether the class has room for a disk of this radius, which is not above those in it.
+    /// Returns whether the class has room for a disk of this radius. The disks of the class are at least as
+    /// large.
     fn takes(&self, radius: f64) -> bool {
         8.0 * radius > self.side
     }
@@ -31,7 +32,7 @@ impl Class {
         (place / self.side).floor()
     }
 
-    /// Returns the disks in the square of a place and in the eight around it.
+    /// Returns the disks in the square of a position and in the eight squares around it.
     fn near(&self, place: DVec2) -> impl Iterator<Item = usize> {
         let middle = self.square(place);
         let squares =
@@ -45,7 +46,7 @@ fn key(square: DVec2) -> [u64; 2] {
     [(square.x + 0.0).to_bits(), (square.y + 0.0).to_bits()]
 }
 
-/// The overlaps that were found.
+/// The overlaps found so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Overlap {
     /// Indices of the two disks that overlap most, in units of the sum of their radii.
@@ -55,7 +56,7 @@ pub(super) struct Overlap {
     pub(super) share: f64,
     /// Number of all overlaps.
     pub(super) count: usize,
-    /// True if all are counted. Disks on one heap overlap too many times for that.
+    /// True if all overlaps are counted. Disks on one heap overlap too many times for that.
     pub(super) is_counted: bool,
 }
 

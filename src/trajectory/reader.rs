@@ -15,9 +15,9 @@ use crate::quantity::non_negative;
 
 /// Reads disks from files of this crate and of other programs.
 ///
-/// The contents tell the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD, or a
-/// table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the feature
-/// `gzip`, the file may be compressed.
+/// The contents determine the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD,
+/// or a table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the
+/// feature `gzip`, the file may be compressed.
 ///
 /// Columns count by their names, in any order and case. A position and a radius are needed; without the
 /// others, a disk is as from [`Disk::new`](crate::Disk::new).
@@ -35,9 +35,9 @@ use crate::quantity::non_negative;
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///
-/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns that tell the
-/// same must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored. What
-/// the reader ignores or changes, [`State::notes`] tells.
+/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns of the same
+/// quantity must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored.
+/// [`State::notes`] lists everything that the reader ignores or changes.
 ///
 /// # Examples
 /// A state of soft disks, whose contacts overlap, made a start of hard ones:
@@ -80,10 +80,10 @@ pub struct Reader {
     settings: Settings,
 }
 
-/// The frame that is read.
+/// The choice of the frame to read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Choice {
-    /// Counted from 0, or from the end if negative.
+    /// The number of the frame, counted from 0, or from the end if negative.
     Number(isize),
     Step(u64),
 }
@@ -114,8 +114,8 @@ impl Reader {
         Self { frame: Choice::Step(step), ..self }
     }
 
-    /// Returns the same reader, which accepts overlaps up to this depth, relative to the sum of the radii,
-    /// and disks as far outside the box, relative to the radius.
+    /// Returns the same reader with this tolerance for overlaps, relative to the sum of the radii, and for
+    /// disks outside the box, relative to the radius.
     ///
     /// A simulation needs disks that do not overlap: see [`with_shrunk_radii`](Self::with_shrunk_radii).
     ///
@@ -126,9 +126,9 @@ impl Reader {
         Ok(self)
     }
 
-    /// Returns the same reader, which shrinks all radii in proportion until no disks overlap.
+    /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
+    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] returns the amount.
     /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
@@ -194,7 +194,7 @@ impl Reader {
 impl Choice {
     /// Finds the frame.
     fn find(self, mut frames: Frames<'_>) -> Result<Found<'_>, ReadError> {
-        // The last frames, as many as the choice needs.
+        // The last frames, up to the number that the choice needs.
         let mut last = VecDeque::new();
         let kept = match self {
             Self::Number(number) if number < 0 => number.unsigned_abs(),
@@ -227,7 +227,7 @@ impl Choice {
 
 /// The states of the frames of a file, from [`Reader::frames`].
 pub struct States<'a> {
-    /// The frames that are left; `None` after an error.
+    /// The remaining frames; `None` after an error.
     frames: Option<Frames<'a>>,
     settings: Settings,
 }

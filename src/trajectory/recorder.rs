@@ -11,17 +11,17 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 ///
 /// Each frame is made whole in memory, then written. If that fails, for example because the file system is
 /// full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole
-/// frame. The next run with the same recorder takes the frame that was missed.
+/// frame. The next run with the same recorder records the missed frame.
 ///
 /// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind. Files hold the
-/// box and the walls that move ([`Snapshot::moving_walls`]). Files for ParaView also hold the other walls
+/// box and the moving walls ([`Snapshot::moving_walls`]). Files for ParaView also hold the other walls
 /// ([`Snapshot::wall_lines`]).
 ///
 /// # Going on in a file
 /// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
-/// the frames after the checkpoint again, with the same bits. The recorder compares them with those in the
-/// file and does not write them twice. If they differ, the file is of another run, and the error says so. If
-/// the process died in the middle of a frame, the next frame overwrites the torn one.
+/// the frames after the checkpoint again, with the same bits. The recorder compares them with the frames in
+/// the file and does not write them twice. If they differ, the file is of another run, and the error says so.
+/// If the process died in the middle of a frame, the next frame overwrites the incomplete one.
 ///
 /// The recorder continues with the first beat after the last frame of the file. If the run is later than that
 /// beat, as from a checkpoint that is newer than the file, the run ends with an error, since frames would be
@@ -83,7 +83,7 @@ impl Recorder {
     ///
     /// # Errors
     /// If the file cannot be opened, another recorder writes to it, it is not of this format, an older
-    /// version wrote it with other columns, or it has no whole frame. The file is then left as it is.
+    /// version wrote it with other columns, or it has no whole frame. The file then stays unchanged.
     pub fn append(
         path: impl AsRef<Path>,
         format: impl Into<FileFormat>,
@@ -97,7 +97,7 @@ impl Recorder {
     /// It suits a run that starts itself again after a kill, which may have come before the first frame.
     ///
     /// # Errors
-    /// The same as for [`create`](Self::create) and [`append`](Self::append).
+    /// The errors of [`create`](Self::create) and [`append`](Self::append).
     pub fn create_or_append(
         path: impl AsRef<Path>,
         format: impl Into<FileFormat>,
@@ -114,7 +114,7 @@ impl Recorder {
         Self { clock, sink, failure: None, before_failure: None, must_follow: false }
     }
 
-    /// Returns the same recorder, with its clock as it was after the last frame of the file.
+    /// Returns the same recorder with its clock in the state after the last frame of the file.
     ///
     /// A clock that begins anew would take a beat just after the start of the run for a beat on the start,
     /// and leave it out. Then a run in pieces that was killed between two of them would lack a frame.

@@ -1,6 +1,6 @@
-//! Settings of a reader for what a file leaves open.
+//! Settings of a reader for data that a file lacks.
 
-/// The answers of a [`Reader`](super::Reader) to what a file does not say, or says in few digits.
+/// The settings of a [`Reader`](super::Reader) for data that a file lacks, or gives in few digits.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Settings {
     pub(super) tolerance: Option<f64>,

@@ -15,9 +15,9 @@ pub(super) struct Sink {
     bytes: Vec<u8>,
 }
 
-/// The way in which the bytes of frames lie in a file, or in several.
+/// The arrangement of the bytes of frames in one or several files.
 pub(super) trait Layout {
-    /// Makes the bytes of a frame.
+    /// Returns the bytes of a frame.
     fn make(&self, frame: &Frame<'_>, bytes: &mut Vec<u8>) -> io::Result<()>;
 
     /// Adds a frame. If that fails, the file is as before.
@@ -37,7 +37,7 @@ impl Sink {
         Self { file, times: Vec::new(), layout: Box::new(layout), bytes: Vec::new() }
     }
 
-    /// Returns the same sink with the frames that the file has, of which there must be one.
+    /// Returns the same sink with the times of the frames in its file, or an error if the file has no frame.
     pub(super) fn with_frames(self, times: Vec<f64>) -> Result<Self, RecordError> {
         if times.is_empty() {
             Err(RecordError::NoFrame { path: self.file.path })
@@ -46,7 +46,7 @@ impl Sink {
         }
     }
 
-    /// Adds a frame, or checks that the file has it if it goes to this time already.
+    /// Adds a frame or, if the file already reaches this time, checks that the file has the frame.
     pub(super) fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         let time = snapshot.time();
         let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);

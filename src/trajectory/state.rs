@@ -1,4 +1,4 @@
-//! The state that a file holds.
+//! The state in a file.
 
 use crate::boundary::Domain;
 use crate::error::Rounded;
@@ -74,7 +74,7 @@ impl State {
         self.time
     }
 
-    /// Returns gravity, if the file has it.
+    /// Returns the gravity, if the file has it.
     pub const fn gravity(&self) -> Option<Gravity> {
         self.gravity
     }
@@ -86,12 +86,12 @@ impl State {
         &self.kind_names
     }
 
-    /// Returns the names of columns in the file that belong to no property of a disk.
+    /// Returns the names of the file's columns that do not belong to a property of a disk.
     pub fn ignored(&self) -> &[String] {
         &self.ignored
     }
 
-    /// Returns the number of disks that were outside of periodic sides, and are moved by whole periods.
+    /// Returns the number of disks outside periodic sides, which the reader moved by whole periods.
     pub const fn wrapped(&self) -> usize {
         self.wrapped
     }

@@ -1,4 +1,4 @@
-//! Disks as a file has them: columns, rows, and the box, time and gravity beside them.
+//! The contents of a file: columns and rows of disks, with the box, the time and gravity.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use crate::Gravity;
 use crate::boundary::Domain;
 use crate::disk::LARGEST_ID;
 
-/// A frame of a file, for all formats the same.
+/// A frame of a file, in the same form for all formats.
 ///
 /// A format names the columns and pushes rows; [`disks`](super::disks) turns them into a state.
 #[derive(Debug, Default)]
@@ -19,16 +19,17 @@ pub(super) struct Table {
     pub(super) line: usize,
     /// Values of the columns with a slot, row after row.
     values: Vec<f64>,
-    /// Lines of the rows.
+    /// The line number of each row.
     pub(super) lines: Vec<usize>,
     /// The number of each name, by first appearance.
     names: HashMap<String, usize>,
-    /// Types count from 1, and a density is that of a sphere.
+    /// True for a file of LAMMPS, in which types count from 1, and densities are densities of spheres.
     pub(super) is_of_lammps: bool,
-    /// This crate wrote the file. It always writes a last line break, so a file without one is torn.
+    /// True if this crate wrote the file. The crate always writes a last line break, so a file without a last
+    /// line break is incomplete.
     pub(super) is_own: bool,
     pub(super) domain: Option<Domain>,
-    /// The box of which scaled positions are shares, if it is not the domain.
+    /// The box to which scaled positions refer, if it is not the domain.
     pub(super) extent: Option<Domain>,
     pub(super) time: Option<f64>,
     pub(super) gravity: Option<Gravity>,
@@ -39,7 +40,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Creates a table of these columns, of which none may appear twice.
+    /// Creates a table of these columns. No column may appear twice.
     pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Result<Self, ReadError> {
         let mut columns: Vec<Column> = columns.into_iter().collect();
         // Only LAMMPS counts types from 1; elsewhere, a type is a name.
@@ -116,7 +117,7 @@ impl Table {
         self.known().any(|(_, slot)| Some(slot) == quantity.slot(component))
     }
 
-    /// Returns the names of columns that no property of a disk comes from.
+    /// Returns the names of columns that do not determine a property of a disk.
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |column: &Column| {
             let is_name = column.slot == Some(Quantity::Name as usize);
@@ -136,7 +137,7 @@ impl Table {
         self.values.chunks(stride).zip(self.lines.iter().copied())
     }
 
-    /// Returns the lines of the rows alone, to free the rest.
+    /// Returns the lines of the rows, and frees everything else.
     pub(super) fn into_lines(self) -> Vec<usize> {
         self.lines
     }

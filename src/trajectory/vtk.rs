@@ -70,7 +70,7 @@ fn write_disks(
     out.write_all(TAIL.as_bytes())
 }
 
-/// Writes the edges of the box where its walls are, and other walls, as lines.
+/// Writes the edges of the box at the positions of its walls, and the other walls, as lines.
 ///
 /// The array `periodic` is 1 for edges that are not walls, and `part` is 1 for walls that are not edges. An
 /// open box has no lid.

@@ -1,4 +1,4 @@
-//! The gate that every motion passes before a wall takes it: finite answers, and pieces that advance.
+//! The check that every motion passes before a wall uses it: its numbers are finite, and its pieces advance.
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Violation;
@@ -16,7 +16,7 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 ///
 /// Every run depends on both.
 ///
-/// The check looks at phases in the first period, or between 0 and a million for a motion without a period.
+/// The check tries phases in the first period, or between 0 and a million for a motion without a period.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -61,7 +61,7 @@ pub(super) fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64
     Ok((low, high))
 }
 
-/// Follows some pieces from this phase on, and also checks the middle of each.
+/// Follows some pieces from this phase on, and also checks the middle of each piece.
 pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), Violation> {
     let mut phase = start;
     for _ in 0..PIECES_IN_A_ROW {

@@ -10,14 +10,14 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const LEAST_ROOM: f64 = 1e-3;
 
 /// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
-/// within a few periods, each of which takes a few tens of steps. A search that has taken more gives its
-/// caller a chance to look at other things, and goes on from there later.
+/// within a few periods, each of which takes a few tens of steps. A search that has taken more steps returns
+/// to its caller, which resumes the search later.
 const MOST_STEPS: u32 = 256;
 
-/// The answer of a search for the first touch: the touch, or how far the way is free.
+/// The result of a search for the first touch: the touch, or the time up to which there is none.
 ///
 /// In [`wall`](crate::wall), a touch is its time. In [`boundary`](crate::boundary), it is a
-/// [`Touch`](crate::boundary::Touch). An `Option` turns into an answer with `into`:
+/// [`Touch`](crate::boundary::Touch). An `Option` becomes a result with `into`:
 ///
 /// ```
 /// use granular_edmd::wall::FirstTouch;
@@ -30,14 +30,14 @@ const MOST_STEPS: u32 = 256;
 pub enum FirstTouch<T> {
     /// The first touch.
     At(T),
-    /// There is no touch before this time, and nothing is known about later ones. If this is the end of the
+    /// There is no touch before this time, and nothing is known about later times. If this is the end of the
     /// search, or infinite, the search has found no touch at all. If it is the start of the search, the
-    /// search cannot go on.
+    /// search cannot continue.
     NotBefore(f64),
 }
 
 impl<T> FirstTouch<T> {
-    /// The answer of a search that has found no touch up to its end.
+    /// The result of a search that found no touch up to its end.
     pub const NONE: Self = Self::NotBefore(f64::INFINITY);
 
     /// Returns the touch, or `None` if the search found none.
@@ -48,7 +48,7 @@ impl<T> FirstTouch<T> {
         }
     }
 
-    /// Returns the same answer, with another description of the touch.
+    /// Returns the same result, with another description of the touch.
     pub fn map<U>(self, change: impl FnOnce(T) -> U) -> FirstTouch<U> {
         match self {
             Self::At(touch) => FirstTouch::At(change(touch)),
@@ -63,7 +63,8 @@ impl<T> From<Option<T>> for FirstTouch<T> {
     }
 }
 
-/// The approach of a surface to a wall: its height above the wall's place at rest, along the wall's normal.
+/// The approach of a surface to a wall: its height above the wall's position at rest, along the wall's
+/// normal.
 ///
 /// Its times are phases of the wall's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +76,7 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// Creates the approach of a surface that has this height and velocity at `time`, and this constant
+    /// Creates the approach of a surface from its height and velocity at `time` and its constant
     /// acceleration.
     #[inline]
     pub const fn new(time: f64, height: f64, velocity: f64, acceleration: f64) -> Self {
@@ -88,8 +89,8 @@ impl Approach {
         self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
     }
 
-    /// Returns whether the surface stays above this height until this time. Under an upward pull, the answer
-    /// is always no, and the caller must search.
+    /// Returns whether the surface stays above this height until this time. Under an upward pull, the result
+    /// is always false, and the caller must search.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
         // Under a downward pull, the surface is lowest at the first or the last of these times, so two tests
@@ -118,9 +119,9 @@ impl Approach {
 /// the wall never enters. The search then follows it from piece to piece.
 ///
 /// # Searches that do not come to an end
-/// A search invents no touch. It answers [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
+/// A search invents no touch. It returns [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
 /// gap is known to be open:
-/// - After 256 steps. The caller may take up the search from there.
+/// - After 256 steps. The caller may resume the search from that time.
 /// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends
 ///   before it begins, or where a number is not finite. A search that starts there gets no further. A run
 ///   ends with an error at that time.
@@ -163,7 +164,7 @@ struct Search<'a, M: ?Sized> {
     reach: (f64, f64),
 }
 
-/// The gap and the wall at one time.
+/// The gap and its rate at one time, with bounds that hold until the end of the wall's piece.
 #[derive(Clone, Copy)]
 struct Look {
     gap: f64,
@@ -186,7 +187,7 @@ enum Step {
     Touch(f64),
     /// The surfaces do not touch before this time.
     Open(f64),
-    /// The place of the wall is unknown from here on.
+    /// The position of the wall is unknown from this time on.
     Unknown,
 }
 
@@ -218,7 +219,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         if gap <= tolerance && rate < 0.0 {
             return Step::Touch(time);
         }
-        // The surface is so far away that its place overflows.
+        // The surface is so far away that its position overflows.
         if gap == f64::INFINITY {
             return Step::Open(f64::INFINITY);
         }
@@ -272,9 +273,10 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the acceleration of the gap during a fall through the rounding, within the piece.
+    /// Returns the mean acceleration of the gap while it falls through its rounding, within the piece.
     ///
-    /// The acceleration comes from the change of the rate, since the motion itself only gives bounds for it.
+    /// The acceleration comes from the change of the rate, since the motion only gives bounds of the
+    /// acceleration.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
         let fall = (-2.0 * first.tolerance / first.pull).sqrt();
         let soon = (start + fall.min(0.5 * (first.until - start))).max(start.next_up());
@@ -284,8 +286,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
     /// The room is the sum of the gap and its rounding, so that each step advances, and the last one ends
-    /// where the gap is closed by rounding. A gap that is closed by more than that gets almost no room, so
-    /// that no surface goes much deeper into a wall than it already is.
+    /// where the gap is closed by rounding. A gap that is negative by more than its rounding gets almost no
+    /// room, so that no surface goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }

@@ -1,9 +1,9 @@
-//! Walls that do not move.
+//! The motion of a wall at rest.
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;
 
-/// The motion of a wall that stays at its place.
+/// The motion of a wall that stays at its position.
 ///
 /// ```
 /// use granular_edmd::wall::{Fixed, WallMotion};

@@ -2,8 +2,8 @@
 
 use super::WallMotion;
 
-/// Returns whether the motion is seen to jump at the end of a piece: it is not where its velocity shortly
-/// before the end leads.
+/// Returns whether the motion jumps at the end of a piece: its displacement then differs from the one to
+/// which its velocity shortly before the end leads.
 pub(super) fn seen<M: WallMotion + ?Sized>(motion: &M) -> bool {
     const PIECES: usize = 1000;
     let (low, high) = motion.reach();

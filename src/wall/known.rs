@@ -23,7 +23,7 @@ impl Serialize for Motion {
 impl<'de> Deserialize<'de> for Motion {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let motion = motion_or_piston(deserializer)?;
-        // Inside another motion, or in a part, it would not react.
+        // Inside another motion, or in a part, a piston would not react.
         let reacts = motion.stroke().is_some();
         if reacts { Err(D::Error::custom("a piston is a wall of a container")) } else { Ok(motion) }
     }
@@ -34,7 +34,7 @@ pub(crate) fn motion_or_piston<'de, D: Deserializer<'de>>(deserializer: D) -> Re
     Known::deserialize(deserializer)?.motion().map_err(D::Error::custom)
 }
 
-/// Lists the motions with numbers.
+/// Defines the list of motions that files can hold.
 macro_rules! known {
     ($($motion:ident),*) => {
         #[derive(Serialize, Deserialize)]

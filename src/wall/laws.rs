@@ -1,8 +1,8 @@
 //! Checks of a wall motion's contract, for custom motions.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only
-//! that all answers are finite and that pieces advance; a container does this with every motion that it is
-//! given. [`check_fingerprints`] compares two motions.
+//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only that all numbers are
+//! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
+//! compares two motions.
 
 use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
@@ -37,7 +37,7 @@ const SLOPE: f64 = 3e-4;
 const PHASES: u32 = 4000;
 const INTERVAL: f64 = 400.0;
 
-/// Number of later phases, each by a fifth later than the one before.
+/// Number of later phases, each a fifth later than the previous one.
 const LATE: i32 = 40;
 
 /// Checks that a motion keeps its contract between two phases.
@@ -45,10 +45,10 @@ const LATE: i32 = 40;
 /// The check samples each piece that begins between the phases. The state must be finite and within the
 /// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
 /// the integral of the velocity. Pieces must advance, and the wall may jump only where one ends, away from
-/// the disks, and if the motion says so. The motion must repeat after its period, and answer alike when it is
-/// asked again. The check can miss a fault that is narrower than a five-hundredth of a piece, so check a
-/// motion with one long piece in several short intervals. It refuses an interval of more than ten thousand
-/// pieces. The page "Validation" says which planted faults it finds.
+/// the disks, and if the motion says so. The motion must repeat after its period, and return the same values
+/// when it is called again. The check can miss a fault that is narrower than a five-hundredth of a piece, so
+/// check a motion with one long piece in several short intervals. It refuses an interval of more than ten
+/// thousand pieces. The page "Validation" says which planted faults it finds.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -95,13 +95,13 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     Err(Violation::new(PART, "pieces", sentence))
 }
 
-/// Checks that two motions which answer differently have different fingerprints, and that two which answer
-/// alike have the same. Motions without a fingerprint are not compared.
+/// Checks that two motions with different values have different fingerprints, and that two with equal values
+/// have the same fingerprint. Motions without a fingerprint are not compared.
 ///
 /// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
 ///
 /// # Errors
-/// If the fingerprints tell something else than the answers.
+/// If the fingerprints contradict the values.
 ///
 /// ```
 /// use granular_edmd::wall::{Sinusoidal, laws};
@@ -123,7 +123,7 @@ where
     check_pair(PART, [first.fingerprint(), second.fingerprint()], difference)
 }
 
-/// A motion and its reach, under the check.
+/// The checked motion, and its reach.
 struct Check<'a, M: ?Sized> {
     motion: &'a M,
     low: f64,
@@ -268,7 +268,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         Ok(())
     }
 
-    /// Checks that the wall does not jump toward the disks where a piece ends, and that it says if it jumps.
+    /// Checks that the wall does not jump toward the disks where a piece ends, and that the motion declares
+    /// jumps.
     fn end(&self, start: f64, until: f64) -> Result<(), Violation> {
         let bounds = finite_bounds(self.motion, start)?;
         let before = self.sample(until - LAST * (until - start))?;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::{Fixed, Stroke, WallMotion, check_finite};
 use crate::Violation;
 
-/// A motion whose type can be asked for: files hold the types of the crate.
+/// A motion whose type can be found at run time, since files hold motions of the crate's types.
 pub(crate) trait Owned: WallMotion + Any + Send + Sync {}
 
 impl<M: WallMotion + Any + Send + Sync> Owned for M {}
@@ -18,18 +18,18 @@ impl<M: WallMotion + Any + Send + Sync> Owned for M {}
 pub(crate) struct Motion(Arc<dyn Owned>);
 
 impl Motion {
-    /// Takes a motion, if it passes `check_finite`.
+    /// Wraps a motion that passes `check_finite`, or returns the violation.
     pub(crate) fn new<M: WallMotion + Send + Sync + 'static>(motion: M) -> Result<Self, Violation> {
         check_finite(&motion)?;
         Ok(Self::of(motion))
     }
 
-    /// Takes a motion that is checked elsewhere.
+    /// Wraps a motion that is checked elsewhere.
     pub(crate) fn of<M: WallMotion + Send + Sync + 'static>(motion: M) -> Self {
         Self(Arc::new(motion))
     }
 
-    /// Returns the motion of a wall that stays at its place.
+    /// Returns the motion of a wall that stays at its position.
     pub(crate) fn none() -> Self {
         Self::of(Fixed)
     }
@@ -39,7 +39,7 @@ impl Motion {
         &*self.0
     }
 
-    /// Returns the motion of a piston, if it is one.
+    /// Returns the piston, if the motion is one.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         self.as_any().downcast_ref()
     }
@@ -48,7 +48,8 @@ impl Motion {
     pub(crate) fn phase(&self, origin: f64) -> f64 {
         let (low, high) = self.reach();
         match self.period() {
-            // A wall that never moves is the same at all times. At phase 0, times lose none of their digits.
+            // A wall that never moves has the same position at all times. At phase 0, times lose none of
+            // their digits.
             _ if low == high => 0.0,
             // The remainder of two floats is exact, so the phase keeps all its digits, however late the time.
             Some(period) => origin % period,

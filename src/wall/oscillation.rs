@@ -58,7 +58,7 @@ crate::gate::from_file! {
     Oscillation { amplitude: f64, angular_frequency: f64 } => Self::new(amplitude, angular_frequency)
 }
 
-/// Gives a motion over an [`Oscillation`] its constructor and its two numbers.
+/// Defines the constructor and the two getters of a motion over an [`Oscillation`].
 macro_rules! periodic {
     ($motion:ident) => {
         impl $motion {
@@ -84,7 +84,7 @@ macro_rules! periodic {
     };
 }
 
-/// Gives a motion over an [`Oscillation`] the answers that follow from its two numbers, and its name.
+/// Defines the methods of a motion over an [`Oscillation`] that follow from its name and its two numbers.
 macro_rules! periodic_answers {
     ($name:literal) => {
         fn reach(&self) -> (f64, f64) {

@@ -16,7 +16,7 @@ use crate::{Fingerprint, ParameterError};
 /// M\ddot z = F - k(z - z_0)
 /// ```
 ///
-/// between two blows: a parabola or a sine, without a time step. Each disk that hits the wall changes its
+/// between two impacts: a parabola or a sine, without a time step. Each disk that hits the wall changes its
 /// velocity by $`\Delta_n/M`$, as the collision rule says for partners of the masses $`m`$ and $`M`$. The
 /// wall is guided, so it takes any momentum along itself. A stop takes all of the wall's velocity: the wall
 /// rests there as long as the force presses it against the stop.

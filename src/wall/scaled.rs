@@ -1,4 +1,4 @@
-//! A motion, larger, smaller or in the opposite direction.
+//! A motion enlarged, reduced or reversed by a factor.
 
 use super::{AccelerationBounds, Motion, WallMotion, WallState};
 use crate::quantity::{accept, finite};

@@ -86,7 +86,7 @@ crate::gate::from_file! {
 /// Largest number of pieces that may end in the rounding of one phase.
 const PIECES: u32 = 8;
 
-/// Returns the bounds at a phase of a motion that is ahead by `lead`.
+/// Returns the bounds of a motion that is ahead by `lead`, at a phase.
 pub(super) fn late_bounds(motion: &Motion, phase: f64, lead: f64) -> AccelerationBounds {
     let bounds = motion.acceleration(late(motion, phase, lead));
     AccelerationBounds::new(bounds.until - lead, bounds.min, bounds.max)

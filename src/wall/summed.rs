@@ -1,4 +1,4 @@
-//! Two motions at once.
+//! Sums of two motions.
 
 use super::{AccelerationBounds, Motion, WallMotion, WallState};
 use crate::quantity::finite;

@@ -1,4 +1,4 @@
-//! A motion through given places at given times.
+//! A motion through given displacements at given times.
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::error::Readable;
@@ -38,7 +38,7 @@ pub struct Tabulated {
     /// Smallest and largest displacement.
     #[cfg_attr(feature = "serde", serde(skip))]
     reach: (f64, f64),
-    /// Two arcs from each row to the next, then the rest.
+    /// Two arcs from each row to the next, then the arc at rest after the last row.
     #[cfg_attr(feature = "serde", serde(skip))]
     arcs: Vec<Arc>,
 }
@@ -86,7 +86,7 @@ impl Tabulated {
     /// z(t) = A + 2(B-A)(t/T)^2\quad (0\le t<T/2),\qquad z(t) = B - 2(B-A)(1-t/T)^2\quad (T/2\le t<T).
     /// ```
     ///
-    /// It begins at phase 0; [`Delayed`](super::Delayed) gives it another start.
+    /// It begins at phase 0; [`Delayed`](super::Delayed) moves the start.
     ///
     /// # Errors
     /// If the time is not positive, or another number or the acceleration is not finite.
@@ -119,7 +119,7 @@ impl Tabulated {
     }
 }
 
-/// Returns the mean velocity from the row before to this one.
+/// Returns the mean velocity from the previous row to this row.
 fn slope(row: usize, rows: &[(f64, f64)]) -> f64 {
     (rows[row].1 - rows[row - 1].1) / (rows[row].0 - rows[row - 1].0)
 }
@@ -137,7 +137,7 @@ fn velocities(rows: &[(f64, f64)]) -> Vec<f64> {
     [0.0].into_iter().chain(inner).chain([0.0]).collect()
 }
 
-/// Returns the two arcs from the row before to this one.
+/// Returns the two arcs from the previous row to this row.
 fn arcs_to(row: usize, rows: &[(f64, f64)], velocities: &[f64]) -> Result<[Arc; 2], ParameterError> {
     let ((from, displacement), (to, _)) = (rows[row - 1], rows[row]);
     let middle = from + 0.5 * (to - from);

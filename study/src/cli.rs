@@ -67,21 +67,21 @@ use watch::Watch;
 /// has all.
 const LISTED: usize = 8;
 
-/// The way in which a command ended, with its exit code.
+/// The outcome of a command, with its exit code.
 #[derive(Clone, Copy)]
 enum End {
     Done = 0,
-    /// Not finished; other processes work on it.
+    /// Values are unfinished, and other processes are working on them.
     Elsewhere = 3,
-    /// All is done but the tables.
+    /// All values are finished, but not the tables.
     NoTables = 4,
     /// A standard state is slower than in an earlier table, beyond the noise.
     Slower = 5,
     /// Two runs differ.
     Different = 6,
-    /// All is done, and some values were not finished.
+    /// The study is complete, but some values stalled, failed or reached a limit.
     Unfinished = 7,
-    /// Not finished; no process works on it.
+    /// Values are unfinished, and no process is working on them.
     Idle = 8,
     Interrupted = 130,
 }
@@ -118,7 +118,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
     }
 }
 
-/// Tells an error, and returns its exit code: 2 for a plan that cannot be used.
+/// Prints an error, and returns its exit code: 2 for an unusable plan.
 fn report(error: &(dyn Error + 'static)) -> ExitCode {
     let _ = writeln!(io::stderr(), "error: {}", chain(error));
     let of_study = error.downcast_ref::<StudyError>();
@@ -132,8 +132,8 @@ fn say(line: &str) -> Result<(), Failure> {
     told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
 }
 
-/// Judges an attempt to write. A closed pipe is no error, since its reader has seen enough: the result is
-/// then false. A full disk is one.
+/// Evaluates the result of writing output. A closed pipe is no error, since its reader has seen enough: the
+/// result is then false. A full disk is one.
 fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
@@ -148,7 +148,7 @@ fn read(path: &Path) -> Result<String, Failure> {
     Ok(text.map_err(StudyError::io("read", path))?)
 }
 
-/// Returns the error of a plan in a file, which names the file.
+/// Returns the error of a plan, with the name of its file.
 fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
     move |source| StudyError::Unreadable { path: path.to_owned(), source }
 }

@@ -12,7 +12,7 @@ use granular_edmd::trajectory::{ReadError, RecordError};
 use granular_edmd::{ParameterError, Violation};
 use thiserror::Error;
 
-/// An error: an experiment cannot be built or changed.
+/// The error of an experiment that cannot be built or changed.
 ///
 /// `?` makes it from the errors of both packages, of input and output, and from texts;
 /// [`new`](Self::new) from any other. It shows its cause, and `?` takes it into any error.
@@ -59,7 +59,7 @@ from_causes! {
     CheckpointError, RecordError, ReadError, Violation, ObserverError, PlanError, StudyError
 }
 
-/// An error in a plan: it cannot be run.
+/// The error of a plan that cannot be run.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
@@ -68,13 +68,13 @@ pub enum PlanError {
     /// A number of the protocol, or the seed, is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// The text is not a plan, or the plan cannot be a text.
+    /// The text is not a plan, or the plan cannot be written as text.
     #[error("{0}")]
     Toml(String),
-    /// The experiment refuses the parameters of a value.
+    /// The experiment rejects the parameters of a value.
     #[error("the experiment cannot be{place}")]
     Experiment {
-        /// The parameters that vary, with their values; empty if the plan varies none.
+        /// The parameters that vary, with their values; empty if no parameter varies.
         place: String,
         /// The reason.
         source: ExperimentError,
@@ -94,7 +94,7 @@ pub enum PlanError {
     Ambiguous {
         /// The name.
         parameter: String,
-        /// The parameters that the name may stand for.
+        /// The parameters for which the short name may stand.
         known: Vec<String>,
     },
     /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order,
@@ -106,7 +106,7 @@ pub enum PlanError {
         /// The reason.
         reason: String,
     },
-    /// There are more ramps or values than can be numbered.
+    /// There are too many ramps or values to number.
     #[error("{count} ramps and values are too many: at most {most} are possible")]
     TooMany {
         /// The number of ramps and values.
@@ -119,7 +119,7 @@ pub enum PlanError {
     Name {
         /// The name.
         name: String,
-        /// The thing that has it: `column`, `table` or `varied parameter`.
+        /// The item with this name: `column`, `table` or `varied parameter`.
         what: &'static str,
         /// The reason.
         reason: String,
@@ -146,7 +146,7 @@ pub enum StudyError {
     /// The path of the folder is empty.
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
-    /// The folder holds other files, and no plan. A study does not mix its files with others.
+    /// The folder holds other files but no plan. A study does not mix its files with others.
     #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
     Occupied {
         /// The folder.
@@ -157,7 +157,7 @@ pub enum StudyError {
     /// The study has no such ramp.
     #[error("there is no ramp {ramp}: the study has {ramps}, counted from 0")]
     NoSuchRamp {
-        /// The index that was asked for.
+        /// The requested index.
         ramp: usize,
         /// The number of ramps.
         ramps: usize,
@@ -165,7 +165,7 @@ pub enum StudyError {
     /// The grid of the study has no such point.
     #[error("there is no point {point}: the study has {points}, counted from 0")]
     NoSuchPoint {
-        /// The index that was asked for.
+        /// The requested index.
         point: usize,
         /// The number of points.
         points: usize,
@@ -177,7 +177,7 @@ pub enum StudyError {
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// The answer of the system.
+        /// The error that the system returned.
         source: io::Error,
     },
     /// A file cannot be locked: some file systems of networks have no locks.
@@ -188,10 +188,10 @@ pub enum StudyError {
     NoLock {
         /// The file.
         path: PathBuf,
-        /// The answer of the system.
+        /// The error that the system returned.
         source: io::Error,
     },
-    /// A table would take the place of another file.
+    /// A table would overwrite another file.
     #[error("{} exists already; choose another folder for tables", path.display())]
     Taken {
         /// The file.
@@ -227,12 +227,12 @@ pub enum StudyError {
         /// The fields in which the plans differ.
         differences: Vec<Difference>,
     },
-    /// A file was cut or changed, or belongs elsewhere.
+    /// A file was cut or changed, or belongs to another value or study.
     #[error("{} is damaged: {reason}; run the study with a check of its records to redo it", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// The damage.
+        /// The description of the damage.
         reason: String,
     },
     /// A record belongs to another plan, so somebody has changed the record or the plan.
@@ -269,7 +269,7 @@ pub enum StudyError {
     Build {
         /// Index of the ramp.
         ramp: usize,
-        /// Index of the value in it.
+        /// Index of the value in the ramp.
         value: usize,
         /// The reason.
         source: ExperimentError,
@@ -291,12 +291,12 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
 }
 
 impl PlanError {
-    /// Returns the error of a parameter that cannot vary in this way.
+    /// Returns the error of a parameter that cannot vary, for the given reason.
     pub(super) fn varied(parameter: &str, reason: impl Into<String>) -> Self {
         Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
     }
 
-    /// Returns the error of a text that is no TOML, or no plan.
+    /// Returns the error of a text that is not TOML, or not a plan.
     pub(super) fn toml(error: &impl fmt::Display) -> Self {
         Self::Toml(shortened(&error.to_string()))
     }
@@ -313,7 +313,7 @@ pub(super) fn shortened(message: &str) -> String {
 }
 
 impl StudyError {
-    /// Returns a function that turns an error of the system into one that names the action and the file.
+    /// Returns a function that turns an error of the system into an error that names the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { action, path: path.to_owned(), source }
     }
@@ -327,9 +327,9 @@ impl StudyError {
 pub struct Difference {
     /// The name of the field, after the names of the groups that contain it.
     pub field: String,
-    /// The value in the plan of the folder.
+    /// The field's value in the plan of the folder.
     pub old: Option<String>,
-    /// The value in the plan that was given.
+    /// The field's value in the given plan.
     pub new: Option<String>,
 }
 

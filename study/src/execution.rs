@@ -1,4 +1,4 @@
-//! Runs of a study, which do the values that are missing.
+//! Runs of a study, which compute the missing values.
 
 mod active;
 pub(super) mod control;
@@ -18,11 +18,11 @@ use control::{Control, Summary};
 use queue::Queue;
 use session::Session;
 
-/// Shortest and longest time between two looks at the work of other processes. It doubles from look to look,
+/// Shortest and longest time between two checks of the work of other processes. It doubles from look to look,
 /// since a process that waits must not burden a file system that others need.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
 
-/// Largest number of blocks of other processes that one look tries to take over.
+/// Largest number of blocks of other processes that one check tries to take over.
 const TRIED: usize = 8;
 
 impl<E: Experiment> Study<E> {
@@ -72,8 +72,8 @@ impl<E: Experiment> Study<E> {
         Ok(summary)
     }
 
-    /// Writes the tables, unless another process has done so meanwhile. A run of the whole study also writes
-    /// lost tables again. If one of many tasks finds everything done, it leaves the tables as they are.
+    /// Writes the tables, unless another process has written them meanwhile. A run of the whole study also
+    /// writes lost tables again. If one of many tasks finds everything done, it leaves the tables unchanged.
     fn write_tables_once(&self, is_whole: bool) -> Result<(), StudyError> {
         let is_there = || if is_whole { self.has_tables() } else { self.folder.is_complete() };
         if is_there() {
@@ -88,8 +88,8 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Runs blocks until each of them is done, here or elsewhere. If it need not wait, it returns the ramps of
-/// other processes.
+/// Runs blocks until each block is finished, in this process or another. If it need not wait, it returns the
+/// ramps of other processes.
 fn all<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<Vec<usize>, StudyError> {
     session.strike_done(queue)?;
     let mut patience = PATIENCE[0];
@@ -102,7 +102,7 @@ fn all<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<Vec<usi
         }
         session.sleep(patience);
         patience = PATIENCE[1].min(2 * patience);
-        // Their process may have been killed.
+        // The process of these blocks may have been killed.
         queue.retry(TRIED);
     }
 }
@@ -121,7 +121,7 @@ fn work_in_parallel<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> R
     failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
 }
 
-/// Does blocks of the queue until it is empty.
+/// Runs blocks of the queue until it is empty.
 fn work<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<(), StudyError> {
     while !session.must_stop()
         && let Some((index, ramps)) = queue.next()

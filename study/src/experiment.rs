@@ -1,4 +1,4 @@
-//! The trait of experiments, systems that can be studied, and the types that its methods name: the records of
+//! The trait of experiments, which are the systems of studies, and the types in its methods: the records of
 //! an experiment, and the columns of its tables.
 
 pub(super) mod columns;
@@ -113,7 +113,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     type Boundary: Boundary;
     /// Type of the observer; `()` for none.
     type Observer: Observer + Serialize + DeserializeOwned;
-    /// Type of the data that a sample keeps: numbers, lists, anything that can be serialized.
+    /// Type of a sample's data: numbers, lists, or any other type that can be serialized.
     type Sample: Serialize + DeserializeOwned;
 
     /// Returns the meanings of parameters and columns by name, with units, ranges and defaults.
@@ -155,7 +155,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// If they do not fit.
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError>;
 
-    /// Returns gravity; a number turns into it by `into`, and points down.
+    /// Returns gravity. A number becomes gravity that points down, by `into`.
     fn gravity(&self) -> Gravity {
         Gravity::NONE
     }
@@ -172,7 +172,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// If these parameters do not give one.
     fn observer(&self) -> Result<Self::Observer, ExperimentError>;
 
-    /// Returns the sample of this moment.
+    /// Returns a sample of the present state.
     ///
     /// It may read the observer, and empty it for the interval until the next sample, or let it add up over
     /// all samples.
@@ -189,10 +189,12 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(None)
     }
 
-    /// Returns a companion, an observer that rides along and is not saved: a recorder, a closure, a channel.
+    /// Returns a companion: an additional observer that is not saved, such as a recorder, a closure or a
+    /// channel.
     ///
-    /// It sees the whole value, its settling too, and is made anew when a value goes on after an
-    /// interruption. Its verdict counts like the observer's, so it must follow from the run alone.
+    /// The companion sees the whole value, including its settling. A value that continues after an
+    /// interruption gets a new companion. A companion's verdict counts like the observer's, so the verdict
+    /// must follow from the run alone.
     ///
     /// # Errors
     /// If it cannot be made, such as a file that cannot be written.
@@ -201,14 +203,14 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(None)
     }
 
-    /// Changes a simulation before each step of a value: it moves walls, opens gates, adds or removes inlets
-    /// and disks.
+    /// Changes a simulation before each step of a value: moves walls, opens gates, adds or removes inlets and
+    /// disks.
     ///
-    /// By default it changes nothing. What it does must follow from its arguments. The observer may keep what
-    /// [`boundary_in`](Self::boundary_in) needs.
+    /// By default it changes nothing. The changes must follow from the arguments alone. The observer may keep
+    /// what [`boundary_in`](Self::boundary_in) needs.
     ///
     /// # Errors
-    /// If it cannot. The value has then failed, and the study goes on.
+    /// If the simulation cannot be prepared. The value has then failed, and the study continues.
     fn prepare(
         &self,
         step: &Interval,
@@ -219,8 +221,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(())
     }
 
-    /// Returns the walls in a step, as [`prepare`](Self::prepare) has set them, to go on with a value that
-    /// was interrupted in it, or with the next value after the last step.
+    /// Returns the walls in a step, as [`prepare`](Self::prepare) has set them. A value that was interrupted
+    /// in the step continues with these walls, and after the last step the next value does.
     ///
     /// # Errors
     /// If the parameters do not give walls.
@@ -236,12 +238,13 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Returns further tables, of profiles for example, besides the tables of values and samples.
+    /// Returns tables that the study writes besides the tables of values and samples, such as tables of
+    /// profiles.
     fn tables() -> Vec<Table<Self>> {
         Vec::new()
     }
 
-    /// Builds the simulation with which a ramp begins.
+    /// Builds the simulation at the start of a ramp.
     ///
     /// # Errors
     /// If the rule, the walls, the disks or the simulation cannot be made.
@@ -256,7 +259,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Changes a simulation from the parameters of the previous value to these.
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
-    /// fingerprint stay as they are.
+    /// fingerprint stay unchanged.
     ///
     /// # Errors
     /// If the disks do not fit into the walls.

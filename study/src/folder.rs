@@ -1,4 +1,4 @@
-//! The folder of a study, with its plan, its provenance and values half done.
+//! The folder of a study, with its plan, its provenance and its unfinished values.
 //!
 //! A process that writes plan or tables holds the lock of the folder. The next process that holds it knows
 //! that the writer of a temporary file there is dead.
@@ -65,12 +65,12 @@ impl Folder {
         self.root.join(PLAN)
     }
 
-    /// Returns the file of a value half done.
+    /// Returns the path of the file that keeps an unfinished value.
     pub(super) fn partial(&self, ramp: usize, value: usize) -> PathBuf {
         self.root.join(UNFINISHED).join(format!("{ramp:04}-{value:04}"))
     }
 
-    /// Returns ramp and value of the values half done.
+    /// Returns the ramp and value indices of the unfinished values.
     pub(super) fn unfinished(&self) -> Result<HashSet<[usize; 2]>, StudyError> {
         let files = self.unfinished_files()?;
         let of = |path: &PathBuf| {
@@ -90,14 +90,14 @@ impl Folder {
         create(&self.root.join(UNFINISHED))
     }
 
-    /// Removes what is left of values half done when all are done.
+    /// Removes the remaining files of unfinished values once all values are finished.
     fn clear_unfinished(&self) -> Result<(), StudyError> {
         let unfinished = self.unfinished()?;
         unfinished.iter().try_for_each(|[ramp, value]| whole::remove(&self.partial(*ramp, *value)))?;
         let folder = self.root.join(UNFINISHED);
         if folder.exists() {
             whole::remove_temporaries(&folder)?;
-            // Somebody may keep other files there.
+            // A user may keep other files in this folder.
             let _ = fs::remove_dir(&folder);
         }
         Ok(())
@@ -120,7 +120,8 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.
+    /// Writes a plan to the folder, and creates the folder if needed. Returns false if the folder already has
+    /// a plan.
     ///
     /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
     pub(super) fn create(
@@ -137,7 +138,7 @@ impl Folder {
         }
         whole::remove_temporaries(&self.root)?;
         let is_new = whole::publish(&self.plan(), plan.as_bytes())?;
-        // If a process was killed here, there is a plan without a provenance, and no records.
+        // If a process is killed here, the folder has a plan but no provenance and no records.
         if !self.root.join(LOGS).exists() {
             whole::publish(&self.provenance_file(), provenance.text().as_bytes())?;
         }
@@ -149,7 +150,7 @@ impl Folder {
         self.root.join(PROVENANCE)
     }
 
-    /// Returns the provenance of the study; an empty one if the file is missing.
+    /// Returns the provenance of the study, which is empty if its file is missing.
     pub(super) fn provenance(&self) -> Result<Provenance, StudyError> {
         let path = self.provenance_file();
         let text = whole::if_there("read", &path, fs::read_to_string(&path))?;
@@ -173,11 +174,11 @@ impl Folder {
         }
     }
 
-    /// Checks that the folder has a plan, or only a lock and temporary files, which are written before a
-    /// plan.
+    /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
+    /// a plan.
     fn check_free(&self) -> Result<(), StudyError> {
         let Some(stranger) = self.stranger()? else { return Ok(()) };
-        // The plan may have come while the folder was read.
+        // Another process may have written the plan while the folder was read.
         if self.holds_study() {
             return Ok(());
         }
@@ -187,7 +188,7 @@ impl Folder {
     fn stranger(&self) -> Result<Option<String>, StudyError> {
         let cannot_read = || StudyError::io("read", &self.root);
         let entries = match fs::read_dir(&self.root) {
-            // There is no such folder. The attempt to create it gives the error, if that fails.
+            // The folder does not exist. The attempt to create it gives the error, if that fails.
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
                 return Ok(None);
             }
@@ -208,7 +209,7 @@ impl Folder {
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
     }
 
-    /// Returns whether all ramps are done and in the tables.
+    /// Returns whether all ramps are finished and in the tables.
     pub(super) fn is_complete(&self) -> bool {
         self.complete().exists()
     }
@@ -235,22 +236,22 @@ impl Folder {
         Locked::wait(file).map_err(|source| StudyError::NoLock { path, source })
     }
 
-    /// Waits for the lock of the whole study, and takes it to write tables.
+    /// Waits for the lock of the whole study, and locks the study in order to write tables.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let lock = self.take_lock()?;
         whole::remove_temporaries(&self.root)?;
-        // The process that put the plan here may have been killed before it wrote the README.
+        // The process that wrote the plan may have been killed before it wrote the README.
         self.write_about()?;
         Ok(lock)
     }
 }
 
-/// Creates a folder, and those that contain it.
+/// Creates a folder, with the folders that contain it.
 pub(super) fn create(folder: &Path) -> Result<(), StudyError> {
     fs::create_dir_all(folder).map_err(StudyError::io("create", folder))
 }
 
-/// Returns whether a file of the name of a lock is one: it is empty.
+/// Returns whether a file with the name of a lock is a lock, and thus empty.
 fn is_lock(file: &fs::Metadata) -> bool {
     file.is_file() && file.len() == 0
 }

@@ -1,8 +1,9 @@
-//! JSON as a study writes it: flat objects, on one line in logs and a field a line in files for people.
+//! The JSON that a study writes: flat objects, on one line in logs, and with a line for each field in files
+//! for people.
 
 use std::fmt::{Display, Write};
 
-/// An object that grows field by field.
+/// A JSON object to which fields are added one by one.
 #[derive(Debug, Default)]
 pub(super) struct Object(Vec<(&'static str, String)>);
 

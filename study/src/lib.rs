@@ -18,8 +18,8 @@
 //!    however often these were interrupted or killed, and whether it was done at once or has grown
 //!    ([`Control::with_earlier_studies`]). Only the division of the records into logs differs, and wall-clock
 //!    times. A value that [`Control::with_most_seconds`] ended depends on the machine.
-//! 2. A record is whole or absent. A study names damage and never reads it as data;
-//!    [`Control::with_verification`] does its value again.
+//! 2. A record is complete or absent. A study names damaged records and never reads them as data;
+//!    [`Control::with_verification`] computes their values again.
 //! 3. Any number of processes can run a study at the same time, started at any time; each ramp is run by one
 //!    of them. They need a file system whose locks all of them see, such as a local one, or NFS from version
 //!    4 on. Two runs of the same ramp ([`Study::run_ramp`]) may do it twice, with one result.
@@ -27,7 +27,7 @@
 //! 5. All records of a study come from one code. `provenance.json` keeps the
 //!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the
 //!    experiment, and other code is refused by name whatever it asks of the study ([`StudyError::Code`]),
-//!    until [`Study::accept_changes`] lets it go on.
+//!    until [`Study::accept_changes`] allows it to continue.
 //! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
 //!
 //! ```

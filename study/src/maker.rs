@@ -1,4 +1,4 @@
-//! The code that makes a record.
+//! The identity of the code that made a record.
 
 use std::fmt;
 
@@ -22,12 +22,12 @@ pub(super) struct Maker {
 }
 
 impl Maker {
-    /// Returns the numbers that decide, in one word.
+    /// Returns, in one word, the numbers that decide whether a study accepts the code.
     pub(super) fn key(&self) -> String {
         format!("{}:{}:{}", self.results, self.revision, self.columns)
     }
 
-    /// Returns the fields that decide, by name.
+    /// Returns the names and values of the fields that decide whether a study accepts the code.
     pub(super) fn deciding(&self) -> [(&'static str, String); 3] {
         [
             ("results", self.results.to_string()),
@@ -37,7 +37,7 @@ impl Maker {
     }
 }
 
-/// Tells a record's maker in a cell of a table.
+/// Formats a record's maker for a cell of a table.
 impl fmt::Display for Maker {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { version, results, revision, .. } = self;

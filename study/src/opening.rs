@@ -1,4 +1,4 @@
-//! A study in its folder: how it is created and opened, and what is checked then.
+//! Creating and opening a study in its folder, with the checks at that time.
 
 use std::path::Path;
 
@@ -21,13 +21,13 @@ pub struct Study<E> {
     pub(super) store: Store,
     pub(super) claims: Claims,
     pub(super) plan: Plan<E>,
-    /// The plan as it is in its file.
+    /// The text of the plan in its file.
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// The makers whose records the study takes.
+    /// The makers whose records the study accepts.
     provenance: Provenance,
-    /// The maker that this program is.
+    /// The maker of this program's records.
     maker: Maker,
 }
 
@@ -58,16 +58,16 @@ impl<E: Experiment> Study<E> {
     /// The same command thus starts a study and continues it, also in several processes at the same time.
     ///
     /// # Errors
-    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
-    /// and no study, or cannot be read or written.
+    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), holds other
+    /// files but no study, or cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
     }
 
-    /// Opens the study in a folder, or puts a plan there that passes a check.
+    /// Opens the study in a folder, or writes a plan that passes a check to the folder.
     ///
-    /// A plan that is there was checked then: the check takes seconds in large studies, and each of many
-    /// processes would repeat it.
+    /// An existing plan was checked when it was written: the check takes seconds in large studies, and each
+    /// of many processes would repeat it.
     pub(super) fn open_or_put(
         folder: &Path,
         plan: Plan<E>,
@@ -81,12 +81,12 @@ impl<E: Experiment> Study<E> {
         study.checked()
     }
 
-    /// Lets this program continue a study that other code made, and returns the names of the differences;
-    /// none if it may continue anyway.
+    /// Allows this program to continue a study that other code made, and returns the differences between the
+    /// two. The list is empty if the program was allowed to continue anyway.
     ///
-    /// Its finished values stay as they are. Each record keeps the mark of the code that made it, which the
-    /// column `made_by` of `values.csv` shows: values on both sides of the change can be distinguished, and
-    /// you decide whether they can be compared.
+    /// The study's finished values stay unchanged. Each record keeps the mark of the code that made it, which
+    /// the column `made_by` of `values.csv` shows: values on both sides of the change can be distinguished,
+    /// and you decide whether they can be compared.
     ///
     /// # Errors
     /// If the folder holds no study, or cannot be read or written.
@@ -124,13 +124,14 @@ impl<E: Experiment> Study<E> {
         Ok(Self { folder, store, claims, plan, text, hash, provenance, maker })
     }
 
-    /// Puts the plan into the folder, if it passes a check; returns false if the folder has a plan.
+    /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
+    /// plan.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
         let provenance = Provenance::here(&self.plan, &self.hash, "");
         self.folder.create(&self.text, &provenance, || check(&self.plan))
     }
 
-    /// Returns the study, if this program may go on with it.
+    /// Returns the study, or an error if this program may not continue it.
     fn checked(mut self) -> Result<Self, StudyError> {
         self.provenance = self.check_code()?;
         Ok(self)
@@ -155,7 +156,7 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
     }
 
-    /// Checks that plan and code of the folder are still these, since they may have been changed.
+    /// Checks that the plan and the code in the folder are unchanged.
     pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
         self.check_plan()?;
         self.check_code().map(drop)
@@ -165,7 +166,7 @@ impl<E: Experiment> Study<E> {
         if self.folder.read_plan()? == self.text {
             return Ok(());
         }
-        // Written otherwise, it may be the same plan.
+        // A plan that is written in another way may still be the same plan.
         let found = Self::plan_in(&self.folder)?;
         let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
         if differences.is_empty() {
@@ -184,7 +185,7 @@ impl<E: Experiment> Study<E> {
         &self.plan
     }
 
-    /// Checks that there is a ramp of this index.
+    /// Checks that a ramp of this index exists.
     pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
         let ramps = self.plan.ramp_count();
         if ramp < ramps { Ok(()) } else { Err(StudyError::NoSuchRamp { ramp, ramps }) }
@@ -195,7 +196,7 @@ impl<E: Experiment> Study<E> {
         Origin { study: *self.hash.as_bytes(), maker: self.maker.clone(), ramp, value, seed }
     }
 
-    /// Checks that a file belongs to this study and this place in it, and that the study takes it.
+    /// Checks that a file belongs to this value of this study, and comes from code that the study accepts.
     pub(super) fn check_origin(
         &self,
         found: &Origin,
@@ -215,7 +216,7 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::Changed { path: path.to_owned(), part: "revision" })
     }
 
-    /// Returns whether code with the same results as this program made a file.
+    /// Returns whether a file comes from code with the same results as this program.
     pub(super) fn is_ours(&self, found: &Origin) -> bool {
         found.maker.key() == self.maker.key()
     }

@@ -68,8 +68,8 @@ pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> 
     }
 }
 
-/// Sets a parameter of an experiment, and returns its value as it reads back. The error names the reason:
-/// there is no such parameter, or the experiment refuses the value.
+/// Sets a parameter of an experiment, and returns the value that the experiment then has. The error names the
+/// reason: there is no such parameter, or the experiment refuses the value.
 pub(super) fn probe<E: Serialize + DeserializeOwned>(
     base: &Table,
     parameter: &str,
@@ -96,7 +96,7 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
     found.ok_or_else(|| unknown("the experiment ignores it".to_owned()))
 }
 
-/// Returns the names and values of parameters as text, for errors.
+/// Returns the names and values of parameters as the text of an error.
 pub(super) fn place(varied: &[(&str, &Scalar)]) -> String {
     let varied: Vec<String> = varied.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if varied.is_empty() { String::new() } else { format!(" at {}", varied.join(", ")) }

@@ -35,8 +35,8 @@ use refinement::{Seen, Step};
 /// plan has the same ramps, and so do the parts of a sweep
 /// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight
 /// bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the
-/// same way from the plan's seed, and the name and value of each parameter of the sweep. In the index of a
-/// ramp, the repeat counts fastest.
+/// same way from the plan's seed, and the name and value of each parameter of the sweep. Successive indices
+/// of ramps first run through the repeats of a point.
 ///
 /// ```
 /// use granular_edmd_study::{Plan, Scalar, vibrated_box::VibratedBox};
@@ -77,10 +77,10 @@ pub struct Plan<E> {
     /// The parameters of the experiment by name.
     #[serde(skip)]
     tree: Table,
-    /// The whole names of the parameters that vary: of the axes in their order, then of the ramp.
+    /// The full names of the parameters that vary: first the axes in their order, then the ramp.
     #[serde(skip)]
     pub(super) varied: Vec<String>,
-    /// The first value of each parameter that varies, as the experiment reads it: it shows the kind of
+    /// The first value of each parameter that varies, as the experiment reads it. The value shows the kind of
     /// number.
     #[serde(skip)]
     kinds: Vec<Scalar>,
@@ -136,7 +136,7 @@ impl<E: Experiment> Plan<E> {
         Self { repeats, ..self }.checked()
     }
 
-    /// Returns the same plan, whose records all keep the state at their end
+    /// Returns the same plan with records that all keep the state at their end
     /// ([`Record::checkpoint`](super::Record::checkpoint)).
     ///
     /// Otherwise, a record keeps it only if another value starts from it, since states are most of a record's
@@ -156,7 +156,7 @@ impl<E: Experiment> Plan<E> {
         &self.protocol
     }
 
-    /// Returns the seed from which all others follow.
+    /// Returns the seed from which all other seeds follow.
     pub const fn seed(&self) -> u64 {
         self.seed
     }
@@ -181,7 +181,7 @@ impl<E: Experiment> Plan<E> {
         self.ramp.as_ref().map_or(1, Ramp::len)
     }
 
-    /// Returns the names of the parameters that vary: of the axes in their order, then of the ramp.
+    /// Returns the names of the parameters that vary: first the axes in their order, then the ramp.
     pub fn varied(&self) -> impl Iterator<Item = &str> {
         let ramped = self.ramp.iter().map(Ramp::parameter);
         self.sweep.iter().map(Axis::parameter).chain(ramped)
@@ -191,7 +191,7 @@ impl<E: Experiment> Plan<E> {
     pub fn ramp_seed(&self, ramp: usize) -> u64 {
         let parameters = self.parameters_at(ramp, None);
         let mut swept: Vec<_> = self.varied.iter().zip(&parameters).collect();
-        // The order of the axes does not count.
+        // The order of the axes does not matter.
         swept.sort_by_key(|(name, _)| *name);
         let point = swept.iter().fold(self.seed, |seed, (name, (_, value))| seed_at(seed, name, value));
         derived_seed(point, (ramp % self.repeats) as u64)
@@ -240,7 +240,7 @@ impl<E: Experiment> Plan<E> {
         self.experiment_of(&self.parameters_at(ramp, at))
     }
 
-    /// Returns the experiment with these parameters, if it takes them.
+    /// Returns the experiment with these parameters, or the error with which it rejects them.
     pub(super) fn sound_experiment(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
         let experiment = self.experiment_of(varied)?;
         experiment.check().map_err(|source| Self::refused(varied, source))?;
@@ -252,12 +252,12 @@ impl<E: Experiment> Plan<E> {
         self.ramp.as_ref()
     }
 
-    /// Returns whether ramps bisect transitions, and so have more values than the plan names.
+    /// Returns whether ramps bisect transitions, and therefore have more values than the plan lists.
     pub(super) fn is_refined(&self) -> bool {
         self.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
     }
 
-    /// Returns the next value of a ramp after the finished ones; `None` if there is none.
+    /// Returns the next value of a ramp after the finished values, or `None` if the ramp is complete.
     pub(super) fn next(&self, seen: &[Seen]) -> Option<Step> {
         match &self.ramp {
             Some(ramp) => ramp.next(seen),

@@ -33,7 +33,7 @@ pub struct Point<E: Experiment> {
 }
 
 impl<E: Experiment> Point<E> {
-    /// Creates a point from the records of its repeats; `None` if there are none.
+    /// Creates a point from the records of its repeats, or returns `None` if there are no records.
     pub(super) fn of(index: usize, value: usize, records: Vec<Record<E>>) -> Option<Self> {
         let experiment = records.first()?.experiment().clone();
         Some(Self { index, value, experiment, records })
@@ -59,7 +59,7 @@ impl<E: Experiment> Point<E> {
         &self.experiment
     }
 
-    /// Returns the records of the repeats that are finished.
+    /// Returns the records of the finished repeats.
     pub fn records(&self) -> &[Record<E>] {
         &self.records
     }

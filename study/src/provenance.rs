@@ -1,4 +1,4 @@
-//! The code by which a study goes on, in a readable file.
+//! The code that may continue a study, listed in a readable file.
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
@@ -8,7 +8,7 @@ use super::json::{self, Object};
 use super::maker::Maker;
 use super::{Difference, Experiment, Plan};
 
-/// Returns the maker that this program is.
+/// Returns the maker of this program's records.
 pub(super) fn maker<E: Experiment>() -> Maker {
     let version = env!("CARGO_PKG_VERSION").to_owned();
     Maker { version, results: RESULTS, revision: E::revision(), columns: columns::<E>() }
@@ -50,7 +50,7 @@ impl Provenance {
         Self(page.text(PLAN, hash.to_hex().as_str()).text(ACCEPTED, accepted).page())
     }
 
-    /// Takes the text of the file as it is.
+    /// Wraps the text of the file unchanged.
     pub(super) const fn of_text(text: String) -> Self {
         Self(text)
     }
@@ -59,7 +59,7 @@ impl Provenance {
         &self.0
     }
 
-    /// Returns whether the file is there.
+    /// Returns whether the file exists.
     pub(super) fn is_there(&self) -> bool {
         !self.0.is_empty()
     }
@@ -69,7 +69,7 @@ impl Provenance {
         json::field(&self.0, PLAN) == Some(hash.to_hex().as_str())
     }
 
-    /// Returns the fields that decide, where this program differs.
+    /// Returns those deciding fields in which this program differs.
     pub(super) fn differences<E: Experiment>(&self, plan: &Plan<E>) -> Vec<Difference> {
         let ours = deciding(plan).into_iter();
         let both = ours.map(|(name, ours)| (name, json::field(&self.0, name).map(str::to_owned), ours));

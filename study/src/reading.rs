@@ -17,16 +17,16 @@ use super::{Experiment, Plan, Point, Study, StudyError};
 pub enum RampStatus {
     /// All values of the ramp have a record.
     Done,
-    /// A process is doing the ramp.
+    /// A process is running the ramp.
     Running,
-    /// A part of the ramp is done, and no process is known to do it now.
+    /// A part of the ramp is finished, and no process is known to be running the ramp.
     Begun,
-    /// Nothing of the ramp is done.
+    /// No value of the ramp is finished.
     Waiting,
 }
 
 impl<E: Experiment> Study<E> {
-    /// Returns the record of a value; `None` if it is not finished.
+    /// Returns the record of a value, or `None` if the value is not finished.
     ///
     /// # Errors
     /// If there is no such ramp, or the record is damaged, of another study, of other code, or cannot be
@@ -61,7 +61,7 @@ impl<E: Experiment> Study<E> {
         }
     }
 
-    /// Reads a record of the store, and does not make rule and walls to compare them.
+    /// Reads a record of the store without making the rule and the walls to compare their fingerprints.
     fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, path) = (entry.head(), self.store.log_of(entry));
         let contents: Contents<_, _> = self.store.read(entry)?;
@@ -101,7 +101,8 @@ impl<E: Experiment> Study<E> {
         error.into_iter().map(Err).chain(entries.into_iter().map(|entry| self.read(&entry)))
     }
 
-    /// Returns a value at a point of the grid, with all its finished repeats; `None` if there are none.
+    /// Returns a value at a point of the grid, with all its finished repeats, or `None` if no repeat is
+    /// finished.
     ///
     /// # Errors
     /// If there is no such point, or a record is damaged, of another study, or cannot be read.
@@ -121,10 +122,9 @@ impl<E: Experiment> Study<E> {
         Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
     }
 
-    /// Iterates over all values at all points of the grid that have a finished repeat, and reads them one by
-    /// one.
+    /// Reads, one by one, all values that have a finished repeat, at all points of the grid.
     ///
-    /// The values that a refinement adds differ between repeats, and are not among them.
+    /// Values that a refinement adds are left out, since they differ between repeats.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
         let error = self.store.refreshed().err();
         let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
@@ -133,7 +133,7 @@ impl<E: Experiment> Study<E> {
         error.into_iter().map(Err).chain(found)
     }
 
-    /// Returns the transitions that a refined ramp has bracketed; empty before all of them are.
+    /// Returns the transitions that a refined ramp has bracketed; empty until all are bracketed.
     ///
     /// # Errors
     /// If there is no such ramp, or a record is damaged, of another study, or cannot be read.
@@ -177,7 +177,7 @@ impl<E: Experiment> Study<E> {
         }
         for (ramp, status) in all.iter_mut().enumerate().filter(|(_, status)| **status != RampStatus::Waiting)
         {
-            // A ramp that was finished in between is done.
+            // A ramp that was finished in between counts as finished.
             *status = if entries.is_done(ramp) { RampStatus::Done } else { *status };
         }
         Ok(all)
@@ -189,8 +189,7 @@ impl<E: Experiment> Study<E> {
         Ok((0..self.plan.ramp_count()).all(|ramp| entries.is_done(ramp)))
     }
 
-    /// Returns ramp and value of those values that were not finished: they stalled, failed or reached a
-    /// limit.
+    /// Returns the ramp and value indices of all values that stalled, failed or reached a limit.
     ///
     /// # Errors
     /// If files cannot be read.
@@ -200,9 +199,9 @@ impl<E: Experiment> Study<E> {
         Ok(failed.map(|head| [head.ramp, head.value]).collect())
     }
 
-    /// Lets the failed values of a ramp that is done count as not done, and all values after the first of
-    /// them, since they started from other states. The next run does them again. Returns whether there were
-    /// any.
+    /// Marks the failed values of a finished ramp as unfinished, with all values after the first failed
+    /// value, since a new result changes the states from which these start. The next run computes these
+    /// values again. Returns whether there were failed values.
     ///
     /// The same code fails again, with the same bytes: call this for code whose changes were
     /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process does
@@ -226,8 +225,8 @@ impl<E: Experiment> Study<E> {
         Ok(true)
     }
 
-    /// Returns the seconds of one processor that the finished values took, and those that the others will
-    /// take if they are like them; the latter is NaN before a value is finished.
+    /// Returns the processor seconds that the finished values took, and an estimate for the other values, if
+    /// these are alike. The estimate is NaN before a value is finished.
     ///
     /// Both are estimates: of a value that was interrupted, the last piece counts alone.
     ///
@@ -251,7 +250,7 @@ impl<E: Experiment> Study<E> {
     /// Writes the tables of all finished records into the folder of the study, and returns the number of
     /// these records.
     ///
-    /// A run does this when all ramps are done. Call it earlier to look at what is there. Tables are written
+    /// A run does this when all ramps are done. Call it earlier to see the results so far. Tables are written
     /// row by row, so they may be larger than memory.
     ///
     /// # Errors
@@ -280,7 +279,7 @@ impl<E: Experiment> Study<E> {
         let entries = self.store.refreshed()?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        // Walls take longer to make than a small record to be read, so a spread of them is compared.
+        // Making walls takes longer than reading a small record, so only a spread of records is compared.
         let stride = 1 + entries.all().count() / MOST_TRIED;
         for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();
@@ -303,7 +302,7 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Checks that a record fits its place in a study, or returns the reason why it does not.
+/// Checks that a record belongs to its ramp and value in a study, or returns the reason why it does not.
 fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
     let Contents { origin, leg, at, outcome, end, measured, state, .. } = &record.contents;
     let protocol = plan.protocol();

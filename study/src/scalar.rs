@@ -25,7 +25,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Returns the number; `None` for a word or a switch.
+    /// Returns the number, or `None` for a word or a switch.
     pub const fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -48,7 +48,7 @@ impl Scalar {
     /// Returns the same value in the type of `other`, if nothing is lost: 1.0 becomes the integer 1, for
     /// example.
     pub(super) fn like(self, other: &Self) -> Self {
-        /// Up to this size, all whole numbers are doubles.
+        /// Largest magnitude up to which a double represents all whole numbers.
         const EXACT: f64 = 9_007_199_254_740_992.0;
         match (other, self) {
             (Self::Integer(_), Self::Number(number)) if number.abs() <= EXACT && number.trunc() == number => {
@@ -60,8 +60,8 @@ impl Scalar {
     }
 }
 
-/// Derived code would try each kind in turn and make an error for each that does not fit, which costs a
-/// second for a million values.
+/// Derived code would try one kind after another and make an error for each kind that does not fit, which
+/// takes a second for a million values.
 impl TryFrom<toml::Value> for Scalar {
     type Error = &'static str;
 
@@ -70,7 +70,7 @@ impl TryFrom<toml::Value> for Scalar {
     }
 }
 
-/// Numbers read back to the same bits; words are in quotes where a table needs it.
+/// Reading numbers back gives the same bits; words are in quotes where a table needs quotes.
 impl fmt::Display for Scalar {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

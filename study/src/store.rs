@@ -1,7 +1,7 @@
-//! The store of a study: logs of records, one for each process that has run at the same time as others.
+//! The store of a study: logs of records, one log for each process that ran at the same time as others.
 //!
 //! A process appends each finished value to its own log, as a whole piece with a checksum. Readers merge all
-//! logs by ramp and value. A log outlives its process: the next one goes on in it.
+//! logs by ramp and value. A log outlives its process: the next process continues it.
 
 mod claims;
 mod index;
@@ -37,11 +37,11 @@ pub(super) struct Store {
 struct State {
     logs: Vec<LogFile>,
     entries: Arc<Entries>,
-    /// The log of this process, once it has written something.
+    /// The log of this process; `None` until the process writes.
     writer: Option<Writer>,
 }
 
-/// A log, as far as it was read.
+/// A log, up to the point to which it was read.
 #[derive(Debug)]
 struct LogFile {
     path: PathBuf,
@@ -55,7 +55,7 @@ impl Store {
         Self { folder: root.join("logs"), state: Arc::default() }
     }
 
-    /// Reads what all processes have added, and returns all entries.
+    /// Reads the new entries of all processes, and returns all entries.
     pub(super) fn refreshed(&self) -> Result<Arc<Entries>, StudyError> {
         self.state().refresh(&self.folder)
     }
@@ -70,7 +70,7 @@ impl Store {
         self.state().logs[entry.log as usize].path.clone()
     }
 
-    /// Returns a log with a part that cannot be read, which may have been any record.
+    /// Returns a log with an unreadable part, which may have held any record.
     pub(super) fn damage(&self) -> Option<StudyError> {
         let state = self.state();
         let found = state.logs.iter().find(|log| log.is_damaged)?;
@@ -107,7 +107,7 @@ impl Store {
         self.push(head, &contents, Some(line))
     }
 
-    /// Lets values count as not done.
+    /// Marks values as unfinished.
     pub(super) fn void(&self, ramp: usize, values: impl Iterator<Item = usize>) -> Result<(), StudyError> {
         for value in values {
             let head = Head { ramp, value, edition: 0, marks: Marks::VOID, seconds: f32::NAN };
@@ -148,7 +148,7 @@ impl State {
         for (number, log) in self.logs.iter_mut().enumerate() {
             let entries = &mut self.entries;
             let show = |piece| Arc::make_mut(entries).push(Entry::new(piece, number as u32));
-            // The file is opened anew each time: only then does a client of NFS ask how long it is now.
+            // The file is opened anew each time, since a client of NFS asks for the present length only then.
             let read = Log::each(&log.path, SEAL, log.end, show);
             let (end, is_damaged) = read.map_err(|error| unreadable(&log.path, error))?;
             log.end = end;

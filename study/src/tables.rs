@@ -1,4 +1,4 @@
-//! Records as tables, row by row: header and rows from the same columns.
+//! Tables of records, written row by row, with the header and the rows from the same columns.
 
 mod leading;
 mod points;
@@ -14,7 +14,7 @@ use leading::{Place, leading, row};
 use points::{Repeat, Repeats};
 use rows::{Row, Rows, not_converged};
 
-/// The tables of a study, as they grow. A table takes its place in the folder when all of them are whole.
+/// The growing tables of a study. A table takes its place in the folder when all of them are whole.
 pub(super) struct Tables<'a, E: Experiment> {
     plan: &'a Plan<E>,
     columns: Vec<Column<E>>,
@@ -91,7 +91,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         Ok(())
     }
 
-    /// Adds what is known once all records of a ramp have come.
+    /// Adds the rows that need all records of a ramp.
     pub(super) fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) -> Result<(), StudyError> {
         for Bracket { leg, near, far, from, to } in brackets {
             let Some(rows) = &mut self.transitions else { break };
@@ -105,7 +105,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         Ok(())
     }
 
-    /// Puts the tables in their places.
+    /// Renames the finished tables to their final names.
     pub(super) fn finish(self) -> Result<(), StudyError> {
         let own = self.more.into_iter().map(|(_, rows)| rows);
         let all = [self.values, self.samples, self.points, self.described].into_iter();
@@ -113,8 +113,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     }
 
     fn add_value(&mut self, record: &Record<E>, row: Row) -> Result<(), StudyError> {
-        // A double does not hold a number of 64 bits. With a letter before it, it is text for every reader of
-        // tables.
+        // A double cannot hold every number of 64 bits. With a letter before it, it is text for every reader
+        // of tables.
         let row = row.with(&format!("x{:016x}", record.seed()).into());
         let row = row.with(&record.contents.origin.maker.to_string().into());
         let mut row = row.with(&record.outcome().name().into()).with(&record.samples().len().into());

@@ -26,7 +26,7 @@ use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
 /// Radius of the disks: their diameter and mass are the units.
 const RADIUS: f64 = 0.5;
 
-/// Most disks of a study.
+/// Largest number of disks in a box.
 const MOST_DISKS: usize = 1 << 24;
 
 /// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
@@ -54,17 +54,17 @@ pub struct VibratedBox {
     pub disks: usize,
     /// Width $`L_x`$.
     pub width: f64,
-    /// Height $`L_y`$; none without a lid.
+    /// Height $`L_y`$, or `None` without a lid.
     pub height: Option<f64>,
     /// Gravity $`g`$.
     #[serde(default)]
     pub gravity: f64,
-    /// Inelasticity $`q`$: normal, and tangential unless that is given separately.
+    /// Inelasticity $`q`$: the normal one, and also the tangential one unless it is given separately.
     #[serde(default)]
     pub inelasticity: f64,
     /// Tangential inelasticity $`q_t`$, if not $`q`$.
     pub tangential_inelasticity: Option<f64>,
-    /// Friction $`\kappa`$: static, and dynamic unless that is given separately.
+    /// Friction $`\kappa`$: the static one, and also the dynamic one unless it is given separately.
     #[serde(default)]
     pub friction: f64,
     /// Dynamic friction $`\kappa_d`$, if not $`\kappa`$.
@@ -77,7 +77,7 @@ pub struct VibratedBox {
     pub base_tangential_inelasticity: Option<f64>,
     /// Friction of the walls, static and dynamic, if it differs from the disks'.
     pub wall_friction: Option<f64>,
-    /// Contact duration $`t_c`$; none without the model [`ContactDuration`].
+    /// Contact duration $`t_c`$, or `None` without the model [`ContactDuration`].
     pub contact_duration: Option<f64>,
     /// Temperature of the velocities at the start.
     #[serde(default = "one")]
@@ -94,7 +94,7 @@ const fn one() -> f64 {
 }
 
 impl VibratedBox {
-    /// Makes smooth elastic disks in an open box without gravity, of initial temperature 1.
+    /// Creates an open box of smooth elastic disks without gravity, at the initial temperature 1.
     pub const fn new(disks: usize, width: f64, base: Base) -> Self {
         Self {
             disks,
@@ -188,7 +188,7 @@ impl Experiment for VibratedBox {
     type Observer = Measurement;
     type Sample = Sample;
 
-    /// The box is part of this crate, and the crate's own number shows changed results.
+    /// The box is part of this crate, whose results number shows changed results.
     fn revision() -> Fingerprint {
         Fingerprint::of("VibratedBox")
     }
@@ -231,10 +231,11 @@ impl Experiment for VibratedBox {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
-        // Disks that fall upwards without a lid never come back, and each event takes them further.
+        // Disks that fall upwards without a lid never come back, and rise farther with each event.
         let stays = self.height.is_some() || self.gravity >= 0.0;
         accept(stays, "gravity of a box without a lid", "not negative", self.gravity)?;
-        // An open box has room for any number, so a mistyped number must not take all memory.
+        // An open box has room for any number of disks, so a limit keeps a mistyped number from using up all
+        // memory.
         accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
         let disks = initial::lattice(&self.boundary()?, self.disks, RADIUS)?;
         Ok(initial::with_maxwellian_velocities(disks, self.initial_temperature, seed)?)

@@ -1,4 +1,5 @@
-//! The small files of a study, each whole or absent, and sealed if it holds a value half done.
+//! The small files of a study. Each file is complete or absent, and the file of an unfinished value is
+//! sealed.
 
 use std::fs;
 use std::io;
@@ -10,21 +11,21 @@ use serde::de::DeserializeOwned;
 
 use crate::StudyError;
 
-/// Mark of a value half done, and the version of the format that this crate writes and reads.
+/// Mark of an unfinished value, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANPART", 5);
 
-/// Writes a file, whole or not at all.
+/// Writes a file, completely or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Writes a new file, whole or not at all. An existing file stays, and the function then returns false.
+/// Writes a new file, completely or not at all. An existing file stays, and the function then returns false.
 ///
 /// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
 /// file system.
 pub(crate) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
-    // Without this look, a process that comes late and is killed here would leave its draft in a study that
-    // is complete, where nobody looks for drafts any more.
+    // Without this check, a late process that is killed here would leave its draft in a complete study, from
+    // which nobody removes drafts any more.
     if path.exists() {
         return Ok(false);
     }
@@ -73,7 +74,7 @@ pub(crate) fn write_sealed<T: DeserializeOwned + Serialize>(
     write(path, &SEAL.seal(&contents))
 }
 
-/// Reads data that [`write_sealed`] has written; `None` if there is no such file.
+/// Reads data that [`write_sealed`] has written, or returns `None` if the file does not exist.
 pub(crate) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
     let Some(bytes) = if_there("read", path, fs::read(path))? else { return Ok(None) };
     unseal(&bytes).map(Some).map_err(|reason| damaged(path, reason))
@@ -93,12 +94,12 @@ fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
     decoded(contents)
 }
 
-/// Removes a file, if it is there.
+/// Removes a file if it exists.
 pub(crate) fn remove(path: &Path) -> Result<(), StudyError> {
     if_there("remove", path, fs::remove_file(path)).map(drop)
 }
 
-/// Returns what the system answers about a file or folder; `None` if there is none of this name.
+/// Returns the system's result for a file or folder, or `None` if nothing with this name exists.
 pub(crate) fn if_there<T>(
     action: &'static str,
     path: &Path,

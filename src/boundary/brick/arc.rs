@@ -9,8 +9,8 @@ use super::{MARGIN, Side, Sight};
 use crate::boundary::Region;
 use crate::boundary::vector::direction;
 
-/// A circle or a part of it. It leads counterclockwise, so its left side is inside. A point is a circle of
-/// radius 0.
+/// A circle, or an arc of a circle. The arc leads counterclockwise, so its left side is inside. A point is a
+/// circle of radius 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Arc {
     pub(super) center: DVec2,
@@ -69,7 +69,7 @@ impl Arc {
         if place.distance(self.center) < self.radius { Side::Left } else { Side::Right }
     }
 
-    /// Returns the gap on one side as a polynomial of the time. It is a difference of two squared distances,
+    /// Returns the gap on one side as a polynomial in time. It is a difference of two squared distances,
     /// which has the sign of the gap.
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let (r, v, a) = (path.place - self.center, path.velocity, path.acceleration);
@@ -94,7 +94,7 @@ impl Arc {
         }
     }
 
-    /// Returns the condition that the disk is beside the arc, or at most `more` beyond its ends.
+    /// Returns the condition that the disk is beside the arc, or beyond its ends by at most `more`.
     pub(super) fn beside(&self, path: &Path, more: f64) -> Option<Beside> {
         let sector = self.sector?;
         let margin = more + MARGIN * (self.center.length() + self.radius);
@@ -139,7 +139,7 @@ impl Arc {
         let outward = r.try_normalize().unwrap_or(DVec2::Y);
         let normal = if side == Side::Left { -outward } else { outward };
         let distance = (r.length() - self.radius).abs();
-        // A point has no sides, so the bricks that end there decide.
+        // A point has no sides, so the bricks that end at the point decide.
         Sight { distance, normal, side, weight: if self.radius == 0.0 { 0.0 } else { distance } }
     }
 
@@ -155,10 +155,10 @@ impl Arc {
         (self.center - self.radius, self.center + self.radius)
     }
 
-    /// Returns the smallest and the largest distance of the arc's points from a place.
+    /// Returns the smallest and the largest distance of the arc's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         let nearest = self.sight(place).distance;
-        // The point that is opposite the place is the farthest, unless the arc ends before it.
+        // The point of the circle opposite the given point is the farthest, unless the arc does not reach it.
         let farthest = match (self.sector, self.ends()) {
             (Some(sector), Some(ends)) if !sector.contains(self.center - place) => {
                 ends.iter().map(|(end, _)| end.distance(place)).fold(0.0, f64::max)

@@ -143,7 +143,7 @@ impl Brick {
         Ok(Self { shape, ..self })
     }
 
-    /// Returns the distance of a place from the brick, negative behind it.
+    /// Returns the distance of a point from the brick, negative behind the brick.
     pub fn signed_distance(&self, place: DVec2) -> f64 {
         let Nearest { distance, is_free, .. } = self.nearest(place);
         if is_free { distance } else { -distance }

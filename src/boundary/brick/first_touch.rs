@@ -36,7 +36,7 @@ impl Brick {
 
     /// Returns whether a disk of this radius may touch the brick while its center is in a region.
     ///
-    /// A custom boundary can answer [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with it.
+    /// A custom boundary can implement [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with it.
     pub fn may_touch(&self, region: &Region, radius: f64) -> bool {
         // The margin keeps rounding from hiding a touch at the edge of the region.
         self.is_near(region, 1.001 * radius)
@@ -67,7 +67,7 @@ impl Brick {
             if gap[0] > 0.0 || beside.holds(0.0) {
                 match first_descent_of_quartic(&gap, wait) {
                     Some(touch) if beside.holds(touch) => return Some(touch),
-                    // The disk stays in front.
+                    // The disk stays in front of the brick.
                     None if gap[0] > 0.0 => return None,
                     _ => {}
                 }
@@ -81,7 +81,8 @@ impl Brick {
         let (here, wait) = (path.later(from), to - from);
         let side = self.side(here.place);
         let growth = here.radius - path.radius;
-        // The center is known only up to the growth, so it may be on the other side of the line.
+        // The position of the center is known only up to the growth, so the center may be on the other side
+        // of the line.
         if growth > 0.0 && self.distance_from_line(here.place) <= growth {
             return Some(from);
         }
@@ -96,8 +97,8 @@ impl Brick {
         }
         let front = if side == Side::Left { Side::Right } else { Side::Left };
         if path.spread > 0.0 {
-            // The true disk comes out in front no earlier than one that shrinks. The search looks again from
-            // that time.
+            // The true disk comes out in front no earlier than the shrinking disk. The search looks again
+            // from that time.
             let shrinking = here.shrinking(path.radius);
             let opens = first_descent_of_quartic(&self.gap(&shrinking, front).map(|c| -c), wait)?;
             return Some(from + opens);

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::Flight;
 
-/// The path of a disk's center relative to a brick, from a time on.
+/// The path of a disk's center relative to a brick, from a given time on.
 ///
 /// The center is known up to an error that grows with time. To allow for it, the disk grows: its radius is
 /// `radius + widening·t + ½·spread·t²`. A grown disk touches no later than the true one.
@@ -36,7 +36,7 @@ impl Path {
         Self::exact(place, velocity, flight.acceleration(), flight.radius())
     }
 
-    /// Returns the place of the center after this time.
+    /// Returns the position of the center after this time.
     pub(super) fn at(&self, time: f64) -> DVec2 {
         self.place + (self.velocity + 0.5 * time * self.acceleration) * time
     }
@@ -52,7 +52,7 @@ impl Path {
         }
     }
 
-    /// Returns the same path for a disk that shrinks from `radius` as fast as this one grows.
+    /// Returns the same path for a disk that shrinks from `radius` as fast as the disk on this path grows.
     pub(super) fn shrinking(&self, radius: f64) -> Self {
         Self { radius: 2.0 * radius - self.radius, widening: -self.widening, spread: -self.spread, ..*self }
     }
@@ -67,7 +67,7 @@ impl Path {
         0.125 * self.acceleration.length() * time * time + self.growth(time)
     }
 
-    /// Returns the distance from a place along a direction, as a function of the time.
+    /// Returns the distance from a point along a direction, as a function of time.
     pub(super) fn along(&self, place: DVec2, direction: DVec2) -> Parabola {
         Parabola {
             value: (self.place - place).dot(direction),

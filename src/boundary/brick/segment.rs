@@ -46,7 +46,7 @@ impl Segment {
         if self.direction.perp_dot(place - self.from) >= 0.0 { Side::Left } else { Side::Right }
     }
 
-    /// Returns the gap on one side as a polynomial of the time.
+    /// Returns the gap on one side as a polynomial in time.
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let height = path.along(self.from, self.normal(side));
         let gap = height.negated().widened(path.radius, path).negated();
@@ -114,7 +114,7 @@ impl Segment {
         (self.from.min(to), self.from.max(to))
     }
 
-    /// Returns the smallest and the largest distance from a place.
+    /// Returns the smallest and the largest distance of the segment's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         let farthest =
             self.to().map_or(f64::INFINITY, |to| place.distance(to).max(place.distance(self.from)));

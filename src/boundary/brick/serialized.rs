@@ -10,7 +10,7 @@ use crate::boundary::VesselError;
 use crate::boundary::vector::{finite_point, unit_vector};
 use crate::quantity::accept;
 
-/// A brick as it stands in a file.
+/// The form of a brick in a file.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case", rename = "Brick")]
 pub(super) enum Record {

@@ -40,8 +40,8 @@ impl Brick {
 
     /// Returns the first time at which the disk reaches the line or the circle on which the brick lies.
     ///
-    /// This is no search for a touch: a disk that is in the band already is there immediately, even if it
-    /// leaves.
+    /// This is not a search for a touch: for a disk that is in the strip already, the time is 0, even if the
+    /// disk is leaving.
     fn wait_to_enter_band(&self, path: &Path, wait: f64) -> Option<f64> {
         if self.distance_from_line(path.place) <= path.radius {
             return Some(0.0);

@@ -1,4 +1,4 @@
-//! The free area, against overlaps at places all over a region.
+//! The check of free areas by overlaps at points all over a region.
 
 use glam::DVec2;
 
@@ -8,13 +8,13 @@ use crate::Violation;
 use crate::boundary::{Boundary, Region};
 use crate::violation::require;
 
-/// Number of places along a side of a region: one at random in each cell of a grid.
+/// Number of points along a side of a region: a random point in each cell of a grid.
 const PLACES: u32 = 128;
 
 /// Largest error of an area, relative to the region: ten times the scatter in the worst case.
 const SCATTER: f64 = 5e-3;
 
-/// Checks the free areas of the domain, and of a region at random.
+/// Checks the free areas of the domain and of a random region.
 pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> Result<(), Violation> {
     let (low, high) = trial.rectangle();
     let any = |random: &mut Random| DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));

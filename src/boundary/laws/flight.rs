@@ -1,4 +1,4 @@
-//! A flight under trial, from its start to its touch.
+//! The check of one flight, from its start to its touch.
 
 use glam::DVec2;
 
@@ -26,7 +26,7 @@ const SAME: f64 = 1e-9;
 /// Closing speeds of flights that graze a wall, as fractions of the speed along it.
 const GRAZES: [f64; 4] = [3e-2, 3e-3, 3e-4, 3e-5];
 
-/// A touch that was found, and how the disk meets the wall.
+/// A touch, and how the disk meets the wall.
 struct Meeting {
     touch: Touch,
     place: DVec2,
@@ -56,7 +56,7 @@ pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize
     Ok(())
 }
 
-/// Checks a flight, and returns how it ends at a wall that turns it back.
+/// Checks a flight, and returns its touch with a wall that turns the disk back.
 fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting>, Violation> {
     let until = flight.time() + longest(trial, flight);
     let found = trial.first_touch(flight, until)?;
@@ -80,7 +80,7 @@ fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting
     Ok(meeting)
 }
 
-/// Returns how long a flight may last. Like flights of the engine, it ends at a periodic side or end at
+/// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or end at
 /// the latest.
 fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
     let longest = LONGEST * trial.length() / trial.speed;
@@ -101,7 +101,8 @@ fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
     longest
 }
 
-/// Returns the duration of a flight that goes no further than `way`, in whichever direction it turns:
+/// Returns the duration of a flight that moves no farther than `way`, whatever the direction of its
+/// acceleration:
 /// |v| t + |a| t² / 2 is at most this way.
 fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     let (way, speed) = (way.max(0.0), velocity.abs());
@@ -130,7 +131,7 @@ fn check_touch(
     Ok(())
 }
 
-/// Checks that a disk overlaps no wall and stays in the domain on its way.
+/// Checks that a disk overlaps no wall and stays in the domain during its flight.
 fn check_way(trial: &Trial<'_>, flight: &Flight, end: f64, found: Option<Touch>) -> Result<(), Violation> {
     let (domain, rounding) = (trial.domain, trial.rounding());
     let found = found.map(|touch| touch.time);
@@ -168,8 +169,8 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
 }
 
-/// Checks that a flight which ends before the touch finds none, one that ends just after finds it, and one
-/// that begins at the touch finds it immediately.
+/// Checks that a flight which ends before the touch finds no touch, a flight that ends just after it finds
+/// it, and a flight that begins at the touch finds it immediately.
 fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
     let Touch { time, wall, .. } = meeting.touch;
     let half = flight.time() + 0.5 * (time - flight.time());
@@ -204,7 +205,7 @@ fn check_origin(
     let (origin, start) = (trial.origin, flight.time());
     let state = trial.boundary.state();
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
-    // react do not know how they came to be as they are, so their other origin is later.
+    // react do not know their past, so the other origin is later for them.
     let earlier = origin.min(LATEST * trial.length() / trial.speed);
     let shift = 0.37 * if state.is_empty() { earlier } else { -start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
@@ -270,7 +271,7 @@ fn turned_back(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Flight 
         .with_kind(flight.kind())
 }
 
-/// Returns a flight that starts a little off the wall and closes onto it slowly, while it goes along.
+/// Returns a flight that starts slightly off the wall and approaches it slowly while moving along it.
 fn grazing(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting, share: f64) -> Flight {
     let Touch { time, wall, .. } = meeting.touch;
     let surface = trial.boundary.surface(wall, meeting.place, time);

@@ -17,13 +17,14 @@ const FLIGHTS: usize = 1000;
 /// Number of contacts in which the rules of two walls are compared.
 const CONTACTS: usize = 300;
 
-/// Checks that two boundaries which answer differently have different fingerprints, and that two which answer
-/// alike on a thousand flights have the same. Boundaries without a fingerprint are not compared.
+/// Checks that two boundaries with different results have different fingerprints, and that two with equal
+/// results on a thousand flights have the same fingerprint. Boundaries without a fingerprint are not
+/// compared.
 ///
 /// The check sets the time origins of both.
 ///
 /// # Errors
-/// If the fingerprints tell something else than the answers.
+/// If the fingerprints contradict the results.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, laws};
@@ -66,7 +67,7 @@ where
     check_pair(PART, fingerprints, None)
 }
 
-/// Returns the answers of a boundary about a flight, in words.
+/// Returns the results of a boundary for a flight, as text.
 fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
     let (start, boundary) = (flight.time(), &*trial.boundary);
     let place = flight.position(start);
@@ -83,7 +84,7 @@ fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
     format!("{depth:?}, {area:?}, {touch:?}, {surface}")
 }
 
-/// Returns everything about a surface; rules are known by their answers.
+/// Returns all data of a surface as text; rules are represented by their impulses.
 fn in_words(surface: &Surface<'_>) -> String {
     let Response::Rule(rule) = surface.response else { return format!("{surface:?}") };
     let contacts = hostile_contacts().take(CONTACTS);

@@ -1,4 +1,4 @@
-//! Checks of walls that react to blows.
+//! Checks of walls that react to impacts.
 
 use glam::DVec2;
 
@@ -7,14 +7,14 @@ use crate::Violation;
 use crate::boundary::{Boundary, Impact, Reaction, Touch};
 use crate::violation::require;
 
-/// Speeds that blows give to a wall, in units of the typical speed.
+/// Speeds that the tested impacts give to a wall, in units of the typical speed.
 const BLOWS: [f64; 5] = [1e-6, 1e-3, 5e-2, 2.0, 2.0];
 
-/// Largest error of a velocity after a blow, relative to the change and to the typical speed.
+/// Largest error of a velocity after an impact, relative to the change and to the typical speed.
 const EXACT: f64 = 1e-8;
 const ROUNDING: f64 = 1e-12;
 
-/// Checks that the wall takes a blow as its masses say, and that its state brings it back.
+/// Checks that the wall reacts to an impact according to its masses, and that setting its state restores it.
 pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let (state, before) = (trial.boundary.state(), answers(trial, touch, place));
@@ -34,7 +34,8 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
     Ok(())
 }
 
-/// Returns numbers that tell how a wall is and will be: its velocity, and depths of overlaps.
+/// Returns numbers that show the present and the later motion of a wall: its velocity, and depths of
+/// overlaps.
 fn answers(trial: &Trial<'_>, touch: Touch, place: DVec2) -> [f64; 4] {
     let Touch { wall, time, .. } = touch;
     let velocity = trial.boundary.surface(wall, place, time).velocity;
@@ -43,7 +44,8 @@ fn answers(trial: &Trial<'_>, touch: Touch, place: DVec2) -> [f64; 4] {
     [velocity.x, velocity.y, now.map_or(0.0, |found| found.depth), then.map_or(0.0, |found| found.depth)]
 }
 
-/// Checks a blow along the normal and the surface, and a couple, in units of the speeds that they give.
+/// Checks an impact along the normal and along the surface, and a couple, in units of the speeds that they
+/// give.
 fn check_blow(
     trial: &mut Trial<'_>,
     touch: Touch,
@@ -82,7 +84,7 @@ fn check_blow(
     Ok(())
 }
 
-/// Checks that the boundary takes no state of another length.
+/// Checks that the boundary refuses a state of another length.
 fn check_state(trial: &mut Trial<'_>, state: &[f64]) -> Result<(), Violation> {
     let longer = [state, &[0.0]].concat();
     for wrong in [&longer[..], &longer[..state.len().saturating_sub(1)], &[]] {

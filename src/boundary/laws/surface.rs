@@ -19,8 +19,8 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
-/// Largest errors of a normal: of its squared length, of its direction if another wall is as near, and of its
-/// direction else, of a speed and of a curvature.
+/// Largest errors: `UNIT` of a normal's squared length, `SLOPE` of its direction if another wall is as near,
+/// `EXACT` of its direction otherwise, of a speed and of a curvature.
 const UNIT: f64 = 1e-9;
 const SLOPE: f64 = 0.2;
 const EXACT: f64 = 5e-8;
@@ -45,7 +45,7 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
     let goes_in = around.at(-step * normal, 0.0).0 - around.at(DVec2::ZERO, 0.0).0 >= (1.0 - SLOPE) * step;
     require!(PART, "normal", goes_in;
         "the normal {normal:?} does not lead out of wall {wall} at {place:?}, {time:?}");
-    // A wall that has the same surface there, such as the next brick of a corner, will do.
+    // Another wall with the same surface at this point, such as the next brick of a corner, is accepted.
     let deepest = around.at(DVec2::ZERO, 0.0).1;
     let other = || around.trial.boundary.surface(deepest, place, time).normal;
     let is_named = deepest == wall || deepest < around.trial.wall_count && other().distance(normal) <= SAME;
@@ -69,7 +69,7 @@ struct Around<'a, 'b> {
 }
 
 impl Around<'_, '_> {
-    /// Returns the depth of a somewhat larger disk that is moved, and the wall in which it is.
+    /// Returns the overlap of a slightly larger disk that is moved: its depth and its wall.
     fn at(&self, moved: DVec2, later: f64) -> (f64, usize) {
         let larger = WIDE * self.trial.radius;
         let found = self.trial.depth(self.place + moved, larger, self.time + later);
@@ -105,7 +105,7 @@ impl Around<'_, '_> {
         let scale = speed.abs().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
         let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
-        // A step is the length that the wall goes at most. No question is about a time before the origin.
+        // A step is the largest distance that the wall moves. No question is about a time before the origin.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_rate = *time < 2.0 * step / scale || self.has_slope(speed / scale, step, slack, depth);
         require!(PART, "velocity", is_rate;

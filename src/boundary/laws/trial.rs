@@ -1,4 +1,4 @@
-//! A boundary under trial: places, sizes and the allowed rounding.
+//! A boundary under test: positions, sizes and the allowed rounding.
 
 use glam::DVec2;
 
@@ -21,7 +21,7 @@ const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 /// Number of touches of a wall after which overlaps must have named it.
 const TOUCHES: u32 = 8;
 
-/// A boundary, and the numbers of its trial.
+/// A boundary under test, and the numbers of the test.
 pub(super) struct Trial<'a> {
     pub(super) boundary: &'a mut dyn Boundary,
     pub(super) domain: Domain,
@@ -30,11 +30,12 @@ pub(super) struct Trial<'a> {
     pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
-    /// The state of the walls at first.
+    /// The initial state of the walls.
     pub(super) state: Vec<f64>,
     /// Number of flights that graze a wall.
     pub(super) grazes: usize,
-    /// For each wall, the number of its touches, and of the overlaps at these that name it.
+    /// For each wall, the number of its touches, and the number of touches at which an overlap named the
+    /// wall.
     pub(super) touches: Vec<[u32; 2]>,
 }
 
@@ -45,7 +46,7 @@ impl<'a> Trial<'a> {
         Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, state, grazes: 0, touches }
     }
 
-    /// Returns the size of the domain. If the domain is open above, this is its width.
+    /// Returns the larger side of the domain, or its width if the domain is open above.
     pub(super) fn length(&self) -> f64 {
         let height = self.domain.height();
         if height.is_finite() { self.domain.width().max(height) } else { self.domain.width() }
@@ -73,13 +74,13 @@ impl<'a> Trial<'a> {
         self.origin = origin;
     }
 
-    /// Sets an origin at which walls that react are as they were at first.
+    /// Sets a time origin, and the initial state of the walls that react.
     pub(super) fn begin(&mut self, origin: f64) -> Result<(), Violation> {
         self.set_origin(origin);
         self.take_state(&self.state.clone())
     }
 
-    /// Checks that the boundary takes this state.
+    /// Checks that the boundary accepts this state.
     pub(super) fn take_state(&mut self, state: &[f64]) -> Result<(), Violation> {
         let answer = self.boundary.set_state(state);
         require!(PART, "state", answer.is_ok(); "the state {state:?} is refused: {answer:?}");
@@ -88,8 +89,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end,
-    /// this asks again, as the engine does.
+    /// Returns the first touch of a flight. If the search of the boundary ends before `until` without a
+    /// touch, the method calls it again, as the engine does.
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
         let mut rest = *flight;
         for _ in 0..MOST_SEARCHES {
@@ -159,7 +160,7 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the region, extended as the engine does it: to infinity where it is near an edge of the
+    /// Returns the region with the engine's extension: to infinity where the region is near an edge of the
     /// domain.
     fn open_at_edges(&self, region: Region) -> Region {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
@@ -179,7 +180,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// Returns the rest of a flight from this time on.
+/// Returns the remainder of a flight from this time on.
 pub(super) fn restarted(flight: &Flight, time: f64) -> Flight {
     let (place, velocity) = (flight.position(time), flight.velocity(time));
     Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())

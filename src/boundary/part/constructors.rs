@@ -60,7 +60,7 @@ impl Part {
 
     /// Creates a thin wall from point to point, with disks on both sides.
     ///
-    /// Initial states put disks on both sides, too. For a solid body, take [`block`](Self::block).
+    /// Initial states put disks on both sides, too. For a solid body, use [`block`](Self::block).
     ///
     /// # Errors
     /// If there are fewer than two points, a coordinate is not finite, or neighboring points are equal.

@@ -6,11 +6,11 @@ use glam::DVec2;
 
 use crate::boundary::brick::Brick;
 
-/// Sine of the smallest angle at which two bricks, turned toward the disks, shield their corner. A disk there
-/// touches both bricks and never the corner itself, so the corner needs no point.
+/// Sine of the smallest angle at which two bricks, turned toward the disks, shield their corner. A disk at
+/// such a corner touches both bricks and never the corner itself, so the corner needs no point.
 const CLEARLY: f64 = 1e-6;
 
-/// The bricks that meet at a place, by the directions in which they arrive and leave.
+/// The bricks that meet at a point, by the directions in which they arrive and leave.
 #[derive(Debug, Default)]
 struct Joint {
     coming: Vec<DVec2>,
@@ -21,9 +21,9 @@ struct Joint {
 impl Joint {
     /// Returns whether a disk can touch the corner.
     fn is_exposed(&self) -> bool {
-        // Disks are on the left of a brick, so a left turn is one toward them. A free end, or a place where
-        // more than two bricks meet, counts as exposed: a point too many costs a little time, but one too few
-        // would let disks through.
+        // Disks are on the left of a brick, so a left turn is a turn toward the disks. A free end, or a place
+        // where more than two bricks meet, counts as exposed: an unnecessary point costs a little time, but a
+        // missing point would let disks through.
         match (self.coming.as_slice(), self.going.as_slice()) {
             ([coming], [going]) if !self.is_thin => coming.perp_dot(*going) <= CLEARLY,
             _ => true,
@@ -31,8 +31,7 @@ impl Joint {
     }
 }
 
-/// Returns a point for each place where bricks end and a disk can touch the corner, in the order of the
-/// bricks.
+/// Returns a point for each corner where bricks end and that a disk can touch, in the order of the bricks.
 pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     let mut joints: HashMap<[u64; 2], Joint> = HashMap::new();
     let mut places = Vec::new();
@@ -40,7 +39,7 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
         let [start, end] = brick.ends();
         for (end, is_start) in [(start, true), (end, false)] {
             let Some((place, direction)) = end else { continue };
-            // Ends that are only close get a point each, and these points close the gap.
+            // Ends that are close but not equal get a point each, and these points close the gap.
             let key = key(place);
             if !joints.contains_key(&key) {
                 places.push((key, place));
@@ -58,8 +57,8 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     places.iter().filter(|(key, _)| is_exposed(key)).map(|(_, place)| Brick::corner(*place)).collect()
 }
 
-/// Returns whether a place changes from free to not free only across bricks: if all bricks are thin, or if
-/// none is and they form closed lines.
+/// Returns whether all borders between free and occupied regions lie on bricks: all bricks are thin, or no
+/// brick is thin and the bricks form closed lines.
 ///
 /// At the free end of other bricks, the nearest of them decides on which side a place is.
 pub(super) fn are_closed(bricks: &[Brick]) -> bool {
@@ -81,7 +80,7 @@ pub(super) fn are_closed(bricks: &[Brick]) -> bool {
     are_lines_closed || walls().all(Brick::is_two_sided)
 }
 
-/// Returns the bits of a place. Ends of bricks meet if their coordinates are equal.
+/// Returns the bits of a point. Ends of bricks meet if their coordinates are equal.
 fn key(place: DVec2) -> [u64; 2] {
     // The sum turns a negative zero into a positive one: the two are equal, but their bits differ.
     [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()]

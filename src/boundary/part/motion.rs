@@ -1,4 +1,4 @@
-//! The place of a part, and its motion.
+//! The position of a part, and its motion.
 
 use glam::DVec2;
 
@@ -8,9 +8,9 @@ use crate::boundary::vector::{direction, finite_point, unit};
 use crate::quantity::{accept, finite};
 use crate::wall::{Motion, WallMotion};
 
-/// Place and motion.
+/// Position and motion.
 impl Part {
-    /// Returns the same part with a motion along a direction, in place of an earlier motion along one.
+    /// Returns the same part with a motion along a direction. Replaces an earlier motion along a direction.
     ///
     /// The vector `direction` can have any length except 0. A part that also [turns](Self::with_rotation)
     /// moves along the same direction at all times, and takes the point about which it turns along.
@@ -30,8 +30,8 @@ impl Part {
         self.moving(Along { direction, motion })
     }
 
-    /// Returns the same part, turning about a point in place of an earlier rotation, counterclockwise at this
-    /// angular velocity.
+    /// Returns the same part, turning about a point, counterclockwise at this angular velocity. Replaces an
+    /// earlier rotation.
     ///
     /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
     /// and the displacement $`z`$, the place $`r`$ of the part as built is at the time $`t`$ in
@@ -143,12 +143,12 @@ impl Part {
 }
 
 impl Part {
-    /// Gives the part a motion along a direction, if the part can move in this way.
+    /// Sets a motion of the part along a direction, or returns an error if the part cannot move in this way.
     pub(super) fn moving(self, along: Along) -> Result<Self, VesselError> {
         Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()
     }
 
-    /// Returns the part, if it never jumps into disks.
+    /// Returns the part, or an error if the part would jump into disks.
     fn safe(self) -> Result<Self, VesselError> {
         let Travel { along: Some(Along { direction, motion }), turning } = &self.travel else {
             return Ok(self);

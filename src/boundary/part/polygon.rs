@@ -35,14 +35,14 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
     pairs(&points).map(side).collect()
 }
 
-/// Returns the points in pairs: the ends of each side.
+/// Returns the two ends of each side.
 fn pairs(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
     points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
 }
 
 /// Returns twice the area, positive if the points go around counterclockwise.
 fn doubled_area(points: &[DVec2]) -> f64 {
-    // Relative to one of the points, so that a polygon far from the origin loses no digits.
+    // Coordinates are relative to one of the points, so that a polygon far from the origin loses no digits.
     let first = points[0];
     pairs(points).map(|(from, to)| (from - first).perp_dot(to - first)).sum()
 }
@@ -69,7 +69,7 @@ fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
     None
 }
 
-/// Returns whether two sides have a point in common that they do not share as neighbors.
+/// Returns whether two sides have a point in common, other than the common end of neighbors.
 fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> bool {
     // Two sides cross if each has its ends on both sides of the other. Signs decide, since the place of the
     // crossing would need a division, and its rounding.

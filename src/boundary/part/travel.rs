@@ -10,8 +10,8 @@ use crate::boundary::vector::direction;
 use crate::wall::Motion;
 use crate::{Fingerprint, Flight};
 
-/// Number of pieces of a turn. On each piece, a flight in the turning frame counts as a parabola with an
-/// error.
+/// Number of pieces into which a turn is divided. On each piece, a flight in the turning frame counts as a
+/// parabola with an error.
 const PIECES: f64 = 16.0;
 
 /// The motion of a part: along a direction, about a point, both, or neither.
@@ -30,13 +30,14 @@ pub(super) struct Along {
     pub(super) motion: Motion,
 }
 
-/// Turning about a point, which moves with the part.
+/// The rotation of a part about a point, which moves with the part.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::boundary) struct Turning {
     pub(in crate::boundary) about: DVec2,
     pub(in crate::boundary) angular_velocity: f64,
-    /// True if all bricks are circles about the point, so only the surface turns. Files do not tell.
+    /// True if all bricks are circles about the point, so that only the surface velocity shows the rotation.
+    /// Files do not hold this flag.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) is_round: bool,
 }
@@ -54,7 +55,7 @@ impl Phase {
         Self { along: time + self.along, turning: time + self.turning }
     }
 
-    /// Returns the phase that counts from another one.
+    /// Returns the phase relative to another one.
     pub(super) fn since(self, start: Self) -> Self {
         Self { along: self.along - start.along, turning: self.turning - start.turning }
     }
@@ -71,7 +72,7 @@ pub(in crate::boundary) struct Look {
     pub(in crate::boundary) until: f64,
 }
 
-/// The place of a part at a time: the part is turned about the origin by the angle of a unit vector, then
+/// The position of a part at a time: the part is turned about the origin by the angle of a unit vector, then
 /// shifted.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::boundary) struct Pose {
@@ -80,12 +81,12 @@ pub(in crate::boundary) struct Pose {
 }
 
 impl Pose {
-    /// Transforms a place from the frame at rest to the frame of the part.
+    /// Transforms a point from the frame at rest to the frame of the part.
     pub(in crate::boundary) fn inward(&self, place: DVec2) -> DVec2 {
         unturned(self.turn, place - self.shift)
     }
 
-    /// Transforms a place from the frame of the part to the frame at rest.
+    /// Transforms a point from the frame of the part to the frame at rest.
     pub(in crate::boundary) fn outward(&self, place: DVec2) -> DVec2 {
         self.turn.rotate(place) + self.shift
     }
@@ -106,10 +107,11 @@ impl Along {
         self.direction * self.motion.state(phase).displacement
     }
 
-    /// Describes a path in the frame that moves along, with the acceleration in the middle of its bounds.
+    /// Returns the path in the frame that moves along a direction, with the acceleration in the middle of its
+    /// bounds.
     fn look(&self, path: &Path, phase: f64, time: f64) -> Look {
         let (state, bounds) = (self.motion.state(time + phase), self.motion.acceleration(time + phase));
-        // From the middle, the true acceleration differs by half of the range at most, and the disk grows
+        // The true acceleration differs from the middle by at most half of the range, so the disk grows
         // least.
         let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
         let path = Path {
@@ -128,7 +130,7 @@ impl Turning {
         TAU / self.angular_velocity.abs()
     }
 
-    /// Describes a path in the frame that turns. The errors of both frames add.
+    /// Returns the path in the frame that turns. The errors of both frames add.
     fn look(&self, look: &Look, phase: f64, time: f64, longest: f64) -> Look {
         let Self { about, angular_velocity, .. } = *self;
         let turn = direction(angular_velocity * (time + phase));
@@ -151,7 +153,7 @@ impl Travel {
         self.along.is_none() && self.frame().is_none()
     }
 
-    /// Returns how the frame of the part turns, if it does.
+    /// Returns the rotation of the part's frame, or `None` if the frame does not turn.
     pub(in crate::boundary) fn frame(&self) -> Option<&Turning> {
         self.turning.as_ref().filter(|turning| !turning.is_round)
     }
@@ -177,7 +179,7 @@ impl Travel {
         along.or_else(turning).map(|reduced| (self.shift(phase) + DVec2::ZERO, reduced))
     }
 
-    /// Returns the place of the part at a phase.
+    /// Returns the position of the part at a phase.
     pub(in crate::boundary) fn pose(&self, phase: Phase) -> Pose {
         let shift = self.shift(phase);
         let Some(Turning { about, angular_velocity, .. }) = self.frame() else {
@@ -187,7 +189,7 @@ impl Travel {
         Pose { turn, shift: *about - turn.rotate(*about) + shift }
     }
 
-    /// Returns the velocity of the part at a place, at a phase.
+    /// Returns the velocity of the part at a point, at a phase.
     pub(in crate::boundary) fn velocity(&self, place: DVec2, phase: Phase) -> DVec2 {
         let along = self.along.as_ref();
         let along = along.map(|along| along.direction * along.motion.state(phase.along).velocity);
@@ -196,8 +198,8 @@ impl Travel {
         along.into_iter().chain(turning).reduce(|a, b| a + b).unwrap_or(DVec2::ZERO)
     }
 
-    /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase
-    /// belongs to time 0.
+    /// Returns a flight in the frame of the part, from a time on and for at most `longest`. The phase belongs
+    /// to time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
         let path = Path::exact(place, velocity, pull, flight.radius());
@@ -228,8 +230,8 @@ impl Travel {
         self.reach().1 - self.reach().0
     }
 
-    /// Returns how long it takes, at most `wait`, until a disk on this path in the frame at rest enters the
-    /// strip that a brick of the part sweeps: all places at which the disk touches the brick at some phase.
+    /// Returns the time, at most `wait`, until a disk on this path in the frame at rest enters the strip that
+    /// a brick of the part sweeps: all positions at which the disk touches the brick at some phase.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         brick: &Brick,
@@ -292,8 +294,8 @@ impl Travel {
     }
 }
 
-/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. Its
-/// components refer to axes that do not turn.
+/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. The
+/// components of the path refer to axes that do not turn.
 ///
 /// The third derivative of the path there is $`-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp`$. A bound
 /// of it, times a third of the time, is an acceleration that bounds the error.

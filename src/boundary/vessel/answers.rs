@@ -1,4 +1,4 @@
-//! The answers of a vessel to the engine.
+//! The methods of a vessel that the engine calls.
 
 use std::borrow::Cow;
 

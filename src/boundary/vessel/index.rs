@@ -14,7 +14,7 @@ const CELLS_PER_BRICK: usize = 4;
 /// Largest number of cells.
 const MOST_CELLS: usize = 1 << 16;
 
-/// A grid of cells, each with the bricks that may come into it at some time. Cells at the edges extend to
+/// A grid of cells, each with the bricks that may enter it at some time. Cells at the edges extend to
 /// infinity.
 #[derive(Debug, Clone)]
 pub(super) struct Index {
@@ -87,7 +87,7 @@ impl Index {
         index
     }
 
-    /// Returns the bricks that may come into a rectangle, some of them several times.
+    /// Returns the bricks that may enter a rectangle, some of them several times.
     pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = Entry> {
         let (columns, rows) = self.span(min, max);
         // In a row, the entries of a cell follow the entries of the cell before.
@@ -102,7 +102,7 @@ impl Index {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Returns the cell that holds a place.
+    /// Returns the cell that holds a point.
     pub(super) fn cell(&self, place: DVec2) -> usize {
         self.cells(place, place).next().unwrap_or(0)
     }
@@ -114,7 +114,7 @@ impl Index {
         self.corner + DVec2::new(column + 0.5, row + 0.5) / self.density
     }
 
-    /// Returns the bricks that come into a cell.
+    /// Returns the bricks that may enter a cell.
     pub(super) fn within(&self, cell: usize) -> impl Iterator<Item = Entry> {
         self.entries_of(cell..cell + 1)
     }

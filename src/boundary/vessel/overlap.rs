@@ -24,7 +24,7 @@ impl Vessel {
         let mut near: Vec<(usize, Entry)> = near.collect();
         near.sort_by_key(|(part, _)| *part);
         let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
-            // If the disk does not reach the nearest brick of these cells, a nearer one may lie in other
+            // If the disk does not reach the nearest brick of these cells, a nearer brick may lie in other
             // cells.
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
                 Some((wall, sighted)) if sighted.distance() <= radius => {
@@ -46,7 +46,7 @@ impl Vessel {
         })
     }
 
-    /// Returns the nearest of some bricks at rest, with the index of its wall.
+    /// Returns the nearest of these bricks at rest, with the index of its wall.
     fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
         let sights = entries.map(|entry| {
             let wall = entry.wall as usize;
@@ -86,13 +86,13 @@ impl Vessel {
     /// Returns the cells that hold no brick of a part and are behind it.
     ///
     /// If two neighboring cells hold no brick of the part, either both are behind it or neither is, so a cell
-    /// is examined only if its left and lower neighbors do not give the answer.
+    /// is examined only if its left and lower neighbors do not decide.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick =
             |cell: usize| self.index.within(cell).any(|entry| self.walls[entry.wall as usize].part == number);
         let is_behind = |cell: usize| self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some();
-        // The answers so far, for cells without a brick of the part: true if the cell is behind the part.
+        // The results so far for cells without a brick of the part: true if the cell is behind the part.
         let mut known: Vec<Option<bool>> = vec![None; self.index.len()];
         for cell in self.cells_to_look_at(placed) {
             if has_brick(cell) {
@@ -110,7 +110,7 @@ impl Vessel {
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
         let (low, high) = placed.part.bounds();
         let is_bounded = low.is_finite() && high.is_finite() && self.domain().periods() == DVec2::ZERO;
-        // Far enough outside to stay there after rounding, for a part of any size.
+        // This point is far enough from the part to stay outside after rounding, whatever the part's size.
         let outside = low - (high - low) - DVec2::ONE;
         let is_free_outside = is_bounded && placed.part.signed_distance(outside) > 0.0;
         if is_free_outside { self.index.cells(low, high).collect() } else { (0..self.index.len()).collect() }

@@ -1,4 +1,4 @@
-//! The area in a vessel.
+//! The free area in a vessel.
 
 use glam::DVec2;
 
@@ -7,7 +7,7 @@ use crate::boundary::area::{Curve, Field, LOOKS, meet};
 use crate::boundary::{Boundary, Probe, Region};
 
 impl Vessel {
-    /// Returns the area of the places in a region at which the center of a disk is free at a time.
+    /// Returns the area of the part of a region in which the center of a disk is free at a time.
     pub(super) fn free_area(&self, region: &Region, radius: f64, time: f64) -> f64 {
         let region = region.within(&self.container.room(radius, time));
         let is_free = |place| self.overlap_with_parts(&Probe::new(place, radius, time)).is_none();
@@ -20,7 +20,7 @@ impl Vessel {
 
     /// Returns whether a disk with its center in a region can touch a part at any time.
     pub(super) fn parts_may_touch(&self, region: &Region, radius: f64) -> bool {
-        // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
+        // The region holds centers of disks. The margin keeps rounding from hiding a touch at its edge.
         let reach = 1.001 * radius;
         self.index.near(region.min - reach, region.max + reach).any(|entry| {
             let region = Region::new(region.min - entry.image, region.max - entry.image);

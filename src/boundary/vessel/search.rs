@@ -15,8 +15,8 @@ const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the others have their turn.
 ///
-/// A brick that moves fast near the disk may take many steps, and never touch the disk because another one
-/// does so first. An arm that turns has such a brick at its back. The rounds keep it from taking all the
+/// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
+/// touches it first. An arm that turns has such a brick at its back. The rounds keep it from taking all the
 /// steps.
 const STEPS_IN_A_ROUND: u32 = 16;
 
@@ -94,7 +94,7 @@ impl Vessel {
         Touch::new(time, entry.wall as usize + self.container.wall_count())
     }
 
-    /// Searches for the first touch of some moving bricks, in rounds, up to `until` or the touch of another
+    /// Searches for the first touch of the bricks `moving`, in rounds, up to `until` or the touch of another
     /// wall.
     fn search(
         &self,
@@ -126,11 +126,11 @@ impl Vessel {
         }
     }
 
-    /// Returns the touch of the patch that lies in a touched wall at the place of the touch, or the touch as
-    /// it is.
+    /// Returns the touch of the patch at this point of the touched wall, or the unchanged touch if there is
+    /// no patch.
     ///
     /// A sink in a wall, a belt or a thermal section is usually built as a part on the line of the wall.
-    /// Rounding would decide which of both is touched first.
+    /// Without this rule, rounding would decide whether the part or the wall is touched first.
     pub(super) fn on_patch(&self, touch: Touch, flight: &Flight) -> Touch {
         let (place, radius, count) =
             (flight.position(touch.time), flight.radius(), self.container.wall_count());
@@ -233,7 +233,7 @@ impl Search<'_> {
         FirstTouch::NotBefore(time)
     }
 
-    /// Returns whether floating-point times are too coarse to tell where the part is.
+    /// Returns whether floating-point times are too coarse to determine the position of the part.
     fn is_too_fast(&self, time: f64) -> bool {
         let latest = time.abs() + self.placed.phase.size();
         let spacing = latest.next_up() - latest;
@@ -283,8 +283,8 @@ impl Search<'_> {
         Step::Open(time + open.max(time_for(&path, rounding)))
     }
 
-    /// Returns the first time, from this one on, at which the disk is so near that the part, wherever it is
-    /// then, may touch it with this brick. The result may be too early, but never too late.
+    /// Returns the first time, from this time on, at which the disk is near enough for a touch with this
+    /// brick at any position of the part. The result may be too early, but never too late.
     fn enters_strip(&self, time: f64) -> Option<f64> {
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
         let (travel, radius) = (self.placed.part.travel(), self.flight.radius());
@@ -297,7 +297,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a time in which a disk goes no farther than the distance `way` on its path.
+/// Returns a time in which a disk moves no farther than the distance `way` on its path.
 fn time_for(path: &Path, way: f64) -> f64 {
     let (speed, pull) = (path.velocity.length(), path.acceleration.length() + path.spread);
     // The larger root of ½ pull t² + speed t = way, in a form in which nothing cancels.

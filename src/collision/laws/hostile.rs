@@ -22,24 +22,24 @@ const MILD_SPEEDS: [(f64, f64); 9] = [
 const CLOSING_SPEEDS: [f64; 14] =
     [1.0, 0.1, 3.0, 0.0, 1e-3, 1e3, 1e-6, 1e6, 1e-12, 1e12, 1e-30, 1e-60, 1e60, 1e-300];
 
-/// Slip speeds relative to the closing speed: none, near the limit of sticking, small (central contacts), and
+/// Slip speeds relative to the closing speed: zero, near the limit of sticking, small (central contacts), and
 /// large (grazing contacts).
 const SLIP_RATIOS: [f64; 12] = [0.0, 1.0, 0.3, 3.0, 0.1, 10.0, 1e-3, 1e3, 1e-9, 1e9, 1e-15, 1e15];
 
 /// Slip speeds that do not depend on the closing speed.
 const SLIP_SPEEDS: [f64; 4] = [1.0, 1e-6, 1e-30, 1e60];
 
-/// Reduced masses: of two disks of mass 1, and up to those of the lightest and the heaviest disks.
+/// Reduced masses: from two disks of mass 1 to the lightest and the heaviest disks.
 const MASSES: [f64; 5] = [0.5, 1e-3, 1e3, 1e-30, 1e30];
 
 /// Tangential masses relative to the normal one: a homogeneous disk, a ring, the bound, and all mass near the
 /// center.
 const MASS_RATIOS: [f64; 4] = [1.0 / 3.0, 0.5, 1.0, 1e-6];
 
-/// Times since the last collision: infinite, short, none, and very short.
+/// Times since the last collision: infinite, short, zero, and very short.
 const TIMES: [f64; 4] = [f64::INFINITY, 1e-3, 0.0, 1e-9];
 
-/// Partners: two disks, a disk and a wall, alike and as different as can be. The first three are mild.
+/// Partners: two disks, or a disk and a wall, equal or as different as possible. The first three are mild.
 const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
     ([Kind::DEFAULT; 2], [0.5; 2]),
     ([Kind::DEFAULT, Kind::WALL], [0.5, f64::INFINITY]),
@@ -54,11 +54,11 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
 ///
 /// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
 /// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
-/// closing speed, and partners that have just collided. The partners are, in turn, disks of kinds 0 and 1 and
-/// straight walls, with radii up to the extremes that the engine accepts.
+/// closing speed, and partners that have just collided. The partners are, alternately, disks of kinds 0 and 1
+/// and straight walls, with radii up to the extremes that the engine accepts.
 ///
-/// Mild contacts come first, such as that of two disks of mass 1 that meet at speed 1. So if a rule fails at
-/// a mild contact, its error shows numbers that are easy to read.
+/// Mild contacts come first, such as two disks of mass 1 that meet at speed 1. So if a rule fails at a mild
+/// contact, its error shows numbers that are easy to read.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;
@@ -99,7 +99,7 @@ fn extreme_contacts() -> impl Iterator<Item = Contact> {
         })
     });
     // The number of partners has no factor in common with the numbers of masses and times, so each pair of
-    // partners meets all of these.
+    // partners meets all masses and all times.
     contacts.zip(PARTNERS.into_iter().cycle()).map(|(contact, partners)| between(contact, partners))
 }
 

@@ -1,4 +1,4 @@
-//! Contacts at random, between the decades of the hostile ones.
+//! Random contacts, over the decades between the hostile contacts.
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -7,7 +7,7 @@ use crate::Kind;
 use crate::collision::Contact;
 use crate::random::uniform;
 
-/// Number of contacts at random in a check.
+/// Number of random contacts in a check.
 const CONTACTS: usize = 12_000;
 
 /// A partner of a collision. A wall has an infinite inertia factor, and mostly an infinite mass.
@@ -68,7 +68,7 @@ impl Random {
         if self.below(2) == 0 { 1.0 } else { -1.0 }
     }
 
-    /// Returns an ordinary speed, one over a few decades, or one over many.
+    /// Returns an ordinary speed, or a speed from a range of a few or of many decades.
     fn speed(&mut self) -> f64 {
         match self.below(3) {
             0 => 10.0 * uniform(&mut self.0),

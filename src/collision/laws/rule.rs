@@ -11,7 +11,7 @@ use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::fingerprint::check_pair;
 use crate::{Kind, Violation};
 
-/// Kinds of the partners of which all pairs meet, unless others are named.
+/// Kinds of the partners in a check, in all pairs, unless the promises name others.
 const KINDS: [Kind; 23] = {
     let mut kinds = [Kind::DEFAULT; 23];
     let mut number = 0;
@@ -59,7 +59,8 @@ impl Default for Promises {
 }
 
 impl Promises {
-    /// Creates the promise that a collision gains no energy. It says nothing about the tangential direction.
+    /// Creates the promise that a collision gains no energy. It promises nothing about the tangential
+    /// impulse.
     pub const fn new() -> Self {
         Self {
             energy_gain: false,
@@ -100,7 +101,7 @@ impl Promises {
         Self { exchange: false, ..self }
     }
 
-    /// Returns the same promises for a rule that acts otherwise on the mirror image of a contact.
+    /// Returns the same promises for a rule that acts differently on the mirror image of a contact.
     pub const fn with_handedness(self) -> Self {
         Self { mirror: false, ..self }
     }
@@ -142,7 +143,7 @@ impl Promises {
         if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
     }
 
-    /// Checks the answer of a rule to a contact, to the same with partners exchanged, and to its mirror
+    /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and in its mirror
     /// image.
     fn check_answer<R: CollisionRule + ?Sized>(
         &self,
@@ -176,14 +177,14 @@ impl Promises {
         hostile.chain(random_contacts(self.seed, kinds))
     }
 
-    /// Returns ordinary contacts of all kinds, unless some are named.
+    /// Returns ordinary contacts of all kinds, unless the promises name kinds.
     fn contacts_of_kinds(&self) -> impl Iterator<Item = Contact> + use<> {
         self.kinds.is_none().then(contacts_of_all_kinds).into_iter().flatten()
     }
 }
 
-/// Checks that `rule` keeps its promises, and that it gives the same answers when it is asked again in other
-/// orders.
+/// Checks that `rule` keeps its promises, and that it returns the same impulses when it is called again in
+/// other orders.
 ///
 /// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
 /// convex and hollow walls, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
@@ -215,11 +216,12 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
     Ok(())
 }
 
-/// Checks that two rules which answer differently have different fingerprints, and that two which answer all
-/// contacts of [`check`] alike have the same. Rules without a fingerprint are not compared.
+/// Checks that two rules with different impulses have different fingerprints, and that two with equal
+/// impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint are not
+/// compared.
 ///
 /// # Errors
-/// If the fingerprints tell something else than the answers.
+/// If the fingerprints contradict the impulses.
 ///
 /// ```
 /// use granular_edmd::collision::{Smooth, laws};
@@ -262,7 +264,7 @@ fn mirrored(contact: &Contact) -> Contact {
     .with_spin(0.0 - contact.relative_spin(), contact.spin_inertia(), contact.spin_response())
 }
 
-/// Checks that an impulse is the other one as seen with other signs. The couple changes its sign in both
+/// Checks that an impulse equals another one up to the given signs. The couple changes its sign in both
 /// cases.
 fn check_same(
     contact: &Contact,
@@ -287,7 +289,7 @@ fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<()
     })
 }
 
-/// Returns the violation of a rule that forgets its answer when it is asked for it some more times.
+/// Returns the violation of a rule that returns another impulse when it is called again several times.
 fn forgetful<R: CollisionRule + ?Sized>(rule: &R, contact: &Contact, impulse: Impulse) -> Option<Violation> {
     (0..4).find_map(|_| check_again(contact, impulse, rule.impulse(contact)).err())
 }

@@ -53,7 +53,7 @@ fn simpler(contact: &Contact) -> Vec<Contact> {
     all
 }
 
-/// Returns a contact of these speeds and masses whose other numbers are those of `other`.
+/// Returns a contact of these speeds and masses with all other numbers from `other`.
 fn like(contact: Contact, other: &Contact) -> Contact {
     contact
         .with_kinds(other.kinds())

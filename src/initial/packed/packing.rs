@@ -31,14 +31,14 @@ const LONGEST: f64 = 1.0;
 /// Least mass, in units of the largest disk's mass.
 const LEAST_MASS: f64 = 1e-20;
 
-/// Fraction of a gap that a disk may grow into, so that it touches nothing.
+/// Fraction of a gap into which a disk may grow, so that it touches nothing.
 const SHARE: f64 = 0.99;
 
-/// Disks on their way to their radii.
+/// Disks that are growing to their full radii.
 pub(super) struct Packing<'a> {
     /// The disks with their full radii.
     full: &'a [Disk],
-    /// The disks as they are by now.
+    /// The disks in their present states.
     grown: Vec<Disk>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Packing<'a> {
         1.0 - self.grown.iter().map(area).sum::<f64>() / self.full.iter().map(area).sum::<f64>()
     }
 
-    /// Returns the places of the disks.
+    /// Returns the present positions of the disks.
     pub(super) fn places(&self) -> impl Iterator<Item = DVec2> {
         self.grown.iter().map(Disk::position)
     }

@@ -1,6 +1,6 @@
 //! Piles of disks, which grow at one end and are read as a whole.
 
-/// Number of disks in a block. With the link to another block they fill four cache lines.
+/// Number of disks in a block. The disks and the link to another block fill four cache lines.
 const ROOM: usize = 63;
 
 /// The link of a block without a successor.
@@ -32,7 +32,7 @@ impl Pile {
 #[repr(align(64))]
 struct Block {
     disks: [u32; ROOM],
-    /// The block before this one in its pile, or the next free one.
+    /// The previous block of the pile or, for a free block, the next free block.
     previous: u32,
 }
 
@@ -76,7 +76,7 @@ impl Piles {
         }
     }
 
-    /// Shows all disks of a pile, block by block, and empties it.
+    /// Passes all disks of a pile, block by block, to a closure, and empties the pile.
     pub(super) fn take(&mut self, pile: usize, mut show: impl FnMut(&[u32])) {
         let Pile { mut last, count } = std::mem::replace(&mut self.ends[pile], Pile::EMPTY);
         let mut count = count as usize;

@@ -30,7 +30,7 @@ pub(super) struct Script {
     /// Numbers of disks at the start.
     pub(super) disks: &'static [usize],
     pub(super) steps: usize,
-    /// Makes the times of the first operation, a reset.
+    /// Generates the times of the first operation, a reset.
     time: fn(&mut Stage) -> f64,
     /// Makes the next operation from the earliest disk and its time. It is called only while there are disks.
     /// Without it, the first or any other disk gets another time.
@@ -117,7 +117,7 @@ impl Stage {
         (uniform(&mut self.generator) * count as f64) as usize
     }
 
-    /// Sets the first or any other disk to another time.
+    /// Returns an operation that gives a new time to the first disk or to a random one.
     fn any(&mut self, first: usize, time: fn(&mut Self) -> f64) -> Operation {
         let other = self.any_disk();
         Operation::Set([first, other][self.below(2)], time(self))
@@ -127,7 +127,7 @@ impl Stage {
         self.below(self.due.len())
     }
 
-    /// Returns a waiting time: mostly a short one, otherwise zero, a moment, or forever.
+    /// Returns a waiting time: mostly up to 3, otherwise zero, very short or infinite.
     fn wait(&mut self) -> f64 {
         match self.below(40) {
             0 => f64::INFINITY,
@@ -141,12 +141,12 @@ impl Stage {
         200.0 * uniform(&mut self.generator) - 100.0
     }
 
-    /// Returns one of few times. Both zeros are among them.
+    /// Returns one of seven times, among them both zeros, so that many disks get equal times.
     fn tied_time(&mut self) -> f64 {
         [-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY][self.below(7)]
     }
 
-    /// Returns one of a few times that differ by their last bits.
+    /// Returns a time from one of three groups, in each of which times differ only in their last bits.
     fn near_time(&mut self) -> f64 {
         let base = [1.0_f64, 1.0, 1000.0, 1e7][self.below(4)];
         f64::from_bits(base.to_bits() + self.below(12) as u64)
@@ -186,8 +186,8 @@ fn few(stage: &mut Stage) -> Operation {
     reset(stage, disks, Stage::extreme_time)
 }
 
-/// Makes the operations of a run: the disk whose event is due gets a later time. Now and then another disk
-/// gets one, or returns to its previous time.
+/// Makes the operations of a run: the disk whose event is due gets a later time. At intervals, another disk
+/// gets a later time, or returns to its previous time.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
         return stage.any(first, Stage::spread_time);

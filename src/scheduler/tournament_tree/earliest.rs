@@ -3,7 +3,7 @@
 /// Number of players of a match.
 pub(super) const PLAYERS: usize = 32;
 
-/// The times of the players of a match. Where nobody plays, the time is infinite.
+/// The times of the players of a match. An empty seat has an infinite time.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Times(pub(super) [f64; PLAYERS]);

@@ -8,7 +8,7 @@ use crate::scheduler::entry::Entry;
 /// Number of players of a match.
 const PLAYERS: usize = 4;
 
-/// A tournament in matches of four: the earliest of four disks goes on to the next round, until one is left.
+/// A tournament in matches of four: the earliest of four disks enters the next round, until one disk is left.
 ///
 /// After a change of one disk, its matches are replayed, round by round. Each replay selects and does not
 /// branch: no processor can predict the winner of a match, and a mispredicted branch costs more than the

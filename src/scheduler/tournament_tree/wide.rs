@@ -52,7 +52,7 @@ struct Match {
 impl Match {
     const EMPTY: Self = Self { times: Times([f64::INFINITY; PLAYERS]), disks: [0; PLAYERS] };
 
-    /// Gives a seat to a player.
+    /// Puts a player into a seat.
     // One number is written, after all have been read. If a whole vector were written back, the compiler
     // would make it a write by a mask, and the next read of the vector would wait for that.
     #[inline(always)]
@@ -61,7 +61,7 @@ impl Match {
         self.disks[seat % PLAYERS] = player.disk as u32;
     }
 
-    /// Returns the earliest player without those in two seats.
+    /// Returns the earliest player, except the players in two seats.
     #[inline(always)]
     fn earliest_without(&self, one: usize, other: usize, earliest: impl Earliest) -> Player {
         let (due, seat) = earliest(&self.times, one, other);
@@ -80,7 +80,7 @@ pub(super) struct Wide<const ROUNDS: usize> {
     winner: Player,
     /// The earliest of the winner's opponents in each round but the last.
     beside: [Player; ROUNDS],
-    /// The earliest of all but the winner.
+    /// The earliest player except the winner.
     runner_up: Player,
 }
 
@@ -94,8 +94,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         Self { rounds, winner, beside, runner_up }
     }
 
-    /// Makes all matches that this number of disks needs, and empties them. The memory is kept, since a run
-    /// resets its scheduler whenever its epoch moves.
+    /// Creates all matches for this number of disks, and empties them. The memory is kept, since a run resets
+    /// its scheduler whenever its epoch moves.
     fn empty(&mut self, disks: usize) {
         for (round, matches) in self.rounds.iter_mut().enumerate() {
             matches.clear();
@@ -211,7 +211,7 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         true
     }
 
-    /// Finds winner and runner-up among all, from the way of the present winner up.
+    /// Finds the winner and the runner-up among all players, along the present winner's path upward.
     #[inline(always)]
     fn find_first(&mut self, earliest: impl Earliest) {
         let mut index = self.winner.disk;

@@ -42,8 +42,8 @@ impl Block {
         self.0[0] |= AT_WALL;
     }
 
-    /// Returns the crowd that holds the other disks of the cell, or `None` if they all fit into the block.
-    /// Its number is in the last slot.
+    /// Returns the crowd that holds the cell's other disks, or `None` if all disks of the cell fit into the
+    /// block. Its number is in the last slot.
     pub(super) fn crowd(&self) -> Option<u32> {
         (self.count() == CROWDED).then_some(self.0[SLOTS - 1])
     }

@@ -33,7 +33,7 @@ impl CellSize {
     /// At each bound, runs with either size take equally long. The bounds are far enough apart that no run
     /// alternates between two sizes.
     pub(in crate::simulation) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
-        // Without collisions, this is NaN or infinite. NaN leaves the size as it is, since all comparisons
+        // Without collisions, this is NaN or infinite. NaN leaves the size unchanged, since all comparisons
         // fail, and infinity means the largest cells, as it should.
         let passed = cell_crossings as f64 / collisions as f64;
         match self {

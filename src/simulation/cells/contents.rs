@@ -4,8 +4,8 @@ use super::block::{Block, CROWDED, SLOTS};
 use super::crowd::Crowds;
 use crate::prefetch::prefetch;
 
-/// Room in which three blocks are written. A block counts up to 7 as far as the compiler knows, so the third
-/// one begins before slot 16.
+/// Size of the slice to which three blocks are written. As far as the compiler knows, a block holds up to 7
+/// disks, so the third block begins before slot 16.
 const WINDOW: usize = 16 + SLOTS;
 
 /// The disks of each cell, by the index of the cell.
@@ -74,7 +74,7 @@ impl Contents {
     fn remove_from_crowded(&mut self, cell: usize, disk: u32) {
         let block = &mut self.blocks[cell];
         let Some(crowd) = block.crowd() else { return };
-        // The crowd gives up its last disk, which then fills the gap, be it in the block or in the crowd.
+        // The last disk of the crowd fills the gap, whether the gap is in the block or in the crowd.
         let (last, left) = self.crowds.pop(crowd);
         match left {
             Some(crowd) => block.set_crowd(crowd),
@@ -95,8 +95,8 @@ impl Contents {
     /// Appends the disks of three cells, `step` apart, to the first `count` disks in `found`.
     #[inline(always)]
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
-        // One bounds check serves all three cells, and one serves all that is written: the compiler knows
-        // that the counts of two blocks leave room for a third one in the window.
+        // One bounds check covers the reads of all three cells, and one covers all writes: the compiler knows
+        // that the counts of two blocks leave room for a third block in the window.
         let blocks = &self.blocks[first..][..=2 * step];
         let window = &mut found[count..count + WINDOW];
         let mut taken = 0;
@@ -111,29 +111,30 @@ impl Contents {
         count + taken
     }
 
-    /// Does the same where a cell is crowded, from the start.
+    /// Appends the disks of the same three cells if one of the cells is crowded.
     #[cold]
     #[inline(never)]
     fn gather_crowded(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
         [0, step, 2 * step].iter().fold(count, |count, cell| self.gather_cell(first + cell, found, count))
     }
 
-    /// Appends the disks of cells that follow each other to the first `count` of those found.
+    /// Appends the disks of consecutive cells to `found`, behind its first `count` entries. Returns the new
+    /// count.
     #[inline]
     pub(super) fn gather_run(&self, first: usize, cells: usize, found: &mut [u32], count: usize) -> usize {
         let blocks = &self.blocks[first..first + cells];
         blocks.iter().fold(count, |count, block| self.gather_block(block, found, count))
     }
 
-    /// Appends the disks of one cell to the first `count` of those found.
+    /// Appends the disks of one cell to `found`, behind its first `count` entries. Returns the new count.
     #[inline(always)]
     pub(super) fn gather_cell(&self, cell: usize, found: &mut [u32], count: usize) -> usize {
         self.gather_block(&self.blocks[cell], found, count)
     }
 
-    /// Appends the disks of a cell. All slots are copied, and the next block overwrites those behind the last
-    /// slot that is taken. The code branches on whether the cell is crowded, which is rare, but not on how
-    /// many slots are taken.
+    /// Appends the disks of a cell. All slots are copied, and the next block overwrites the slots behind the
+    /// last disk. The code branches on whether the cell is crowded, which is rare, but not on how many slots
+    /// are taken.
     #[inline(always)]
     fn gather_block(&self, block: &Block, found: &mut [u32], count: usize) -> usize {
         found[count..count + SLOTS].copy_from_slice(&block.slots());
@@ -149,7 +150,7 @@ impl Contents {
         block.crowd().map_or(count, |crowd| self.crowds.gather(crowd, found, count))
     }
 
-    /// Requests a cell from memory.
+    /// Prefetches the block of a cell.
     #[inline]
     pub(super) fn prefetch(&self, cell: usize) {
         prefetch(&self.blocks, cell);

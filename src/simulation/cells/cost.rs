@@ -13,11 +13,10 @@ const AREA_FRACTION: f64 = 0.4;
 /// Assumed largest number of cells per disk.
 const CELLS_PER_DISK: f64 = 2.0;
 
-/// Costs, in units of the prediction of one pair: of a look into a cell (`LOOK`), of a change of a cell
-/// (`CHANGE`), of a loop over the cells of another class (`LOOP`), and of an event without its searches
-/// (`EVENT`).
+/// Costs in units of the prediction of one pair: reading a cell (`LOOK`), changing a cell (`CHANGE`), a loop
+/// over the cells of another class (`LOOP`), and an event without its searches (`EVENT`).
 ///
-/// A loop is so expensive because the processor can hardly predict its length.
+/// A loop is this expensive because the processor can hardly predict its length.
 const LOOK: f64 = 1.0;
 const CHANGE: f64 = 4.0;
 const LOOP: f64 = 30.0;
@@ -50,7 +49,7 @@ impl Group {
         classes.iter().map(group).collect()
     }
 
-    /// Returns this group together with one of larger disks.
+    /// Returns the union of this group and a group of larger disks.
     pub(super) fn with(&self, larger: &Self) -> Self {
         let class = self.class.with(&larger.class);
         let (collisions, speed) = (self.collisions + larger.collisions, self.speed + larger.speed);

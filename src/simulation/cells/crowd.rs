@@ -2,7 +2,7 @@
 
 use crate::disk::MOST_DISKS;
 
-/// Number of disks in a part of a crowd. With six, a part is as large as two blocks.
+/// Largest number of disks in one part of a crowd. With six disks, a part is as large as two blocks.
 const SEATS: usize = 6;
 
 /// Number of parts for which there is room from the start.

@@ -7,9 +7,9 @@ use super::size_class::SizeClass;
 /// very many classes.
 const WIDTH: f64 = 0.7;
 
-/// Returns the classes, from the smallest disks up; none without disks.
+/// Returns the classes in the order of their sizes, smallest first. Without disks, there is no class.
 ///
-/// Narrow classes save looks at disks that are too far away, and few classes save looks into layers. The
+/// Narrow classes save searches of disks that are too far away, and few classes save searches of layers. The
 /// classes returned are the cheapest that the search finds.
 pub(super) fn classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let narrow = narrow_classes(diameters);
@@ -40,8 +40,8 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);
     loop {
-        // Two neighbors inverted together are a bound that shifts, or two that come or go at once. Without
-        // such steps the search would stay in a valley where every single change is a loss.
+        // Inverting two neighbors together shifts a bound, or adds or removes two bounds. Without such steps
+        // the search would stay in a valley where every single change is a loss.
         let changed = (0..bounds.len()).flat_map(|first| [1, 2].map(|count| changed(&bounds, first, count)));
         let costs = changed.map(|bounds| (cost(&bounds), bounds));
         match costs.min_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -51,7 +51,7 @@ fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, 
     }
 }
 
-/// Returns the bounds with `count` of them inverted, from `first` on.
+/// Returns a copy of the bounds with `count` of them inverted, beginning at `first`.
 fn changed(bounds: &[bool], first: usize, count: usize) -> Vec<bool> {
     let is_changed = |k: usize| (first..first + count).contains(&k);
     bounds.iter().enumerate().map(|(k, &is_bound)| is_bound != is_changed(k)).collect()

@@ -21,7 +21,7 @@ pub(in crate::simulation) struct Grid {
     /// at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
-    /// Distance beyond its edges up to which a cell keeps its disks, so that fewer of them pass from one cell
+    /// Distance beyond its edges up to which a cell keeps its disks, so that fewer disks pass from one cell
     /// to another.
     pub(super) margin: DVec2,
     /// Horizontal and vertical period of the domain; 0 where it is not periodic.
@@ -58,8 +58,8 @@ impl Grid {
 
     /// Creates the grid of this layout with cells that keep no disks beyond their edges.
     ///
-    /// Layers of larger disks have such grids. Their reaches are computed from the edges, and a margin would
-    /// make every one of them larger.
+    /// The layers of larger disks use such grids. Reaches are computed from the edges, so a margin would
+    /// enlarge every reach.
     pub(in crate::simulation) fn without_margin(domain: &Domain, layout: Layout) -> Self {
         Self::new(domain, layout, f64::INFINITY)
     }
@@ -99,8 +99,8 @@ impl Grid {
         self.layout.cell_size
     }
 
-    /// Returns the number of cells in a column, ring included. Neighbors in a row are this far apart in
-    /// memory.
+    /// Returns the number of cells in a column, ring included. In memory, neighbors in a row are this number
+    /// of cells apart.
     #[inline]
     pub(in crate::simulation) fn stride(&self) -> usize {
         self.stride as usize
@@ -129,7 +129,7 @@ impl Grid {
         }
     }
 
-    /// Requests from memory what [`Self::region`] needs, since wide systems have many columns.
+    /// Prefetches the column edges that [`Self::region`] needs, since wide systems have many columns.
     #[inline]
     pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
         prefetch(&self.column_edges, place.column as usize);
@@ -161,7 +161,7 @@ impl Grid {
     }
 
     /// Returns the neighbor at these numbers of columns to the right and rows up, and the numbers of periods
-    /// passed on the way.
+    /// crossed between the two cells.
     #[inline(always)]
     pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, [i32; 2]) {
         let mut to =
@@ -189,8 +189,8 @@ fn opposite(line: u32, count: u32) -> Option<u32> {
     }
 }
 
-/// Replaces a column or row of the ring by the one that it mirrors. Returns the result, and the number of
-/// periods passed.
+/// Replaces a column or row of the ring by the column or row that it mirrors. Returns the result, and the
+/// number of periods passed.
 #[inline]
 fn brought_back(line: u32, count: u32) -> (u32, i32) {
     match line {

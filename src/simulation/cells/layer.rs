@@ -60,8 +60,9 @@ impl LayerLayout {
         // The mean free path, up to a factor of order 1.
         let free_path =
             1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
-        // In a small cell, a disk has few partners, but it leaves the cell often. A cell is no smaller than a
-        // cell of the smallest class, into which its disks look.
+        // In a small cell, a disk has few partners, but it leaves the cell often. A cell of this class is no
+        // smaller than a cell of the smallest class, since the disks of this class search the cells of that
+        // one.
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
@@ -135,8 +136,9 @@ impl LayerLayout {
 /// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than
 /// half a period, no other image comes nearer.
 pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
-    // Equal disks are both somewhere in their cells, so each cell may take half of what a touch leaves of
-    // half a period. Beside a small disk, the margin of its cell counts, too: it may be that far outside.
+    // Both of two equal disks may be anywhere in their cells. Each cell may therefore be half as wide as half
+    // a period less the distance at a touch. Beside a small disk, the margin of its cell counts, too: it may
+    // be that far outside.
     let half = 0.5 * domain.periods();
     let small_cell = grid.layout.pitch + 2.0 * grid.margin;
     let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);
@@ -144,7 +146,7 @@ pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64)
     DVec2::select(half.cmpgt(DVec2::ZERO), beside_equal.min(beside_small), DVec2::INFINITY)
 }
 
-/// The disks of a class in their homes, and the homes in which they look for partners.
+/// The disks of a class in their homes, and the homes in which these disks search for partners.
 #[derive(Debug, Clone)]
 pub(super) struct Layer {
     pub(super) layout: LayerLayout,

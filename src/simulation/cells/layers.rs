@@ -22,8 +22,8 @@
 //! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
 //! many to look into.
 //!
-//! A pair must find each other from both sides, whichever of the two is searched for. The large disk looks
-//! into the homes of its reach. The small disk cannot look up: the cells above it that reach its home are too
+//! A pair must find each other from both sides, whichever of the two is searched for. The large disk searches
+//! the homes within its reach. The small disk cannot look up: the cells above it that reach its home are too
 //! many. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it lies. When the
 //! large disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought
 //! up to date there, and only the small disks there are new partners.
@@ -56,10 +56,10 @@ pub(super) struct Layers {
     /// Class of each disk. A disk that is added has yet to enter its cell, and one that goes has left it.
     pub(super) classes: Vec<u8>,
     larger: Vec<Layer>,
-    /// For each home of each class, the smallest class first: the larger disks that reach it from their
-    /// cells.
+    /// The visitors of each home of each class, the smallest class first: the larger disks that reach the
+    /// home from their cells.
     visitors: Vec<Contents>,
-    /// True if a disk that enters another cell must look at all partners again.
+    /// True if a disk that enters another cell must examine all partners again.
     pub(super) is_narrow: bool,
 }
 
@@ -71,7 +71,7 @@ pub(super) fn layouts(
     highest: f64,
 ) -> Option<Layouts> {
     let SizeClass { largest: diameter, count, .. } = classes[0];
-    // Large disks look into many of these cells, so they are made fewer than if all disks had the same cells.
+    // Large disks search many of these cells, so there are fewer cells than if all disks had the same size.
     let most = cells_per_small_disk(cell_size) * count as f64 + SPARE_SMALL_CELLS;
     let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
     let grid = Grid::new(domain, smallest, diameter);
@@ -135,20 +135,20 @@ impl Layers {
         self.larger.iter().map(|layer| layer.layout).collect()
     }
 
-    /// Returns the layer of a disk; `None` for the smallest class.
+    /// Returns the layer of a disk, or `None` for a disk of the smallest class.
     #[inline]
     pub(super) fn of(&self, disk: usize) -> Option<&Layer> {
         self.of_class(self.classes[disk])
     }
 
-    /// Returns the layer of a class; `None` for the smallest one.
+    /// Returns the layer of a class, or `None` for the smallest class.
     #[inline]
     pub(super) fn of_class(&self, class: u8) -> Option<&Layer> {
         self.larger.get(usize::from(class).wrapping_sub(1))
     }
 
-    /// Writes a disk of a larger class into its home and into all homes that it reaches, or takes it out of
-    /// all of them.
+    /// Writes a disk of a larger class into its home and into all homes that it reaches, or removes the disk
+    /// from all these homes.
     pub(super) fn change(&mut self, disk: usize, place: Place, change: impl Fn(&mut Contents, usize, usize)) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
@@ -186,7 +186,7 @@ impl Layers {
         self.visitors[0].gather_cell(cell, found, count)
     }
 
-    /// Requests from memory what [`Self::gather_visitors`] needs.
+    /// Prefetches the data that [`Self::gather_visitors`] needs.
     pub(super) fn prefetch_visitors(&self, cell: usize) {
         self.visitors[0].prefetch(cell);
     }
@@ -214,19 +214,20 @@ impl Layers {
                 None => reach.for_each_run(place, act),
             }
         }
-        // Disks of the same class are few and near. To tell which of them are new would cost more than to
-        // take them all.
+        // Disks of the same class are few and near. Finding out which of them are new would cost more than
+        // gathering them all.
         if let Some(own) = own {
             own.for_each_run(place, |first, homes| {
                 count = layer.contents.gather_run(first, homes, found, count);
             });
         }
-        // Disks of larger classes come to this disk's home as visitors, as large disks do to small ones.
+        // Disks of larger classes are visitors of this disk's home, as they are of the homes of the smallest
+        // class.
         self.visitors[class].gather_cell(layer.home(place), found, count)
     }
 
-    /// Writes to `found` all disks that one of this larger class at this place may overlap, also those that
-    /// would lie inside it. Returns their number.
+    /// Writes to `found` all disks that a disk of this larger class at this place may overlap, including
+    /// disks that would lie inside it. Returns their number.
     pub(super) fn gather_all(
         &self,
         smallest: &Contents,
@@ -264,13 +265,13 @@ fn homes_of(grid: &Grid) -> Homes<'_> {
     Homes { grid, cells: 1, stride: grid.stride(), first: grid.stride() + 1 }
 }
 
-/// The layouts of all cells, which a run must keep to go on with the same bits.
+/// The layouts of all cells, which a run must keep in order to continue with the same bits.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Layouts {
     /// The cells of the smallest class.
     pub(in crate::simulation) smallest: Layout,
-    /// The layers of the larger classes; none if all disks share the same cells.
+    /// The layers of the larger classes; empty if all disks share the same cells.
     pub(in crate::simulation) larger: Vec<LayerLayout>,
     /// The classes of disks that have separate cells.
     pub(in crate::simulation) classes: Vec<SizeClass>,

@@ -10,8 +10,7 @@ impl Cells {
         prefetch(&self.places, disk);
     }
 
-    /// Requests the nine cells around a disk of the smallest class from memory, and does nothing for larger
-    /// disks.
+    /// Prefetches the nine cells around a disk of the smallest class. Does nothing for larger disks.
     #[inline]
     pub(in crate::simulation) fn prefetch_around(&self, disk: usize) {
         if self.is_large(disk) {
@@ -32,8 +31,8 @@ impl Cells {
         }
     }
 
-    /// Requests from memory the cells that a disk leaves and enters by `exit`, and those that then come
-    /// within reach.
+    /// Prefetches the cells that a disk leaves and enters by `exit`, and the cells that then come within its
+    /// reach.
     #[inline]
     pub(in crate::simulation) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
         let (from, to) = (self.places[disk], self.next_place(disk, exit));

@@ -12,7 +12,7 @@
 
 use super::grid::{Grid, Place};
 
-/// Cells that follow each other in a row or a column.
+/// Consecutive cells in a row or a column.
 #[derive(Debug, Clone, Copy)]
 struct Span {
     first: u32,
@@ -78,8 +78,8 @@ impl Reach {
         // no disks either, but a rectangle is quicker to traverse than what would be left.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
-            // A disk is in its home up to a margin beyond the edge, so the reach goes as much further. The
-            // hole is smaller for the same reason.
+            // A disk stays in its home up to a margin beyond the edge, so the reach is larger by this margin.
+            // The hole is smaller for the same reason.
             let distance = distances.most + margin;
             let (low, high) = (range.0 - distance, range.1 + distance);
             let outer = if is_periodic { around(edges, low, high) } else { between(edges, low, high) };
@@ -113,14 +113,15 @@ impl Reach {
         }
     }
 
-    /// Calls `act` in the same way for the homes within reach of a place and for the homes of the hole.
+    /// Calls `act`, as in [`Self::for_each_run`], for the homes within reach of a place and also for the
+    /// homes of the hole.
     pub(super) fn for_each_run_and_hole(&self, place: Place, mut act: impl FnMut(usize, usize)) {
         for column in self.columns_of(place) {
             self.act_on(column, self.rows[place.row as usize - 1][0], &mut act);
         }
     }
 
-    /// Calls `act` in the same way for the homes within reach of `place`, but not of `other`.
+    /// Calls `act`, as in [`Self::for_each_run`], for the homes within reach of `place`, but not of `other`.
     pub(super) fn for_each_run_beyond(&self, place: Place, other: Place, mut act: impl FnMut(usize, usize)) {
         for column in self.columns_of(place) {
             let beyond = self.rows_of(other, column).map(|rows| self.aligned(rows, place, other));
@@ -138,8 +139,8 @@ impl Reach {
         }
     }
 
-    /// Shifts the rows of another place by a period if the periodic boundary lies between the places, so that
-    /// the rows of both places are counted from the same row.
+    /// Shifts the rows of another place by a period if the periodic boundary lies between the two places, so
+    /// that both are counted from the same row.
     fn aligned(&self, rows: Span, place: Place, other: Place) -> Span {
         let first = |place: Place| i64::from(self.rows[place.row as usize - 1][0].first);
         let (ahead, period) = (first(place) - first(other), i64::from(self.period_rows));
@@ -159,7 +160,7 @@ impl Reach {
         }
     }
 
-    /// Splits a span into the rows up to the last one, and those that continue on the opposite side.
+    /// Splits a span into the rows up to the last row, and the rows that continue at the opposite end.
     #[inline]
     fn pieces(&self, rows: Span) -> [Span; 2] {
         let last = self.period_rows;
@@ -174,7 +175,8 @@ impl Reach {
         (columns.first..columns.behind()).map(move |k| if k >= period { k - period } else { k })
     }
 
-    /// Returns the homes of a column within reach of a place: those below the hole, and those above it.
+    /// Returns the homes of a column within reach of a place: the homes below the hole, and the homes above
+    /// it.
     #[inline]
     fn rows_of(&self, place: Place, column: u32) -> [Span; 2] {
         let [columns, hole_columns] = self.columns[place.column as usize - 1];
@@ -212,8 +214,8 @@ fn within(edges: &[f64], low: f64, high: f64) -> Span {
     Span { first: first + 1, count: count.saturating_sub(2) }
 }
 
-/// Counts the rows of a hole from the same row as those around it. The result is empty if the hole does not
-/// lie within them.
+/// Counts the rows of a hole from the same row as the rows around the hole. The result is empty if the hole
+/// does not lie within them.
 fn hole_within(outer: Span, hole: Span, period: u32) -> Span {
     let first = if hole.first < outer.first { hole.first + period } else { hole.first };
     let hole = Span { first, count: hole.count };

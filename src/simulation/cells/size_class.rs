@@ -22,13 +22,13 @@ impl SizeClass {
         Self { largest: any, smallest: any, count: 0 }
     }
 
-    /// Returns this class together with one of larger disks.
+    /// Returns the union of this class and a class of larger disks.
     pub(super) fn with(&self, larger: &Self) -> Self {
         Self { largest: larger.largest, smallest: self.smallest, count: self.count + larger.count }
     }
 }
 
-/// Returns the class of all disks together; `None` without disks.
+/// Returns one class of all disks, or `None` if there are no disks.
 pub(super) fn together(classes: &[SizeClass]) -> Option<SizeClass> {
     classes.iter().copied().reduce(|together, class| together.with(&class))
 }

@@ -1,4 +1,4 @@
-//! Resumption: the way from a checkpoint to a run.
+//! Resumption: building a run from a checkpoint.
 
 use super::validation::{MISFIT, are_layouts, check, check_numbers, check_places};
 use super::{Checkpoint, CheckpointError, Saved};
@@ -14,7 +14,7 @@ use crate::simulation::lookahead::Lookahead;
 use crate::simulation::state::{Bodies, Clock};
 use crate::simulation::{Scratch, Simulation};
 
-/// A run that is about to go on; see [`Simulation::resume`].
+/// A builder of a run that continues from a checkpoint; see [`Simulation::resume`].
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Resumption<'a, R, B, S = BySize> {
@@ -48,13 +48,13 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
     }
 
-    /// Uses this rule on purpose, even if the checkpoint has another: the next value of a ramp, for example.
+    /// Allows a rule that differs from the checkpoint's, for the next value of a ramp, for example.
     pub const fn with_another_rule(mut self) -> Self {
         self.another_rule = true;
         self
     }
 
-    /// Uses this boundary on purpose, even if the checkpoint has another.
+    /// Allows a boundary that differs from the checkpoint's.
     ///
     /// All events are then predicted anew, as [`Simulation::set_boundary`] does.
     pub const fn with_another_boundary(mut self) -> Self {
@@ -65,9 +65,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// Builds the run.
     ///
     /// # Errors
-    /// If the contents of the checkpoint are not a possible state. If the checkpoint is of another rule or
-    /// boundary, and the new one was not given on purpose. If its disks do not fit into a boundary that was
-    /// given on purpose.
+    /// If the checkpoint does not contain a possible state; if its rule or boundary differs from the given
+    /// one, and the difference was not allowed; or if its disks do not fit into another boundary that was
+    /// allowed.
     pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
         // A part with a fingerprint never equals one without. Two parts without fingerprints cannot be
@@ -103,8 +103,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         Ok(run)
     }
 
-    /// Builds a run in another boundary. The disks are taken as they are, and everything about the walls is
-    /// computed anew.
+    /// Builds a run with another boundary. The disks keep their states, and all data about walls are computed
+    /// anew.
     fn build_anew(mut self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
         check_numbers(saved, usize::MAX)?;
@@ -134,7 +134,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             scratch: Scratch::default(),
             inlets: saved.inlets.clone(),
             ledger: saved.ledger,
-            // The observers that are read with it have lost the mark of the run that was saved.
+            // The observers that are read with a checkpoint have lost the mark of the saved run.
             marks: [Mark::default(), Mark::new()],
         }
     }

@@ -12,7 +12,7 @@ use crate::file::{Seal, write_whole};
 const SEAL: Seal = Seal::new(*b"GRANWITH", 1);
 
 impl Checkpoint {
-    /// Writes the checkpoint and the observers of its run to one file, whole or not at all.
+    /// Writes the checkpoint and the observers of its run to one file, completely or not at all.
     ///
     /// Numbers keep their bits, infinities and NaN, too, and state and observers cannot come from different
     /// moments. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
@@ -43,8 +43,8 @@ impl Checkpoint {
     ///
     /// # Errors
     /// If the observers do not read back as they were written, as types with `#[serde(untagged)]`, `flatten`
-    /// or `skip_serializing_if` may not, or if the file cannot be written. An older file of that name is then
-    /// as it was.
+    /// or `skip_serializing_if` may not, or if the file cannot be written. An older file of that name then
+    /// stays unchanged.
     pub fn write_with<O: Serialize + DeserializeOwned>(
         &self,
         observers: &O,
@@ -52,7 +52,7 @@ impl Checkpoint {
     ) -> Result<(), CheckpointError> {
         let encode = |observers: &O| postcard::to_stdvec(&(self, observers)).map_err(contents);
         let bytes = encode(observers)?;
-        // Now is the time to notice, not when the run is gone and its observers are needed.
+        // An unreadable file must be noticed now, not when the run is gone and its observers are needed.
         let (_, read): (Self, O) = decoded(&bytes)?;
         validation::check(encode(&read)? == bytes, "its observers do not read back as they were written")?;
         write_whole(path.as_ref(), &SEAL.seal(&bytes)).map_err(failed("write", path.as_ref()))

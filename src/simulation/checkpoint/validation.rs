@@ -1,4 +1,4 @@
-//! Checks that the contents of a checkpoint are a state from which the engine can go on.
+//! Checks that the contents of a checkpoint are a state from which the engine can continue.
 //!
 //! A checksum shows accidents, not intent: anyone can compute it anew over any numbers. Therefore, all
 //! numbers must pass the bounds of the constructors, and all events must be where and when they can be. A run
@@ -25,7 +25,7 @@ const SLACK: f64 = 1e-3;
 /// large, since a collision may have made epochs shorter after the search.
 const MOST_EPOCHS: f64 = 1e6;
 
-/// The fault of cells that do not suit the domain or the disks.
+/// The message about cells that do not suit the domain or the disks.
 pub(super) const MISFIT: &str = "its neighbor cells are not those of the domain";
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
@@ -57,8 +57,8 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(forward, "its counters run backwards")
 }
 
-/// Checks that all disks are where they belong in these cells, which are empty as yet, and that their events
-/// are where they can be.
+/// Checks that all disks are in their proper cells, and that their events are at possible times and places.
+/// The cells are still empty.
 pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Result<(), CheckpointError> {
     let now = saved.clock.now;
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
@@ -92,8 +92,8 @@ pub(super) fn are_layouts(saved: &Saved, diameters: impl ExactSizeIterator<Item 
     are_classes(classes, larger.len() + 1, diameters) && suits_all(classes[0].largest)
 }
 
-/// Returns whether these are `number` classes in order, with one for each disk. There cannot be far more or
-/// far fewer disks than in the classes, since new cells would have been made.
+/// Returns whether these are `number` classes in order, and each disk has one of them. There cannot be far
+/// more or far fewer disks than in the classes, since new cells would have been made.
 fn are_classes(classes: &[SizeClass], number: usize, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
     let are_sizes = classes
         .iter()
@@ -130,7 +130,7 @@ fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
         && pitch.is_finite()
 }
 
-/// Returns whether a place is one of the cells, and not of the ring.
+/// Returns whether a place belongs to a cell of the domain, not to the ring around the cells.
 fn is_cell(layout: &Layout, place: Place) -> bool {
     (1..=layout.columns).contains(&place.column) && (1..=layout.rows).contains(&place.row)
 }
@@ -183,7 +183,7 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
         let Forecast { collision_due, exit_due, partner, partner_collisions, collisions, exit, wall } =
             *forecast;
         let is_alone = collision_due == f64::INFINITY;
-        // A partner that is gone may leave a forecast of another index, or of the own one.
+        // After the removal of a partner, a forecast may name another index, even the disk's own.
         let is_old = partner as usize >= count || partner_collisions != collisions;
         (is_alone || partner as usize != disk || is_old)
             && (exit != Exit::Wall || usize::from(wall) < walls)
@@ -251,7 +251,7 @@ fn ends_where_it_can(
 }
 
 /// Returns whether a disk touches its partner when it collides with it. An outdated prediction passes, since
-/// it is made anew when it comes up.
+/// the engine replaces it when its event is due.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due.is_finite()

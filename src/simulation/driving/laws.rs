@@ -12,14 +12,14 @@ const PART: &str = "driving";
 const KICKS: usize = 200;
 const DISKS: usize = 16;
 
-/// Number of kicks after which a run is cut.
+/// Number of kicks after which the check interrupts a run.
 const CUT: usize = 7;
 
 /// Allowed rounding of a momentum, relative to the sum of all magnitudes.
 const ROUNDING: f64 = 1e-13;
 
-/// Smallest and largest mean square of the kicks of a place in the list, relative to the mean of all places.
-/// Two hundred random kicks scatter by a tenth.
+/// Smallest and largest mean square of the kicks at a position in the list, relative to the mean of all
+/// positions. Two hundred random kicks scatter by a tenth.
 const FAIR: [f64; 2] = [0.4, 1.8];
 
 /// The promises of a driving. Every driving also promises kicks that only change velocities and spins, that
@@ -48,7 +48,7 @@ impl Promises {
         Self { momentum: false, moves: false, is_ordered: false }
     }
 
-    /// Returns the same promises, with a total momentum that stays.
+    /// Returns the same promises, with a conserved total momentum.
     pub const fn with_momentum(self) -> Self {
         Self { momentum: true, ..self }
     }
@@ -58,7 +58,7 @@ impl Promises {
         Self { moves: true, ..self }
     }
 
-    /// Returns the same promises for a driving whose kicks depend on the place of a disk in the list.
+    /// Returns the same promises for a driving whose kicks depend on the position of a disk in the list.
     pub const fn with_order(self) -> Self {
         Self { is_ordered: true, ..self }
     }
@@ -98,7 +98,7 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
         let kicks = squares_of(&before, &first);
         let energy: f64 = before.iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
         let all: f64 = kicks.iter().sum();
-        // A kick that is none up to rounding tells nothing about shares.
+        // A kick that is zero up to rounding shows nothing about shares.
         if all > ROUNDING * energy {
             counted += 1;
             squares.iter_mut().zip(&kicks).for_each(|(square, kick)| *square += kick / all);
@@ -107,7 +107,7 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
             driving.times().advance_past(time);
         }
         last = time;
-        // Each disk comes to each place in the list.
+        // Each disk comes to each position in the list.
         first.rotate_left(1);
         second.rotate_left(1);
     }
@@ -123,7 +123,8 @@ fn squares_of(before: &[Disk], after: &[Disk]) -> [f64; DISKS] {
     })
 }
 
-/// Returns the time of the next kick, which is later than the last one, and the same when asked again.
+/// Returns the time of the next kick. Checks that this time is later than the last kick, and the same in a
+/// second call.
 fn upcoming<D: Driving>(driving: &mut D, last: f64, again: usize) -> Result<f64, Violation> {
     let next = driving.times().upcoming();
     require!(PART, "clock", next > last; "after the time {last:?}, the next kick is at {next:?}");
@@ -154,7 +155,7 @@ fn check_kick(before: &[Disk], after: &[Disk], promises: Promises, number: usize
     Ok(())
 }
 
-/// Checks that no place in the list gets much more or less than others.
+/// Checks that no position in the list receives much stronger or weaker kicks than others.
 fn check_shares(squares: &[f64; DISKS]) -> Result<(), Violation> {
     let mean = squares.iter().sum::<f64>() / DISKS as f64;
     for (place, square) in squares.iter().enumerate() {

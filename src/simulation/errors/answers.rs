@@ -1,4 +1,4 @@
-//! Impossible answers of rules and boundaries, in the words of errors.
+//! Impossible results of rules and boundaries, as errors describe them.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::collision::{Contact, Impulse};
 use crate::error::{Readable, Rounded, RoundedVector};
 use crate::observable::Partner;
 
-/// Returns the partner of a disk, in the words of an error.
+/// Returns the description of a disk's partner for an error.
 pub(in crate::simulation) fn named(partner: Option<Partner>, wall: Option<&str>) -> String {
     match (partner, wall) {
         (Some(Partner::Disk(other)), _) => format!(" with disk {other}"),
@@ -19,7 +19,7 @@ pub(in crate::simulation) fn named(partner: Option<Partner>, wall: Option<&str>)
     }
 }
 
-/// A collision whose outcome is a motion with which the engine cannot go on.
+/// A collision after which a motion is outside the engine's bounds.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct FailedCollision {
@@ -31,9 +31,9 @@ pub struct FailedCollision {
     pub wall: Option<String>,
     /// The present.
     pub time: f64,
-    /// The contact about which the engine asked the rule.
+    /// The contact that the engine passed to the rule.
     pub contact: Contact,
-    /// The impulse with which the rule answered.
+    /// The impulse that the rule returned.
     pub impulse: Impulse,
 }
 
@@ -58,11 +58,11 @@ impl fmt::Display for FailedCollision {
     }
 }
 
-/// An impossible answer of a boundary.
+/// An impossible result of a boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoundaryFault {
-    /// A search for a touch that gets no further.
+    /// A search for a touch that makes no progress.
     #[error(
         "the search for a touch gets no further: a wall moves too fast for times as coarse as these, or its motion \
          gives numbers that are not finite; see wall::laws::check and boundary::laws::check"

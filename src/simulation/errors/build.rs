@@ -21,11 +21,11 @@ pub enum BuildError {
         Readable(*.start), Rounded(*.spacing), Rounded(*.epoch)
     )]
     StartTime {
-        /// The start time asked for.
+        /// The requested start time.
         start: f64,
         /// Distance to the next floating-point number.
         spacing: f64,
-        /// Time in which a typical disk goes some tens of diameters.
+        /// Time in which a typical disk moves some tens of diameters.
         epoch: f64,
     },
     /// The boundary's domain is not a rectangle with finite sides and a finite bottom.

@@ -14,18 +14,18 @@ pub enum Remedy {
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
-    /// Slow collisions lose nothing already, but they are too slow: a disk is at rest or squeezed.
+    /// Slow collisions are lossless already, but the disks are too slow: a disk is at rest or squeezed.
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
-    /// The surface of the wall says another velocity than its geometry has, so disks are hit again
+    /// The surface of the wall has another velocity than the wall's geometry, so that disks are hit again
     /// immediately.
     WallVelocity,
     /// The rule gains energy, so disks become ever faster.
     EnergyGain,
     /// Matter comes to rest, and walls keep it from a sink: no disk can touch the sink.
     ClosedSink,
-    /// No collision is in sight: the boundary or the scheduler names events that lead nowhere.
+    /// No collision is predicted: the boundary or the scheduler names events that do not advance the run.
     OtherParts,
 }
 

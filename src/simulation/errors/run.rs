@@ -9,11 +9,11 @@ use crate::error::{Readable, Rounded};
 use crate::observable::{ObserverError, Partner};
 use crate::simulation::BuildError;
 
-/// The result of the engine's inner functions. Errors are boxed, so that the usual answer comes back in
+/// The result of the engine's inner functions. Errors are boxed, so that the usual result is returned in
 /// registers.
 pub(in crate::simulation) type Outcome<T> = Result<T, Box<RunError>>;
 
-/// An error: a run cannot go on.
+/// The error of a run that cannot continue.
 ///
 /// The simulation keeps the state in which it noticed the error.
 #[derive(Debug, Error)]
@@ -25,7 +25,7 @@ pub enum RunError {
         Readable(*.end), Readable(*.time)
     )]
     End {
-        /// The end asked for.
+        /// The requested end.
         end: f64,
         /// The present.
         time: f64,
@@ -40,9 +40,9 @@ pub enum RunError {
     Stalled {
         /// The present.
         time: f64,
-        /// A disk that collides again and again: the next one to do so.
+        /// The disk that is the next to collide.
         disk: usize,
-        /// The partner of the disk; `None` if no collision is in sight.
+        /// The partner of the disk; `None` if no collision is predicted.
         partner: Option<Partner>,
         /// The name of the wall, if the partner is one.
         wall: Option<String>,
@@ -53,17 +53,17 @@ pub enum RunError {
         /// The remedy, by what the rule does in these collisions.
         remedy: Remedy,
     },
-    /// A rule answered with an impulse that is not finite, or that leads to a motion beyond 1e60.
+    /// A rule returned an impulse that is not finite, or that leads to a motion beyond 1e60.
     #[error("the collision of {0}")]
     NotFinite(Box<FailedCollision>),
-    /// The boundary gave an impossible answer.
+    /// The boundary returned an impossible result.
     #[error("the boundary gave an impossible answer for disk {disk} at time {}: {fault}", Rounded(*.time))]
     Boundary {
-        /// The disk about which the engine asked the boundary.
+        /// The disk for which the engine called the boundary.
         disk: usize,
         /// The present.
         time: f64,
-        /// The answer.
+        /// The impossible result.
         fault: BoundaryFault,
     },
     /// The scheduler named a disk that does not exist, or a time that was not set.
@@ -82,7 +82,7 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// The scheduler has forgotten an event: it named only later ones.
+    /// The scheduler has lost an event: it named only later events.
     #[error(
         "the scheduler did not name disk {disk}, due at time {}, and the run is at time {}: it lost a time that was \
          set; scheduler::laws::check tries schedulers",
@@ -115,7 +115,7 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// Times are too coarse to go on: time would stand still.
+    /// Times are too coarse for the run to continue: time would stand still.
     #[error(
         "the run cannot go on at time {}: times there are {} apart, too coarse for disks that go some tens of diameters \
          in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy? \
@@ -127,7 +127,7 @@ pub enum RunError {
         time: f64,
         /// Distance to the next floating-point number.
         spacing: f64,
-        /// Time in which a typical disk goes some tens of diameters.
+        /// Time in which a typical disk moves some tens of diameters.
         epoch: f64,
     },
     /// An observer asks for a sample at a time that is not a number, or that is not later than the last
@@ -138,7 +138,7 @@ pub enum RunError {
         Readable(*.next), Readable(*.time)
     )]
     SampleTime {
-        /// The time asked for.
+        /// The requested time.
         next: f64,
         /// The present.
         time: f64,
@@ -152,7 +152,7 @@ pub enum RunError {
         /// The cause.
         source: Box<BuildError>,
     },
-    /// An inlet cannot go on: its next opening is too late for the digits of a number, or there are no ids
+    /// An inlet cannot continue: its next opening is too late for the digits of a number, or there are no ids
     /// left.
     #[error("an inlet failed at time {}", Rounded(*.time))]
     Inlet {
@@ -180,7 +180,7 @@ pub enum RunError {
     },
 }
 
-/// Returns the place of a false contact, in the words of its error.
+/// Returns the location of a false contact, as its error describes it.
 fn misplaced(depth: f64) -> String {
     match depth {
         depth if depth > 0.0 => format!("it reaches {} into it", Rounded(depth)),

@@ -2,10 +2,10 @@
 //! the same bits, and has its lines in the same order. The reasons for the arithmetic are given there.
 //!
 //! Three things here are not in the plain code, and are what makes it faster:
-//! 1. **Nothing is read that was just written in pieces.** The processor can pass a number on from a write to
-//!    a read only if the write covers all of the read. Otherwise the read waits until the writes have left
-//!    for the cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler
-//!    makes such reads: it merges four numbers that lie side by side into one vector. The functions of
+//! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read
+//!    only if the write covers all of the read. Otherwise the read waits until the writes have left for the
+//!    cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler makes
+//!    such reads: it merges four numbers that lie side by side into one vector. The functions of
 //!    [`load`](crate::instructions::load) read as much as they say, and arguments come in registers or from
 //!    tables, never as an array or a rectangle that was just built.
 //! 2. **Two searches in one loop.** After a collision, neither of the two depends on the other, and the root
@@ -66,7 +66,7 @@ mod tests {
         [collision_due.to_bits(), exit_due.to_bits(), partner, counted, exit, 0]
     }
 
-    /// Some million pairs at each level.
+    /// The test predicts some million pairs with the instructions of each level.
     #[test]
     fn all_levels_find_the_same_partners() {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);

@@ -3,8 +3,8 @@
 //! Trajectories are kept in the free-fall frame of a common epoch. They consist of the position that a disk
 //! would have had at the epoch (time offset 0) on its present flight, and of its velocity there, without
 //! gravity. All disks fall alike, so the relative motion of a pair is a straight line without its own clock.
-//! Predicting a pair costs a subtraction and a root, and passing a cell changes nothing. The epoch moves on
-//! now and then ([`Bodies::shift`]), so that extrapolation stays short and times keep their digits.
+//! Predicting a pair costs a subtraction and a root, and passing a cell changes nothing. The epoch moves
+//! forward at intervals ([`Bodies::shift`]), so that extrapolation stays short and times keep their digits.
 
 use glam::DVec2;
 
@@ -89,7 +89,7 @@ pub(in crate::simulation) struct Bodies {
     /// The count of collisions with which the next new disk begins, larger than the count of any disk whose
     /// index it may get.
     pub(in crate::simulation) fresh_count: u32,
-    /// True if disks have come or gone since the typical diameter was measured.
+    /// True if disks were added or removed since the typical diameter was measured.
     pub(super) has_changed: bool,
 }
 
@@ -116,7 +116,7 @@ impl Bodies {
         }
     }
 
-    /// Creates bodies as they were saved. Disks that are all alike have a single model.
+    /// Creates bodies from saved data. Disks that are all alike have a single model.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
         models: &[Disk],
@@ -221,8 +221,8 @@ impl Bodies {
         }
     }
 
-    /// Changes the motion of `disk` by a collision at this time offset. Its place at that time stays as it
-    /// was.
+    /// Changes the motion of `disk` by a collision at this time offset. Its position at that time stays
+    /// unchanged.
     #[inline]
     pub(in crate::simulation) fn kick(&mut self, disk: usize, change: &Body, offset: f64) {
         self.push(disk, change.velocity, offset);
@@ -232,7 +232,7 @@ impl Bodies {
         spin.last_collision = offset;
     }
 
-    /// Changes the velocity of `disk` at this time offset. Its place at that time stays as it was.
+    /// Changes the velocity of `disk` at this time offset. Its position at that time stays unchanged.
     #[inline]
     pub(in crate::simulation) fn push(&mut self, disk: usize, velocity: DVec2, offset: f64) {
         let trajectory = &mut self.particles[disk].trajectory;
@@ -264,7 +264,7 @@ impl Bodies {
         self.properties.model(disk).moment_of_inertia()
     }
 
-    /// Returns the disk as the user sees it.
+    /// Returns a disk at this time offset, as it appears in the public API.
     pub(in crate::simulation) fn disk(&self, disk: usize, offset: f64) -> Disk {
         let spin = &self.spins[disk];
         let image = self.images.get(disk).copied().unwrap_or_default();
@@ -276,7 +276,7 @@ impl Bodies {
         )
     }
 
-    /// Returns all disks as the user sees them.
+    /// Returns all disks at this time offset, as they appear in the public API.
     pub(in crate::simulation) fn disks(&self, offset: f64) -> Vec<Disk> {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }
@@ -305,7 +305,7 @@ impl Bodies {
         }
     }
 
-    /// Takes these disks, as they are at this time offset, for those that there are. Their ids and the times
+    /// Replaces the present disks by these disks in their states at this time offset. Their ids and the times
     /// of their last collisions stay.
     pub(in crate::simulation) fn replace(&mut self, disks: &[Disk], offset: f64) {
         self.properties = Properties::of(disks);
@@ -323,7 +323,7 @@ impl Bodies {
         }
     }
 
-    /// Sets gravity to another value from this offset on. The motion at that time stays as it is.
+    /// Sets gravity to another value from this offset on. The motion at that time stays unchanged.
     pub(in crate::simulation) fn set_gravity(&mut self, gravity: Gravity, offset: f64) {
         let gained = (gravity.downward() - self.gravity.downward()) * offset;
         let pushed = (gravity.rightward() - self.gravity.rightward()) * offset;

@@ -3,8 +3,8 @@
 use super::guard::{EVENTS_PER_HORIZON, Guard};
 use crate::simulation::errors::{Outcome, RunError};
 
-/// Least number of floating-point times in an epoch. A typical disk then goes at most about a diameter from
-/// one to the next.
+/// Least number of floating-point times in an epoch. Between two such times, a typical disk then moves by at
+/// most about a diameter.
 ///
 /// These few times are enough, because epochs are powers of two, and so are the distances between these
 /// times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.
@@ -29,7 +29,7 @@ pub(in crate::simulation) struct Clock {
     /// The offset after which the epoch moves.
     pub(in crate::simulation) epoch_length: f64,
     pub(in crate::simulation) guard: Guard,
-    /// Number of events until the run looks at its limits and its guard again: 1 if a look is due at the next
+    /// Number of events until the run checks its limits and its guard again: 1 if a check is due at the next
     /// event. No outcome depends on it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(in crate::simulation) events_to_look: u64,

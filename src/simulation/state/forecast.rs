@@ -19,10 +19,10 @@ pub(in crate::simulation) enum Exit {
     Right,
     Down,
     Up,
-    /// No end yet: the search for a wall found none up to its horizon.
+    /// No end yet: the search for a wall found no touch up to its horizon.
     Horizon,
     Wall,
-    /// The boundary answered with an impossible touch. The run ends when the turn of this event comes.
+    /// The boundary returned an impossible touch. The run ends when this event is due.
     Impossible,
 }
 
@@ -98,7 +98,7 @@ impl Forecast {
         self.partner_collisions = partner_collisions;
     }
 
-    /// Counts a collision of the disk itself. Predictions with the disk are then out of date.
+    /// Counts a collision of the disk itself, which makes all predictions with the disk out of date.
     #[inline]
     pub(in crate::simulation) fn count_collision(&mut self) {
         self.collisions = self.collisions.wrapping_add(1);

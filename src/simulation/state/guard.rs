@@ -9,9 +9,8 @@ const WINDOW: u64 = 200_000;
 /// have an event at the same time.
 const WINDOW_PER_DISK: u64 = 20;
 
-/// Number of events for which a search counts, beside its own, that ended at its horizon. A search may take
-/// this number of steps, each about as long as an event, so the guard bounds the time that searches take,
-/// too.
+/// Number of additional events for which a search that ended at its horizon counts. A search may take this
+/// number of steps, each about as long as an event, so the guard bounds the time that searches take, too.
 pub(in crate::simulation) const EVENTS_PER_HORIZON: u64 = 255;
 
 /// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]
@@ -37,9 +36,9 @@ pub(in crate::simulation) struct Guard {
     pub(in crate::simulation) before: u64,
     /// Number of windows in a row in which time hardly advanced.
     pub(in crate::simulation) slow: u32,
-    /// Number of those, at their end, in which it advanced as much as in the window before.
+    /// Number of the last of these windows in which time advanced as much as in the previous window.
     pub(in crate::simulation) alike: u32,
-    /// Simulated time that the last window took.
+    /// Simulated time that the last window covered.
     pub(in crate::simulation) elapsed: f64,
 }
 
@@ -58,7 +57,7 @@ pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> 
     epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
 }
 
-/// Returns the number of events that the guard and the looks at the limits count.
+/// Returns the number of events that the guard and the checks of the limits count.
 pub(in crate::simulation) fn effort(counters: &Counters) -> u64 {
     counters.events().saturating_add(EVENTS_PER_HORIZON.saturating_mul(counters.horizons))
 }
@@ -72,7 +71,7 @@ impl Guard {
 
     /// Ends the window before the event at this time offset, after `events` events in all. Returns the window
     /// as a standstill if time has advanced in it by less than `least_progress` for each event. In either
-    /// case a new window begins, so that a caller who removes the cause can go on.
+    /// case a new window begins, so that a caller who removes the cause can continue.
     pub(in crate::simulation) fn end_window(
         &mut self,
         offset: f64,

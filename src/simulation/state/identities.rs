@@ -1,10 +1,10 @@
-//! The ids of disks, which stay as they are while indices change.
+//! The ids of disks, which stay unchanged while indices change.
 
 use crate::disk::LARGEST_ID;
 use crate::quantity::accept;
 use crate::{Disk, ParameterError};
 
-/// The id of each disk. Ids are given from 1 on, and none is given twice.
+/// The id of each disk. Ids count from 1, and no id is used twice.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::simulation) struct Identities {
@@ -34,7 +34,7 @@ impl Identities {
         accept(new == 0 || last + new <= LARGEST_ID, "largest id so far", requirement, last as f64).map(drop)
     }
 
-    /// Gives no id from now on that one of these disks has.
+    /// Makes sure that new disks get none of these disks' ids.
     pub(super) fn reserve(&mut self, disks: &[Disk]) {
         self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
     }

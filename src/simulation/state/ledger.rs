@@ -1,6 +1,6 @@
 //! The energy at the start of a run, and whether anything may have put energy in since.
 
-/// The balance of a run, by which it notices a rule or a wall that gains energy.
+/// The energy balance of a run, which shows a rule or a wall that gains energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Ledger {
@@ -8,9 +8,9 @@ pub(in crate::simulation) struct Ledger {
     pub(in crate::simulation) start: f64,
     /// Kinetic and potential energy at that time.
     pub(in crate::simulation) energy: f64,
-    /// True once a wall that moves or is warm was hit, disks were changed, or others came or went.
+    /// True once a disk hit a moving or thermal wall, or disks were changed, added or removed.
     pub(in crate::simulation) has_source: bool,
-    /// True while a run is under way. If it is true before a run, the last one was torn by a panic.
+    /// True while a run is under way. If it is true before a run, a panic interrupted the last run.
     pub(in crate::simulation) is_running: bool,
 }
 

@@ -5,13 +5,13 @@ use glam::DVec2;
 use super::bodies::Bodies;
 use crate::Gravity;
 
-/// Number of diameters that a typical disk goes, or falls, in an epoch.
+/// Number of diameters that a typical disk moves, or falls, in an epoch.
 const DIAMETERS: f64 = 64.0;
 
 /// Factor by which a disk may be faster than a typical one before it decides how often the epoch moves.
 const FASTER: f64 = 16.0;
 
-/// Largest number of typical diameters that any disk goes in an epoch.
+/// Largest number of typical diameters that any disk moves in an epoch.
 pub(in crate::simulation) const FARTHEST: f64 = FASTER * DIAMETERS;
 
 impl Bodies {
@@ -31,7 +31,7 @@ impl Bodies {
         length
     }
 
-    /// Returns whether a disk of this velocity goes no further in an epoch of this length than a disk may go.
+    /// Returns whether a disk of this velocity moves no farther in an epoch of this length than is allowed.
     ///
     /// A collision can make a disk faster than all disks were when the epoch began. Its place at the epoch
     /// would be so far away that it would lack digits.
@@ -57,7 +57,8 @@ impl Bodies {
     }
 }
 
-/// Returns the largest power of two that is not above a positive number. It is kept between 2⁻⁹⁰⁰ and 2¹⁰²⁰.
+/// Returns the largest power of two that does not exceed a positive number. It is kept between 2⁻⁹⁰⁰ and
+/// 2¹⁰²⁰.
 ///
 /// Searches look two epochs ahead, which must be a finite time. Up to the last finite time, there are then
 /// sixteen epochs at most, however slow the disks are.

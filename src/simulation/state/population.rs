@@ -6,7 +6,7 @@ use super::properties::Properties;
 use crate::Disk;
 
 impl Bodies {
-    /// Adds a disk as it is at this time offset, in a time that does not grow with the number of disks.
+    /// Adds a disk in its state at this time offset. The cost does not grow with the number of disks.
     ///
     /// The typical diameter, a median, stays until [`Self::settle`].
     pub(in crate::simulation) fn push_disk(&mut self, disk: &Disk, offset: f64) {
@@ -28,7 +28,7 @@ impl Bodies {
         self.has_changed = true;
     }
 
-    /// Adds disks as they are at this time offset.
+    /// Adds disks in their states at this time offset.
     pub(in crate::simulation) fn insert(&mut self, disks: &[Disk], offset: f64) {
         self.identities.reserve(disks);
         for disk in disks {

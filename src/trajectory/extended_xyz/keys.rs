@@ -9,7 +9,7 @@ use crate::trajectory::column::Column;
 use crate::trajectory::lines::{checked_box, finite, is_upright, number};
 use crate::trajectory::table::Table;
 
-/// Most columns of a disk. A few letters can ask for any number of them.
+/// Largest number of columns of a disk. A few letters can ask for any number of them.
 const MOST_COLUMNS: usize = 1000;
 
 /// The keys of a frame with their values, without quotes.
@@ -58,7 +58,7 @@ impl<'a> Keys<'a> {
         matches!(self.value(&["Properties"]), Ok(Some(_)))
     }
 
-    /// Returns the time, if it is there.
+    /// Returns the time, if the frame has it.
     pub(super) fn time(&self) -> Result<Option<f64>, ReadError> {
         self.value(&["Time", "t"])?.map(|value| finite("Time", value, self.line)).transpose()
     }
@@ -75,7 +75,7 @@ impl<'a> Keys<'a> {
         Ok(table)
     }
 
-    /// Reads gravity: a number that points down, or the acceleration.
+    /// Reads gravity: a number for gravity that points down, or both components of the acceleration.
     fn gravity(&self, value: &str) -> Result<Gravity, ReadError> {
         let finite = || value_words(value).map(|value| finite("Gravity", value, self.line));
         match finite().collect::<Result<Vec<f64>, _>>()?[..] {
@@ -152,7 +152,8 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// Returns the first word of a text, without its quotes or brackets, and the rest; `None` if it does not end.
+/// Returns the first word of a text, without its quotes or brackets, and the rest of the text, or `None` if
+/// the word does not end.
 fn word(text: &str, ends: impl Fn(char) -> bool) -> Option<(&str, &str)> {
     let open = text.chars().next().unwrap_or(' ');
     let close = match open {

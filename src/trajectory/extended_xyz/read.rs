@@ -1,4 +1,4 @@
-//! Frames of extended XYZ, read one by one.
+//! Frames of the extended XYZ format, read one by one.
 
 use std::io::BufRead;
 
@@ -28,7 +28,7 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
 fn table(keys: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
     let keys = Keys::parse(keys, line)?;
     let mut table = keys.table()?;
-    // A plain XYZ may have more columns than those that all programs know.
+    // A plain XYZ file may have more columns than the columns known to all programs.
     let most = if keys.has_properties() { usize::MAX } else { table.columns.len() };
     for (row, line) in rows.lines()? {
         table.push(row.split_whitespace().take(most), line)?;

@@ -14,7 +14,7 @@ const NAME: usize = 64;
 pub(super) struct Archive<R> {
     input: R,
     pub(super) names: Vec<String>,
-    /// The entries of the index, as they are in the file.
+    /// The entries of the index, as raw bytes.
     entries: Vec<[u8; ENTRY]>,
     /// True if this crate wrote the file.
     pub(super) is_own: bool,
@@ -65,7 +65,7 @@ impl<R: Read + Seek> Archive<R> {
         self.entries.last().map_or(0, |last| number(last, 0).saturating_add(1))
     }
 
-    /// Reads a chunk of a frame, if it is there.
+    /// Reads a chunk of a frame. Returns `None` if the frame does not have the chunk.
     pub(super) fn chunk(&mut self, frame: u64, name: &str) -> Result<Option<Chunk>, ReadError> {
         let Some(wanted) = self.names.iter().position(|known| known == name) else { return Ok(None) };
         let start = self.entries.partition_point(|entry| number(entry, 0) < frame);
@@ -80,7 +80,7 @@ impl<R: Read + Seek> Archive<R> {
 }
 
 impl Chunk {
-    /// Returns a number of the chunk; NaN if it is not there, or its type is not known.
+    /// Returns a number of the chunk, or NaN if the chunk does not have the number or its type is not known.
     ///
     /// A single column in single precision has the digits that it shows, so that 0.35 is 0.35.
     pub(super) fn number(&self, row: usize, column: usize) -> f64 {
@@ -108,7 +108,7 @@ impl Chunk {
     }
 }
 
-/// Returns the bytes of a number of this type; 0 if the type is not known.
+/// Returns how many bytes a number of this type has, or 0 if the type is not known.
 pub(super) const fn width(kind: u8) -> u64 {
     match kind {
         1 | 5 => 1,
@@ -119,7 +119,7 @@ pub(super) const fn width(kind: u8) -> u64 {
     }
 }
 
-/// Returns the names of chunks, each of 64 bytes in the first version, and else one after another.
+/// Returns the names of chunks. In version 1 each name fills 64 bytes; in later versions a zero byte ends it.
 fn read_names(bytes: &[u8], version: u16) -> Vec<String> {
     let name = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned();
     let names: Vec<String> = if version == 1 {
@@ -130,7 +130,7 @@ fn read_names(bytes: &[u8], version: u16) -> Vec<String> {
     names.into_iter().take_while(|name| !name.is_empty()).collect()
 }
 
-/// Returns the whole number at a place.
+/// Returns the whole number at a position.
 pub(super) fn number(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(bytes[at..].as_chunks().0[0])
 }
@@ -140,7 +140,7 @@ pub(super) fn id(entry: &[u8]) -> usize {
     usize::from(u16::from_le_bytes([entry[28], entry[29]]))
 }
 
-/// Reads bytes, all of which must be there.
+/// Reads bytes, or returns an error if some are missing.
 pub(super) fn read_at(mut input: impl Read + Seek, start: u64, length: u64) -> io::Result<Vec<u8>> {
     input.seek(SeekFrom::Start(start))?;
     let mut bytes = Vec::new();

@@ -13,29 +13,30 @@ use crate::trajectory::media::{self, is_gzip};
 use crate::trajectory::sink::{Layout, Sink};
 use crate::trajectory::{Frame, RecordError};
 
-/// Entries for which the first index has room. An index that is full is followed by one of twice its size.
+/// Entries for which the first index has room. A full index is followed by an index of twice its size.
 const ROOM: usize = 1024;
 
 /// Number of the chunk with the time of a frame.
 const TIME: usize = 16;
 
-/// Frames in a file of GSD, and its index: its place and the number of entries for which it has room, the
-/// entries, and the chunks of each frame. The entries are written in place.
+/// The frames in a GSD file, and its index: the position of the index, the number of entries for which it has
+/// room, the entries, and the chunks of each frame. The entries are written in place.
 ///
-/// A frame counts once the first of its entries is in the index. So the chunks are written first, then the
-/// other entries, and the first entry at last: a process that dies meanwhile leaves bytes that nobody sees.
+/// A frame counts once the first of its entries is in the index. The chunks are therefore written first, then
+/// the other entries, and the first entry last: a process that is killed meanwhile leaves bytes that no
+/// reader sees.
 pub(in crate::trajectory) struct Indexed {
     location: u64,
     room: usize,
     entries: Vec<u8>,
     places: Vec<Range<u64>>,
-    /// True if the file was cut: its index lists frames that it does not have, or its header names an index
-    /// that it does not have.
+    /// True if the file was cut: its index lists frames, or its header names an index, that the file does not
+    /// contain.
     is_cut: bool,
 }
 
 impl Indexed {
-    /// Begins a file. A name that asks for compression is an error, since an index needs plain bytes.
+    /// Begins a file. A name with an ending for compression is an error, since an index needs plain bytes.
     pub(in crate::trajectory) fn create(path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
         if is_gzip(path) {
             let reason = "a file of GSD is not compressed, so its name must not end in .gz";
@@ -48,7 +49,7 @@ impl Indexed {
         Ok(Sink::new(file, index))
     }
 
-    /// Goes on after the last whole frame of a file.
+    /// Continues after the last complete frame of a file.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let medium = media::reopen(path)?;
         let mut index = Self::first();
@@ -62,7 +63,7 @@ impl Indexed {
         Self { location: HEADER as u64, room: ROOM, entries: Vec::new(), places: Vec::new(), is_cut: false }
     }
 
-    /// Returns the place after everything that the index lists, and after the index.
+    /// Returns the position after the index and after everything that it lists.
     fn end(&self) -> u64 {
         let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
         let frames = self.places.last().map_or(0, |place| place.end);
@@ -80,7 +81,7 @@ impl Indexed {
         file.push(bytes, &[])?;
         let (entries, end) = entries(shape, start);
         let place = self.location + self.entries.len() as u64;
-        // A frame that was not finished may have left more entries than this one has.
+        // An unfinished frame may have left more entries than this frame has.
         let mut others = entries[ENTRY..].to_vec();
         others.resize((CHUNKS.len() - 1) * ENTRY, 0);
         file.medium.write_at(place + ENTRY as u64, &others)?;
@@ -90,7 +91,8 @@ impl Indexed {
         Ok(())
     }
 
-    /// Takes everything that a cut has torn out of the index, before other bytes take its place.
+    /// Removes from the index everything that a cut has torn, before other bytes are written at the same
+    /// positions.
     fn mend(&mut self, file: &mut Growing<Locked>) -> io::Result<()> {
         let rest = vec![0; self.room * ENTRY - self.entries.len()];
         file.medium.write_at(self.location + self.entries.len() as u64, &rest)?;
@@ -112,7 +114,7 @@ impl Indexed {
 
     /// Reads the index of a file, and returns the times of its whole frames.
     ///
-    /// Each index but the first lies after the frames of the one before, which stays as it was. So a file
+    /// Each index but the first lies after the frames of the previous index, which stays unchanged. So a file
     /// that lost its last index has the frames of the one before.
     fn read(&mut self, file: &File) -> io::Result<Vec<f64>> {
         let (size, head) = (file.metadata()?.len(), read_at(file, 0, HEADER as u64)?);
@@ -137,12 +139,12 @@ impl Indexed {
         }
     }
 
-    /// Reads the frames that the present index lists beyond those that are known.
+    /// Reads the frames that the present index lists beyond the known frames.
     fn read_frames(&mut self, file: &File, size: u64, times: &mut Vec<f64>) -> io::Result<()> {
         let known = self.entries.len();
         let entries = read_at(file, self.location + known as u64, (self.room * ENTRY - known) as u64)?;
         let mut rest = entries.as_slice();
-        // The first entry of a frame is written last, so a frame that has it was whole once.
+        // The first entry of a frame is written last, so a frame with this entry was complete once.
         while rest.len() >= ENTRY && number(rest, 16) != 0 {
             let start = number(rest, 16);
             let (known, end) = self::entries(shape_at(rest, times.len()), start);
@@ -193,7 +195,8 @@ impl Layout for Indexed {
     }
 }
 
-/// Checks that a file is of this version, and that its index is of a size that this version makes.
+/// Checks that a file has the version that this crate writes, and that the size of its index is one that this
+/// crate makes.
 fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     if head == header(location, room) && (room / ROOM as u64).is_power_of_two() {
         return Ok(());
@@ -203,7 +206,7 @@ fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     Err(no_frame("a file of GSD by this version of granular-edmd", found))
 }
 
-/// Returns the header of a file whose index is here, and has room for so many entries.
+/// Returns the header of a file with its index at this position, and room for this number of entries.
 fn header(location: u64, room: u64) -> Vec<u8> {
     let numbers = [
         0x65DF_65DF_65DF_65DF,
@@ -211,7 +214,7 @@ fn header(location: u64, room: u64) -> Vec<u8> {
         room,
         (HEADER + ROOM * ENTRY) as u64,
         (names().len() / 64) as u64,
-        // Version 1.4 of the schema, and 2.0 of the file.
+        // The versions are 1.4 of the schema and 2.0 of the file format.
         1 << 16 | 4 | 2 << 48,
     ];
     let mut header: Vec<u8> = numbers.iter().flat_map(|number: &u64| number.to_le_bytes()).collect();
@@ -222,7 +225,7 @@ fn header(location: u64, room: u64) -> Vec<u8> {
     header
 }
 
-/// Returns the shape of the frame whose entries come next.
+/// Returns the shape of the frame with the next entries.
 fn shape_at(entries: &[u8], frame: usize) -> Shape {
     let is_of_frame = |entry: &&[u8]| number(entry, 0) == frame as u64;
     let own = || entries.chunks_exact(ENTRY).take(CHUNKS.len()).take_while(is_of_frame);
@@ -233,8 +236,8 @@ fn shape_at(entries: &[u8], frame: usize) -> Shape {
     Shape { number: frame, disks: rows(5), kinds: rows(4), walls: rows(20) }
 }
 
-/// Returns the entries of a frame whose chunks begin at this place, and the place after the chunks. Chunks
-/// without rows have no entry.
+/// Returns the entries of a frame whose chunks begin at byte `start`, and the position after the last chunk.
+/// Chunks without rows have no entry.
 fn entries(shape: Shape, start: u64) -> (Vec<u8>, u64) {
     let (mut entries, mut location) = (Vec::new(), start);
     for (id, &(_, kind, columns, rows)) in (0_u16..).zip(&CHUNKS) {

@@ -29,7 +29,7 @@ pub(in crate::trajectory) fn frames<'a>(mut input: impl BufRead + 'a) -> Frames<
     }
 }
 
-/// Returns the frames of a file, of which only the one that is wanted is read.
+/// Returns the frames of a file, each of which is read only on request.
 pub(in crate::trajectory) fn frames_of_file<'a>(input: impl Read + Seek + 'a) -> Frames<'a> {
     let archive = match Archive::open(input) {
         Ok(archive) => archive,
@@ -61,7 +61,7 @@ impl<R: Read + Seek> View<'_, R> {
         ReadError::gsd(format!("frame {}: {what}", self.frame))
     }
 
-    /// Returns a chunk, which is as in the first frame if it is missing.
+    /// Returns a chunk, or the chunk of the first frame if this frame lacks it.
     fn find(&mut self, name: &str) -> Result<Option<Chunk>, ReadError> {
         match self.archive.chunk(self.frame, name)? {
             None => self.archive.chunk(0, name),
@@ -80,7 +80,8 @@ impl<R: Read + Seek> View<'_, R> {
         if is_own { Err(self.wrong(&format!("the chunk `{name}` has {found}"))) } else { Ok(None) }
     }
 
-    /// Returns a chunk of this number of numbers.
+    /// Returns the numbers in a chunk that must hold `COUNT` of them, or `None` if the frame has no such
+    /// chunk.
     fn numbers<const COUNT: usize>(&mut self, name: &str) -> Result<Option<[f64; COUNT]>, ReadError> {
         let Some(chunk) = self.find(name)? else { return Ok(None) };
         if chunk.rows.saturating_mul(chunk.columns) != COUNT {
@@ -133,7 +134,7 @@ impl<R: Read + Seek> View<'_, R> {
             let factor = move |row: usize, moment: f64| {
                 let mass = mass.as_ref().map_or(1.0, |mass| mass.number(row, 0));
                 let unit = 0.25 * mass * sizes[row] * sizes[row];
-                // Rounding does not make a homogeneous disk another one.
+                // Rounding must not give a homogeneous disk another moment of inertia.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
                 let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
                 if is_other { moment / unit } else { homogeneous }
@@ -143,7 +144,8 @@ impl<R: Read + Seek> View<'_, R> {
             if let Some(momentum) = self.rows("particles/angmom", count, 4)? {
                 let moments = moments.clone();
                 columns.push(Values::new("omega", 3, move |row, axis| {
-                    // The angular momentum is twice the orientation times that of the body.
+                    // The angular momentum is twice the orientation times the angular momentum in the frame
+                    // of the body.
                     let half = turned
                         .as_ref()
                         .map_or([1.0, 0.0], |turned| [0, 3].map(|part| turned.number(row, part)));
@@ -191,8 +193,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters: those of the shapes if the file has shapes, or else its diameters, which are 1
-    /// where it has none.
+    /// Returns the diameters: the diameters of the shapes if the file has shapes, or else its chunk of
+    /// diameters, which are 1 without a chunk.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {

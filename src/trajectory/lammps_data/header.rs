@@ -14,11 +14,11 @@ pub(super) struct Header<'a> {
     tilts: Found<[f64; 3]>,
     /// The vectors of a general box and its origin.
     vectors: [Found<[f64; 3]>; 4],
-    /// Things that disks do not have, such as bonds.
+    /// Counts of items that disks do not have, such as bonds.
     pub(super) other: Found<&'a str>,
 }
 
-/// Names of things by which other styles of atoms are known.
+/// Names of items that show another style of atoms.
 const OTHERS: [&str; 8] =
     ["bodies", "ellipsoids", "lines", "triangles", "bonds", "angles", "dihedrals", "impropers"];
 
@@ -26,7 +26,7 @@ const OTHERS: [&str; 8] =
 const VECTORS: [&str; 4] = ["avec", "bvec", "cvec", "origin"];
 
 impl<'a> Header<'a> {
-    /// Reads the header, and returns it with the name of the first section, if there is one.
+    /// Reads the header, and returns it with the name of the first section, if the file has a section.
     pub(super) fn read(lines: &mut Lines<'a>) -> Result<(Self, Option<&'a str>), ReadError> {
         let (title, line) = lines.need("the title")?;
         let time = title.split_once(", time = ").map(|(_, time)| finite("time", time, line)).transpose();
@@ -42,7 +42,7 @@ impl<'a> Header<'a> {
         Ok((header, None))
     }
 
-    /// Reads a line of the header.
+    /// Reads one line of the header into the fields.
     fn take(&mut self, text: &'a str, line: usize) -> Result<(), ReadError> {
         let words: Vec<&'a str> = text.split_whitespace().collect();
         let ends = |low: &str, high: &str| -> Result<_, ReadError> {
@@ -112,7 +112,7 @@ fn once<T>(place: &mut Found<T>, value: T, what: &str, line: usize) -> Result<()
     }
 }
 
-/// Returns a value that must be there.
+/// Returns a required value, or an error if it is missing.
 fn found<T: Copy>(place: Found<T>, what: &str, line: usize) -> Result<T, ReadError> {
     place.map(|(value, _)| value).ok_or_else(|| ReadError::missing(line, what))
 }

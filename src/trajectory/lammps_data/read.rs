@@ -40,14 +40,14 @@ impl<'a> Section<'a> {
 /// The sections of a file.
 #[derive(Default)]
 struct Sections<'a> {
-    /// Columns of the atoms, whether the file names their style, and the line that may do so.
+    /// Columns of the atoms, whether the file names the atoms' style, and the line that may name it.
     columns: (&'a str, bool),
     line: usize,
     atoms: Section<'a>,
     velocities: Option<Section<'a>>,
     /// Numbers of types by their labels.
     labels: HashMap<&'a str, &'a str>,
-    /// Something that only other styles have, with its line.
+    /// An item that only other styles have, with its line.
     other: Option<(&'a str, usize)>,
 }
 
@@ -110,7 +110,8 @@ impl<'a> Sections<'a> {
         velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
     }
 
-    /// Returns the disks. Only those of a periodic box pass its sides.
+    /// Returns the table of the disks. An image other than 0 makes the box periodic, since disks cross only
+    /// periodic sides.
     fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
         let mut names: Vec<&str> = self.columns.0.split_whitespace().collect();
         let (kind, size) = (names.iter().position(|&name| name == "type"), names.len());
@@ -187,7 +188,8 @@ fn id(row: &str, line: usize) -> Result<u64, ReadError> {
 }
 
 /// Returns the columns of the style that the comment behind `Atoms` names, and whether it names the style
-/// `sphere`. The names of the columns may follow the style. LAMMPS writes `hybrid` alone.
+/// `sphere`. The comment may list the names of the columns after the style. LAMMPS writes the style `hybrid`
+/// without names.
 fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {
     let style = name.split_once('#').map_or("", |(_, style)| style.trim());
     let words: Vec<&str> = style.split_whitespace().collect();

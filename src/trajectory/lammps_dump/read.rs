@@ -103,7 +103,7 @@ fn flags(words: &str) -> Option<[&str; 3]> {
     flags.into_iter().all(is_flag).then_some(flags)
 }
 
-/// Returns the box as it stands there, and as it is: where its top is not a wall, it is open.
+/// Returns the box in the file, and the actual box, which is open if its top is not a wall.
 fn domains(words: &str, bounds: &[(String, usize); 3]) -> Result<[Domain; 2], ReadError> {
     let read = |(text, line): &(String, usize)| -> Result<Vec<f64>, ReadError> {
         text.split_whitespace().map(|number| finite("a side of the box", number, *line)).collect()

@@ -24,7 +24,7 @@ pub(super) fn write_integers(
     write_array(out, "Int64", name, &attributes, numbers.map(i64::to_le_bytes))
 }
 
-/// Writes a number that belongs to the whole file.
+/// Writes a number that applies to the whole file.
 pub(super) fn write_field(out: &mut dyn Write, name: &str, number: f64) -> io::Result<()> {
     write_array(out, "Float64", name, "NumberOfTuples=\"1\"", std::iter::once(number.to_le_bytes()))
 }

@@ -1,4 +1,4 @@
-//! A series of files, and the file of their times.
+//! A series of files, one for each frame, and the file that lists their times.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -20,7 +20,7 @@ const TAIL: &str = "</Collection>\n</VTKFile>\n";
 /// Frames in separate files, in a folder beside the file of times.
 pub(in crate::trajectory) struct Series {
     folder: PathBuf,
-    /// Name of the folder, as it stands in the file of times.
+    /// Name of the folder, as written in the file of times.
     name: String,
 }
 
@@ -41,7 +41,7 @@ impl Series {
         Ok(Sink::new(file, Self { folder, name }))
     }
 
-    /// Goes on after the last whole frame of a series.
+    /// Continues after the last complete frame of a series.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let (folder, name) = place(path)?;
         let file = media::reopen(path)?;
@@ -54,7 +54,7 @@ impl Series {
         Sink::new(file, Self { folder, name }).with_frames(times)
     }
 
-    /// Writes one of the files of a frame. A killed run may have left that file, whole or torn.
+    /// Writes one of a frame's files. A killed run may have left that file, complete or not.
     fn write(&self, part: &str, number: usize, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.folder.join(file_name(part, number));
         let file = match fs::read(&path) {
@@ -65,7 +65,7 @@ impl Series {
         };
         let mut file = file.map_err(RecordError::io("create", &path))?;
         file.write_all(bytes).map_err(|error| {
-            // A torn file is harmless, but it takes room on a full drive.
+            // An incomplete file is harmless, but it takes room on a full drive.
             let _ = fs::remove_file(&path);
             RecordError::io("write to", &path)(error)
         })
@@ -123,7 +123,8 @@ fn entry(folder: &str, number: usize, time: f64) -> String {
     line(0, "disks") + &line(1, "box")
 }
 
-/// Returns the times of the whole frames in a file of times, and the length of the text up to the last one.
+/// Returns the times of the complete frames that a file of times lists, and the length of the text up to the
+/// end of the last complete entry.
 fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
     let (mut times, mut length) = (Vec::new(), HEAD.len());
     let Some(mut rest) = text.strip_prefix(HEAD) else { return (times, 0) };

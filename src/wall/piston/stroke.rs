@@ -1,4 +1,4 @@
-//! The motion of a piston from one blow to the next, in closed form.
+//! The motion of a piston from one impact to the next, in closed form.
 
 use super::Piston;
 use crate::quantity::accept;
@@ -13,8 +13,8 @@ const MOST_PIECES: usize = 4;
 /// Part of a spring's period for which one bound of the acceleration is taken.
 const PARTS: f64 = 16.0;
 
-/// The motion of a piston since the last blow. Phases are offsets from the time origin, since a piston has no
-/// period that would keep the digits of late times.
+/// The motion of a piston since the last impact. Phases are offsets from the time origin, since a piston has
+/// no period that would keep the digits of late times.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "Piston", into = "Piston"))]
@@ -22,11 +22,11 @@ pub(crate) struct Stroke {
     piston: Piston,
     /// The absolute time from which phases count, once it is known.
     origin: Option<f64>,
-    /// The pieces in the order of their times. The first one begins at the last blow.
+    /// The pieces in the order of their times. The first piece begins at the last impact.
     pieces: Vec<Piece>,
 }
 
-/// A motion without a blow and without a stop.
+/// A motion without an impact and without a stop.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     start: f64,
@@ -59,7 +59,7 @@ impl Stroke {
             let is_high =
                 last.state(&piston, last.until).displacement > 0.5 * (piston.lowest + piston.highest);
             let stop = if is_high { piston.highest } else { piston.lowest };
-            // A stop takes all of the speed. The next piece begins at the stop itself, not where rounding
+            // A stop absorbs all of the speed. The next piece begins at the stop itself, not where rounding
             // ended this one.
             pieces.push(piece(&piston, last.until, stop, 0.0));
         }
@@ -83,7 +83,7 @@ impl Stroke {
 
     /// Returns the same motion with phases that count from this absolute time.
     ///
-    /// An earlier origin belongs to another run, which the piston begins as it is.
+    /// An earlier origin belongs to another run, which the piston begins in its present state.
     pub(crate) fn at_origin(&self, origin: f64) -> Self {
         match self.origin.map(|before| origin - before) {
             Some(0.0) => self.clone(),
@@ -95,7 +95,7 @@ impl Stroke {
         }
     }
 
-    /// Returns the phase of the last blow, and displacement and velocity after it.
+    /// Returns the phase of the last impact, with the displacement and velocity after it.
     pub(crate) fn numbers(&self) -> [f64; 3] {
         let first = &self.pieces[0];
         [first.start, first.displacement, first.velocity]
@@ -115,7 +115,7 @@ impl Stroke {
         Ok(Self::new(self.piston, self.origin, start, displacement, velocity))
     }
 
-    /// Returns a displacement above which the piston stays up to a phase, measured from the last blow on.
+    /// Returns a displacement above which the piston stays up to a phase, measured from the last impact.
     pub(crate) fn highest_until(&self, until: f64) -> f64 {
         let Piece { start, displacement, velocity, .. } = self.pieces[0];
         let elapsed = (until - start).max(0.0);
@@ -168,7 +168,7 @@ impl WallMotion for Stroke {
     }
 }
 
-/// The swing of a piston on a spring: `a cos θ + b sin θ` about the middle.
+/// The oscillation of a piston on a spring: `a cos θ + b sin θ` about the middle.
 #[derive(Clone, Copy)]
 struct Swing {
     middle: f64,
@@ -178,8 +178,8 @@ struct Swing {
 }
 
 impl Swing {
-    /// Returns the angle, in one turn, at which the swing rises through a height above the middle; `None` if
-    /// it does not come so far.
+    /// Returns the angle, in one turn, at which the oscillation rises through a height above the middle, or
+    /// `None` if it does not reach the height.
     ///
     /// The angle of the turning point is $`\varphi`$, with $`\tan\varphi = b/a`$. The crossing is before it
     /// by $`\arccos(h/C)`$. Written as an arc tangent, the difference is exact for a piston that has just
@@ -229,7 +229,8 @@ fn piece(piston: &Piston, start: f64, displacement: f64, velocity: f64) -> Piece
     let pull = piston.acceleration_at(displacement);
     let presses_up = displacement >= piston.highest && velocity >= 0.0 && pull >= 0.0;
     let presses_down = displacement <= piston.lowest && velocity <= 0.0 && pull <= 0.0;
-    // A piston between the stops that nothing moves stays there, but it is not held: a blow moves it.
+    // A piston that nothing moves between the stops stays at its position, but it is not held: an impact
+    // moves it.
     let is_held = presses_up || presses_down;
     let mut piece = Piece { start, displacement, velocity, is_held, until: f64::INFINITY };
     if is_held {
@@ -251,7 +252,7 @@ fn wait(piston: &Piston, piece: &Piece) -> f64 {
         return up.min(first_descent(below, velocity, pull).unwrap_or(never));
     }
     let (swing, frequency) = (piece.swing(piston), piston.square_of_frequency().sqrt());
-    // A piston that leaves a stop from rest swings back to it and turns there, without a blow.
+    // A piston that leaves a stop from rest swings back to the stop and turns there, without an impact.
     let leaves = |gap: f64| gap <= 0.0 && velocity == 0.0;
     let up = swing.rises_through(piston.highest - swing.middle).filter(|_| !leaves(above));
     let down = swing.mirrored().rises_through(swing.middle - piston.lowest).filter(|_| !leaves(below));

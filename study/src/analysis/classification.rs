@@ -1,4 +1,4 @@
-//! Names for the states that order parameters show.
+//! The names of states, found from order parameters.
 
 use granular_edmd::ParameterError;
 use granular_edmd::observable::{ConvectionOrder, DenseLayer};
@@ -152,7 +152,7 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Sets the seed of the clustering, 0 unless given.
+    /// Sets the seed of the clustering; 0 unless given.
     ///
     /// Distinct clusters do not depend on it.
     pub const fn with_seed(self, seed: u64) -> Self {
@@ -189,7 +189,7 @@ impl StateCriteria {
         layer.packing_fraction > self.packing_fraction && layer.least_below < 0.5 * layer.packing_fraction
     }
 
-    /// Returns the name of the flow of a cluster; `None` if it is within the noise.
+    /// Returns the name of a cluster's flow, or `None` if the flow is within the noise.
     fn flow(&self, cluster: &Cluster, noise: f64) -> Option<ConvectiveState> {
         let DVec2 { x: one_roll, y: two_rolls } = cluster.center();
         if cluster.center().length() <= self.noise_multiple * noise {

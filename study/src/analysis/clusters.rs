@@ -51,7 +51,8 @@ impl Cluster {
         (xx * x * x + 2.0 * xy * x * y + yy * y * y).max(0.0)
     }
 
-    /// Returns the distance of two centers, in units of the spread along the line between them.
+    /// Returns the distance of two clusters' centers, in units of the clusters' spread along the line between
+    /// the centers.
     fn separation(&self, other: &Self, noise: f64) -> f64 {
         let between = other.center - self.center;
         let direction = between.normalize_or_zero();
@@ -70,7 +71,7 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// Makes clusters from the label of each sorted point, and its place among the points as given.
+    /// Creates clusters from the label of each sorted point, and the point's index in the given order.
     pub(super) fn new(sorted: &[DVec2], labels: &[usize], order: &[usize]) -> Self {
         let most = labels.iter().max().map_or(0, |&label| label + 1);
         let members = |label: usize| -> Vec<DVec2> {
@@ -81,8 +82,8 @@ impl Clusters {
             .filter(|(_, members)| !members.is_empty())
             .map(|(label, members)| (label, Cluster::new(&members, sorted.len())))
             .collect();
-        // The numbers from the search depend on chance. Sorted by center, a cluster has the same number for
-        // any seed.
+        // The search numbers its clusters in a random order. Sorted by center, a cluster has the same number
+        // for any seed.
         found.sort_by(|(_, a), (_, b)| {
             a.center.x.total_cmp(&b.center.x).then(a.center.y.total_cmp(&b.center.y))
         });
@@ -109,7 +110,7 @@ impl Clusters {
         &self.labels
     }
 
-    /// Returns the least separation of two clusters, infinite for a single one.
+    /// Returns the least separation of two clusters, or infinity for a single cluster.
     ///
     /// The separation of two clusters $`a`$ and $`b`$ is the fraction in
     ///

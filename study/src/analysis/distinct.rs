@@ -18,9 +18,9 @@ const DISTINCT: f64 = 4.0;
 /// The result has the largest number of clusters, from 1 to 4, whose pairs are all separated by $`D > 4`$
 /// ([`Clusters::separation`]).
 ///
-/// A k-means search finds as many clusters as it is asked for, so the number must follow from the result
-/// itself. Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each half
-/// the density falls away from the cut. The mean of the half is therefore at most $`\sqrt3`$ of its standard
+/// A k-means search finds as many clusters as requested, so the number must follow from the result itself.
+/// Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each half the
+/// density falls away from the cut. The mean of the half is therefore at most $`\sqrt3`$ of its standard
 /// deviations away from the cut, with equality for the uniform density. A single cloud has
 /// $`D \le 2\sqrt3 = 3.46`$ (a Gaussian one 2.65), so above 4 there are two clouds. Neither the width of a
 /// cloud nor the correlation of its samples enters, as long as the series fills the cloud. A series of only a
@@ -50,7 +50,7 @@ const DISTINCT: f64 = 4.0;
 pub fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Result<Clusters, ParameterError> {
     non_negative("noise", noise)?;
     let mut distinct = KMeans::new(1, seed)?.fit(points)?;
-    // The search does not end at the first number that fails. Three clouds in a row, cut in two, make a wide
+    // The search continues after the first number that fails. Three clouds in a row, cut in two, make a wide
     // cluster that is not separated from the other; cut in three, they are.
     for clusters in 2..=MOST.min(points.len()) {
         let found = KMeans::new(clusters, seed)?.fit(points)?;

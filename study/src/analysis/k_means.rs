@@ -1,4 +1,4 @@
-//! Clusters of a given number, by k-means.
+//! A given number of clusters, found by k-means.
 
 use granular_edmd::ParameterError;
 use granular_edmd::quantity::accept;
@@ -42,7 +42,7 @@ pub struct KMeans {
 }
 
 impl KMeans {
-    /// Makes a search for this number of clusters.
+    /// Creates a search for this number of clusters.
     ///
     /// # Errors
     /// If the number of clusters is zero.
@@ -62,7 +62,7 @@ impl KMeans {
 
     /// Finds the clusters of these points.
     ///
-    /// If there are fewer different points than clusters asked for, there are fewer clusters.
+    /// If there are fewer distinct points than requested clusters, there are fewer clusters.
     ///
     /// # Errors
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
@@ -108,11 +108,11 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
             left -= distance;
             distance > 0.0 && left <= 0.0
         };
-        // Rounding of the sum may leave something after all points. Then the last point that is not a center
-        // yet is the next one.
+        // Rounding of the sum may leave a remainder after all points. Then the last point that is not a
+        // center yet is the next one.
         let last = distances.iter().rposition(|&distance| distance > 0.0);
         let Some(next) = distances.iter().enumerate().find(passed).map(|(point, _)| point).or(last) else {
-            // All points lie on centers: there are no more different ones.
+            // All points lie on centers: there are no other distinct points.
             break;
         };
         centers.push(points[next]);
@@ -145,7 +145,7 @@ fn descend(points: &[DVec2], mut centers: Vec<DVec2>) -> Fit {
     for _ in 0..ROUNDS {
         move_to_means(points, &fit.labels, &mut centers);
         let next = assign(points, &centers);
-        // Labels settle after finitely many rounds. The scatter may go on changing by rounding.
+        // Labels settle after finitely many rounds. The scatter may continue to change by rounding.
         let settled = next.labels == fit.labels;
         fit = next;
         if settled {

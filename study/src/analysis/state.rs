@@ -15,15 +15,15 @@ pub enum ConvectiveState {
     /// A state without flow, in which heat is conducted.
     #[serde(alias = "Conductive")]
     NoRoll,
-    /// A single roll, up on the left: Ψ₁ > 0.
+    /// A single roll that rises on the left: Ψ₁ > 0.
     ClockwiseRoll,
-    /// A single roll, up on the right: Ψ₁ < 0.
+    /// A single roll that rises on the right: Ψ₁ < 0.
     CounterclockwiseRoll,
-    /// Two rolls, up in the middle: Ψ₂ > 0.
+    /// Two rolls that rise in the middle: Ψ₂ > 0.
     TwoRollsUp,
-    /// Two rolls, down in the middle: Ψ₂ < 0.
+    /// Two rolls that sink in the middle: Ψ₂ < 0.
     TwoRollsDown,
-    /// A compact layer of disks on a gas.
+    /// A compact layer of disks that floats on a gas.
     Collapsed,
 }
 
@@ -66,7 +66,7 @@ pub enum ConvectiveRegime {
     NoRoll,
     /// Region "1": one roll of either sense.
     OneRoll,
-    /// The region between the lines 1–2 (a) and (b), where one roll and two rolls take turns.
+    /// The region between the lines 1–2 (a) and (b), where one roll and two rolls alternate.
     Coexistence,
     /// Region "2": two rolls.
     TwoRolls,

@@ -65,15 +65,15 @@ impl std::fmt::Display for TransitionLine {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Transition {
-    /// The line that is crossed.
+    /// The transition line to which the point belongs.
     pub line: TransitionLine,
     /// Middle between the neighboring control values on the two sides of the line.
     pub value: f64,
-    /// Half the distance of these control values. The transition lies between `value - error` and
+    /// Half the distance between these control values. The transition lies between `value - error` and
     /// `value + error`.
     pub error: f64,
-    /// True if the regime goes up with a growing control value. It goes down where the paper finds
-    /// re-entrance.
+    /// True if the regime advances in the order of growing energy loss as the control value grows. The regime
+    /// goes back where the paper finds re-entrance.
     pub rising: bool,
 }
 
@@ -92,10 +92,10 @@ struct Seen {
 /// order of the lines.
 ///
 /// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
-/// the first value where a run shows two rolls, or both numbers of rolls in turn, and ends (b) at the last
-/// value where a run shows anything but two rolls. The other lines have no hysteresis in the paper. Where
-/// runs disagree about them, the transition lies somewhere between the values at which the runs agree, and
-/// its error covers that range. The observations of a single ramp give the points of that ramp.
+/// the first value where a run shows two rolls, or both numbers of rolls alternately, and ends (b) at the
+/// last value where a run shows anything but two rolls. The other lines have no hysteresis in the paper.
+/// Where runs disagree about them, the transition lies somewhere between the values at which the runs agree,
+/// and its error covers that range. The observations of a single ramp give the points of that ramp.
 ///
 /// # Errors
 /// If a control value is not finite.
@@ -152,7 +152,7 @@ fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
     across
         .map(|pair| Transition {
             line,
-            // Halved before they are added, since the sum of two large values may overflow.
+            // The values are halved before they are added, since the sum of two large values may overflow.
             value: 0.5 * pair[0].0 + 0.5 * pair[1].0,
             error: 0.5 * pair[1].0 - 0.5 * pair[0].0,
             rising: pair[1].1,

@@ -21,12 +21,13 @@ const RAMPS: usize = 4;
 /// The standard states, in the order in which they are measured.
 const NAMES: [&str; 7] = ["dilute", "dense", "gas at 0.1", "gas at 0.3", "gas at 0.65", "mixture", "vessel"];
 
-/// The standard table: what a collision takes in each of the standard states.
+/// The standard table: the time per collision in each standard state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Table {
     circumstances: Circumstances,
-    /// Number of collisions in a stretch. In short ones, caches that fill take a part of the time.
+    /// Number of collisions in a measured interval. In short intervals, filling the caches takes a part of
+    /// the time.
     collisions: u64,
     states: Vec<State>,
 }
@@ -39,13 +40,13 @@ struct State {
     events_per_collision: f64,
 }
 
-/// Ratio by which the times of the same program drift from sitting to sitting, even if each sitting scatters
-/// less. A [`Comparison`](speed::Comparison) in one sitting has no such drift.
+/// Ratio by which the times of the same program drift from session to session, even if the times of each
+/// session scatter less. A [`Comparison`](speed::Comparison) within one session has no such drift.
 const DRIFT: f64 = 1.05;
 
 type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
-/// Measures the standard table and prints it, against an earlier one if there is a file with it.
+/// Measures the standard table and prints it, compared with an earlier table if a file of one is given.
 pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<End, Failure> {
     let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
     let earlier = against.map(|path| earlier(path, collisions)).transpose()?;
@@ -77,7 +78,7 @@ fn earlier(path: &Path, collisions: u64) -> Result<Table, Failure> {
     })?)
 }
 
-/// Runs all states in turn, so that a slow moment of the machine slows one stretch of each.
+/// Runs all states alternately, so that a slow phase of the machine slows one interval of each state.
 fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
     let states: [Stretch; 7] = [
         stretches(speed::dilute()?),
@@ -129,14 +130,14 @@ struct Change<'a> {
     now: &'a State,
 }
 
-/// Returns whether times now can be compared with earlier ones: the machine and the build are the same.
+/// Returns whether present times can be compared with earlier times: the machine and the build are the same.
 fn is_comparable(earlier: &Circumstances) -> bool {
     let of = |it: &Circumstances| (it.processor.clone(), it.processors, it.system.clone(), it.build.clone());
     of(earlier) == of(&Circumstances::present())
 }
 
 impl Table {
-    /// Returns the table if a later one can be compared with it, or the reason why it cannot.
+    /// Returns the table, or the reason why no later table can be compared with it.
     fn checked(self, collisions: u64) -> Result<Self, String> {
         if self.collisions != collisions {
             let stretches = self.collisions;
@@ -155,7 +156,7 @@ impl Table {
         if has_any { Ok(self) } else { Err("it has none of the standard states".to_owned()) }
     }
 
-    /// Returns the change of a state since this table.
+    /// Returns how a state's time has changed since this table.
     fn change<'a>(&'a self, now: &'a State) -> Option<Change<'a>> {
         let before = self.states.iter().find(|before| before.name == now.name)?;
         Some(Change { before, now })
@@ -163,7 +164,7 @@ impl Table {
 }
 
 impl Change<'_> {
-    /// A difference counts if the quartiles of the two sittings are apart by more than [`DRIFT`].
+    /// A difference counts if the quartiles of the two sessions differ by more than the factor [`DRIFT`].
     fn finding(&self) -> &'static str {
         let (before, now) = (self.before.nanoseconds_per_collision, self.now.nanoseconds_per_collision);
         match () {

@@ -56,7 +56,7 @@ impl Wishes {
     }
 }
 
-/// Converts a file, and tells what is ignored, changed or lost.
+/// Converts a file, and reports what is ignored, changed or lost.
 pub(super) fn convert(wishes: &Wishes) -> Result<End, Failure> {
     let ending = Ending::need(&wishes.out, |_| true)?;
     let reader = wishes.reader().map_err(PlanError::from)?;

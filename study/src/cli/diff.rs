@@ -13,7 +13,7 @@ use super::watch::end_at_once;
 use super::{End, Failure, PlanError, say};
 use crate::{Experiment, Run};
 
-/// Number of parts of a stretch of the runs, after each of which the progress is shown.
+/// Number of parts of a compared interval, after each of which the progress is shown.
 const PARTS: u32 = 32;
 
 #[derive(Debug, clap::Args)]
@@ -42,7 +42,7 @@ pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Wishes)
     end_at_once()?;
     let (begin, end, cycle) = (one.run.time().max(two.run.time()), one.end.min(two.end), one.cycle);
     let show = one.clock();
-    // A start file may be of a later time.
+    // One start file may be from a later time than the other.
     one.advance(begin, u64::MAX, &show)?;
     two.advance(begin, u64::MAX, &show)?;
     let mut replays = [Replay::new(one.run, cycle)?, Replay::new(two.run, cycle)?];
@@ -73,7 +73,7 @@ pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Wishes)
     Ok(if are_same { End::Done } else { End::Different })
 }
 
-/// Refuses runs that have no disk in common, and tells about disks of one run alone.
+/// Returns an error if the runs have no disk in common, and reports disks that only one run has.
 fn check_disks(one: &[Disk], two: &[Disk]) -> Result<(), Failure> {
     let ids: HashSet<u64> = one.iter().map(Disk::id).collect();
     let common = two.iter().filter(|disk| ids.contains(&disk.id())).count();

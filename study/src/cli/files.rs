@@ -1,4 +1,4 @@
-//! Files of disks that commands write, by the endings of their names.
+//! The files of disks that commands write, in formats that follow from the endings of names.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -91,7 +91,7 @@ impl Ending {
         Ok(written.map_err(StudyError::io("write", path))?)
     }
 
-    /// Returns the names of what the state has and the format has no place for.
+    /// Returns the names of the data in the state that the format cannot hold.
     pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
         let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
         let any = |has: fn(&Disk) -> bool| state.disks().iter().any(has);

@@ -1,4 +1,5 @@
-//! The commands that need no study: a new plan, its check, what its keys mean, and completions.
+//! The commands that need no study: a new plan, the check of a plan, the meanings of its keys, and
+//! completions.
 
 use std::fs;
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! The command `replay`: the collisions of a value once more, or the state before one of them.
+//! The command `replay`, which runs a value again and writes its collisions, or the state before a collision.
 
 use std::collections::VecDeque;
 use std::fs;
@@ -15,10 +15,10 @@ use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
 use crate::{Experiment, Run};
 
-/// Number of collisions that are written, unless the command line says more.
+/// Default number of collisions to write.
 const FEW: usize = 10;
 
-/// Number of collisions between two looks at the signals.
+/// Number of collisions between two checks for signals.
 const BATCH: usize = 1024;
 
 #[derive(Debug, clap::Args)]
@@ -48,7 +48,7 @@ pub(super) struct Wishes {
     json: bool,
 }
 
-/// Runs a value again, and writes what is wanted. A file that does not become whole is removed.
+/// Runs a value again, and writes the requested collisions or state. An incomplete file is removed.
 pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
     let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
     wishes.check(&source)?;
@@ -72,7 +72,7 @@ pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
 }
 
 impl Wishes {
-    /// Refuses what the run cannot have.
+    /// Returns an error if the run has no time after `--from`, or cannot have the disk of `--disk`.
     fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<E>) -> Result<(), PlanError> {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
         match (self.from, self.disk.filter(|id| !is_there(id))) {
@@ -104,7 +104,7 @@ fn rows<E: Experiment>(
     let mut text = if wishes.json { String::new() } else { HEADINGS.to_owned() + "\n" };
     while !is_over {
         for _ in 0..BATCH {
-            // The collisions up to an error are no less wanted.
+            // The collisions up to an error are written, too.
             let next = steps.next(end).unwrap_or_else(|error| {
                 tell_end(steps.run(), &error);
                 None
@@ -150,7 +150,7 @@ fn state_before<E: Experiment>(
         _ => {}
     }
     let state = contents::<E>(&mut source.run, path)?;
-    // The run need not have one more collision.
+    // The run may end without a further collision.
     if found + 1 < number || matches!(Steps::new(source.run).next(end), Ok(None)) {
         return Err(format!("there is no collision {number} until {end}: the last one is {found}").into());
     }

@@ -15,7 +15,7 @@ use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
 use crate::seed::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Study};
 
-/// Wall-clock time between two looks at the signals.
+/// Wall-clock time between two checks for signals.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// The value of a plan or a study, and the time until which it runs.
@@ -125,7 +125,8 @@ pub(super) fn begun<E: Experiment>(
     Ok(builder.disks(state.into_disks()).build()?)
 }
 
-/// Returns whether a file is no checkpoint, or cannot be opened, which its reader tells better.
+/// Returns whether a file is not a checkpoint, or cannot be opened, in which case its reader gives a better
+/// error.
 fn is_no_checkpoint(error: &CheckpointError) -> bool {
     match error {
         CheckpointError::File { source, .. } => matches!(**source, CheckpointError::NotACheckpoint),
@@ -133,12 +134,13 @@ fn is_no_checkpoint(error: &CheckpointError) -> bool {
     }
 }
 
-/// Tells what the reader of a result should know, on standard error.
+/// Prints notes for the reader of a result, on standard error.
 pub(super) fn tell(note: &str) {
     let _ = writeln!(io::stderr(), "note: {note}");
 }
 
-/// Tells the error with which a run ended. Errors know disks by their indices, and tables by their ids.
+/// Prints the error with which a run ended. Errors name disks by their indices, and tables name them by their
+/// ids.
 pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
     let id = match error {
         RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. } => run.disk(*disk),

@@ -14,7 +14,7 @@ const NOTES: [(&str, &str); 4] = [
     ("[[sweep]]", "Independent runs."),
 ];
 
-/// Examples of sections that a plan may have, for a plan that lacks them.
+/// Examples of optional sections, shown for plans that lack them.
 const EXAMPLES: [(&str, &str); 3] = [
     ("repeats", "repeats = 8   (before [experiment])"),
     ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),
@@ -41,7 +41,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     lines.extend(absent.map(|(_, example)| format!("\n# {example}")));
     let names = parameters::names(&parameters::tree(&plan.experiment)?).join(", ");
     let columns = E::columns();
-    // A column of the values and one of the samples may have the same name.
+    // A column of the values and a column of the samples may have the same name.
     let mut known = HashSet::new();
     let columns: Vec<_> = columns.iter().map(Column::name).filter(|name| known.insert(*name)).collect();
     lines.push(format!("\n# Parameters: {names}."));
@@ -49,7 +49,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     Ok(lines.join("\n"))
 }
 
-/// Returns the meaning of the key of a line.
+/// Returns the meaning of the key on a line.
 fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
     let key = line.split_once(" = ")?.0;
     match section.strip_prefix("experiment") {

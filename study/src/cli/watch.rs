@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::Progress;
 
-/// True once Ctrl-C or SIGTERM has come.
+/// True once Ctrl-C or SIGTERM was received.
 static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Time between two lines if there is no terminal.
@@ -23,7 +23,7 @@ pub(super) fn is_stopped() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
-/// Lets Ctrl-C or SIGTERM stop a study. A second signal ends the process at once; only saved work is kept.
+/// Makes Ctrl-C and SIGTERM stop a study. A second signal ends the process at once; only saved work is kept.
 pub(super) fn listen() -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {
@@ -32,7 +32,7 @@ pub(super) fn listen() -> Result<(), ctrlc::Error> {
     })
 }
 
-/// Lets Ctrl-C or SIGTERM end a process that has nothing to save.
+/// Makes Ctrl-C and SIGTERM end a process that has nothing to save.
 pub(super) fn end_at_once() -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(|| std::process::exit(130))
 }
@@ -60,7 +60,7 @@ impl Watch {
         let before = bar.position();
         bar.set_length(progress.total);
         bar.set_position(progress.done);
-        // Values done before do not count for the rate.
+        // Values that were finished earlier do not count for the rate.
         if progress.done > before + 1 {
             bar.reset_eta();
         }

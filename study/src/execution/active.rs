@@ -28,7 +28,7 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) folder: &'a Path,
 }
 
-/// An unfinished value as data: its place, the work so far, its state and its driving.
+/// The saved data of an unfinished value: its origin, the work so far, the state of its run and its driving.
 pub(super) type Partial<E> =
     (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint, Option<Vec<u8>>);
 
@@ -56,11 +56,11 @@ pub(super) struct Active<'a, E: Experiment> {
     riders: Riders,
 }
 
-/// Why a value ends before its last step.
+/// The reason why a value ends before its last step.
 pub(super) enum Early {
-    /// The observer ends it.
+    /// The observer ends the value.
     Stopped,
-    /// It has come to a limit.
+    /// The value has reached a limit.
     Limited(String),
     /// The engine gives up.
     Run(RunError),
@@ -69,7 +69,7 @@ pub(super) enum Early {
 }
 
 impl<'a, E: Experiment> Value<'a, E> {
-    /// Starts the value, or goes on from the record of a study with fewer samples, if that keeps its state.
+    /// Starts the value, or continues it from a record with fewer samples, if the record keeps the state.
     pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
@@ -97,7 +97,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         self.experiment.driving(seed).map_err(|source| self.cannot_start(source))
     }
 
-    /// Returns what rides along from this time on.
+    /// Returns the driving and the companion from this time on.
     fn riders(
         &self,
         time: f64,
@@ -110,8 +110,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Riders { driving, companion, is_under_way: false })
     }
 
-    /// Returns whether a record of the same ramp in another study has all that the record of this value
-    /// needs.
+    /// Returns whether a record of the same ramp in another study has all data for the record of this value.
     pub(super) fn is_finished_by(&self, Record { contents, .. }: &Record<E>) -> bool {
         let (samples, all) = (contents.measured.samples.len() as u64, self.plan.protocol().samples());
         let is_whole = if contents.outcome == Outcome::Completed { samples == all } else { samples < all };
@@ -213,7 +212,7 @@ impl<E: Experiment> Study<E> {
         let absent = || format!("only {} {reason}", seen.len()).into();
         let step = next.filter(|_| seen.len() == value);
         let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
-        // Other code would not do the same.
+        // Other code may give other results.
         if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
             return Err(StudyError::Changed { path: self.folder().to_owned(), part: "revision" });
         }
@@ -228,7 +227,7 @@ impl<E: Experiment> Study<E> {
 }
 
 impl<E: Experiment> Active<'_, E> {
-    /// Returns what the simulation noticed and survived.
+    /// Returns the warnings of the simulation.
     pub(super) fn warnings(&self) -> Vec<String> {
         self.run.warnings().iter().map(ToString::to_string).collect()
     }
@@ -242,7 +241,7 @@ impl<E: Experiment> Active<'_, E> {
         self.work.steps >= self.value.plan.protocol().steps()
     }
 
-    /// Runs the next step, which settles or takes a sample, for this wall-clock time at most. The observer
+    /// Runs the next step, which settles or takes a sample, for at most this wall-clock time. The observer
     /// may end the value during the step. The next call continues a step that takes longer, with the same
     /// bits. Returns whether the step is done.
     pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Early> {
@@ -262,7 +261,7 @@ impl<E: Experiment> Active<'_, E> {
         }
     }
 
-    /// Lets the experiment prepare the next step, once.
+    /// Calls the experiment's `prepare` for the next step, unless it was called already.
     fn prepare(&mut self) -> Result<(), Early> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
@@ -285,7 +284,7 @@ impl<E: Experiment> Active<'_, E> {
         sliced::run(&mut self.run, &limits, &mut self.riders, &mut (), &mut self.work.is_under_way)
     }
 
-    /// Returns the limits of a piece of the value.
+    /// Returns the limits of one part of the value's run.
     fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
         let limits = Limits::until(end).with_wall_clock(slice);
         let Some(most) = self.value.plan.protocol().most_collisions() else { return limits };
@@ -310,7 +309,7 @@ impl<E: Experiment> Active<'_, E> {
         sliced::run(&mut self.run, &to_end, &mut self.riders, observer, is_under_way)
     }
 
-    /// Returns the unfinished value as data, to go on with it later.
+    /// Returns the unfinished value as data, from which it can continue later.
     #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
     pub(super) fn partial(
         &self,
@@ -326,8 +325,8 @@ impl<E: Experiment> Active<'_, E> {
         self.into_record(Outcome::Completed, end, state)
     }
 
-    /// Returns the record of a value that ended early. After one that was not stopped by its observer, the
-    /// next value starts from the state in which this one started.
+    /// Returns the record of a value that ended early. Unless the observer stopped the value, the next value
+    /// starts from the state in which this value started.
     pub(super) fn ended(self, early: Early) -> Result<Record<E>, StudyError> {
         let time = self.run.time();
         let outcome = match early {
@@ -372,7 +371,7 @@ impl<S, O> Work<S, O> {
         check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
         let (samples, next) = (protocol.samples_of(self.steps), protocol.samples_of(self.steps + 1));
         let found = self.measured.samples.len() as u64;
-        // The sample of a step that is under way may be taken.
+        // The sample of an unfinished step may have been taken already.
         let is_taken = found == next && self.steps < protocol.steps();
         check(found == samples || is_taken, "its samples are not as many as its steps")
     }

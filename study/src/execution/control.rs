@@ -14,11 +14,11 @@ use granular_edmd::quantity::positive;
 pub struct Progress {
     /// Index of the ramp that has just made progress.
     pub ramp: usize,
-    /// Index of the value in that ramp.
+    /// Index of the value in the ramp.
     pub value: usize,
-    /// Number of steps that are done in all ramps; a step is about one sampling interval.
+    /// Number of finished steps in all ramps; a step is about one sampling interval.
     pub done: u64,
-    /// Number of steps in all ramps that are to be run.
+    /// Number of all steps, finished or not, of the ramps to be run.
     pub total: u64,
 }
 
@@ -63,7 +63,7 @@ impl Default for Control<'_> {
 }
 
 impl<'a> Control<'a> {
-    /// Returns the same control, which calls `progress` after every step, from the thread that did the step.
+    /// Returns the same control, which calls `progress` after every step, in the thread that ran the step.
     pub fn with_progress(self, progress: &'a (dyn Fn(&Progress) + Sync)) -> Self {
         Self { progress: Some(progress), ..self }
     }
@@ -76,14 +76,14 @@ impl<'a> Control<'a> {
         Self { interrupt: Some(interrupt), ..self }
     }
 
-    /// Returns the same control, which takes over the values that earlier studies in these folders have done.
+    /// Returns the same control with reuse of the values that earlier studies in these folders have finished.
     ///
-    /// A study grows into a new folder in this way, and the parts of a sweep become one study. The plans may
-    /// differ in the values of their axes and in repeats. A ramp may have more values at its end. With more
-    /// samples, a value goes on where it ended, if its record keeps the state
+    /// In this way, a study grows into a new folder, or the parts of a sweep become one study. The plans may
+    /// differ in the values of their axes and in repeats. A ramp may have more values at its end. If this
+    /// plan has more samples, a value continues from its end, provided that its record keeps the state
     /// ([`Plan::with_end_states`](crate::Plan::with_end_states)). Anything else that differs is an error. The
-    /// study gets the same bytes as without the earlier ones. Values of code that was accepted there are done
-    /// again.
+    /// study gets the same bytes as without the earlier ones. Values from other code that an earlier study
+    /// accepted are computed again.
     #[doc(alias("grow", "merge", "extend"))]
     pub fn with_earlier_studies(self, folders: &'a [PathBuf]) -> Self {
         Self { earlier: folders, ..self }
@@ -111,7 +111,7 @@ impl<'a> Control<'a> {
         Ok(Self { most_seconds: Some(positive("most seconds for a value", seconds)?), ..self })
     }
 
-    /// Returns the same control, which does not wait for ramps that other processes run.
+    /// Returns the same control without waiting for ramps that other processes run.
     ///
     /// A run then returns as soon as only such ramps are left. [`Summary::elsewhere`] names them, since their
     /// processes may yet be killed.
@@ -127,7 +127,7 @@ impl<'a> Control<'a> {
     }
 
     /// Returns the same control, which also reads the records of finished ramps, and runs damaged or lost
-    /// ones again. It reads the whole study.
+    /// ones again. The verification reads the whole study.
     pub fn with_verification(self) -> Self {
         Self { verifies: true, ..self }
     }
@@ -157,16 +157,16 @@ pub struct Summary {
     /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The files
     /// `logs/*.jsonl` of the study say of what.
     pub warned: usize,
-    /// Number of values of the study, or of the ramps that were to be run.
+    /// Number of values of the study, or of the ramps to be run.
     pub total: usize,
-    /// Ramps that other processes are doing.
+    /// Ramps that other processes are running.
     pub elsewhere: Vec<usize>,
     /// Files that were damaged and have been replaced.
     pub redone: Vec<PathBuf>,
 }
 
 impl Summary {
-    /// Returns true if all ramps that were to be run are complete.
+    /// Returns true if all ramps to be run are complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total
     }

@@ -1,4 +1,4 @@
-//! Earlier studies, whose values a run takes over instead of doing them again.
+//! Earlier studies, whose values a run takes over instead of computing them again.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -7,10 +7,10 @@ use crate::parameters;
 use crate::plan::refinement::{Seen, Step};
 use crate::{Difference, Experiment, Plan, PlanError, Record, Study, StudyError};
 
-/// Earlier studies, each with its ramps by their seeds.
+/// Earlier studies, each with the indices of its ramps by seed.
 pub(super) struct Earlier<E: Experiment>(Vec<(Study<E>, HashMap<u64, usize>)>);
 
-/// Ramps of earlier studies whose values so far agree with a ramp of this study.
+/// The ramps of earlier studies that agree with a ramp of this study in all values so far.
 pub(super) struct SameRamps<'a, E: Experiment>(Vec<(&'a Study<E>, usize)>);
 
 impl<E: Experiment> Earlier<E> {
@@ -36,8 +36,8 @@ impl<E: Experiment> Earlier<E> {
 }
 
 impl<E: Experiment> SameRamps<'_, E> {
-    /// Returns the record of the next value of a plan after those that were seen, if one of the studies has
-    /// it.
+    /// Returns the record of the next value of a plan after the records seen so far, if one of the studies
+    /// has the record.
     pub(super) fn next(
         &mut self,
         plan: &Plan<E>,
@@ -49,7 +49,7 @@ impl<E: Experiment> SameRamps<'_, E> {
         self.0.retain(|(study, _)| are_same(&study.plan) && study.plan.next(seen) == Some(step));
         for (study, ramp) in &self.0 {
             let record = study.known_record(*ramp, seen.len())?;
-            // Values of code that was accepted there are done again here.
+            // Values from other code that the earlier study accepted are computed again here.
             if let Some(record) = record.filter(|record| study.is_ours(&record.contents.origin)) {
                 return Ok(Some(record));
             }
@@ -58,7 +58,7 @@ impl<E: Experiment> SameRamps<'_, E> {
     }
 }
 
-/// Returns the fields in which two plans differ, but for those that let a study grow.
+/// Returns the fields in which two plans differ, except for fields by which a study may grow.
 fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Difference>, PlanError> {
     const FREE: [&str; 7] =
         ["repeats", "end_states", "sweep", "protocol.samples", "ramp.values", "ramp.course", "ramp.refine"];

@@ -1,23 +1,23 @@
-//! The blocks of ramps that are left for the threads of a process.
+//! The remaining blocks of ramps for the threads of a process.
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A block, as far as is known.
+/// The known state of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Block {
     Free,
-    /// Another process does it, or has done it.
+    /// Another process is running the block, or has finished it.
     Elsewhere,
-    /// It was taken from the queue, or is done.
+    /// The block was taken from the queue, or is finished.
     Gone,
 }
 
 /// A ring of blocks.
 ///
-/// Processes begin at random places and go on in order from there, so they seldom meet, and each runs the
-/// blocks ahead of it. One that meets another goes to a new place.
+/// Processes begin at random positions and continue in order from there, so they seldom meet, and each runs
+/// the blocks ahead of it. One that meets another goes to a new place.
 #[derive(Debug)]
 pub(super) struct Queue {
     blocks: Vec<Range<usize>>,
@@ -27,7 +27,7 @@ pub(super) struct Queue {
 #[derive(Debug)]
 struct Ring {
     blocks: Vec<Block>,
-    /// The place from which the next block is looked for.
+    /// The index from which the search for the next block starts.
     place: usize,
 }
 
@@ -43,14 +43,14 @@ impl Queue {
         Some((index, self.blocks[index].clone()))
     }
 
-    /// Notes that a block is elsewhere, and goes to a new place.
+    /// Notes that another process has a block, and moves to a new position in the ring.
     pub(super) fn leave(&self, index: usize) {
         let mut ring = self.ring();
         ring.blocks[index] = Block::Elsewhere;
         ring.place = anywhere(ring.blocks.len());
     }
 
-    /// Strikes out the blocks that are done, and returns the number of their ramps.
+    /// Marks the finished blocks as taken, and returns the number of their ramps.
     pub(super) fn strike(&self, is_done: impl Fn(&Range<usize>) -> bool) -> usize {
         let mut ring = self.ring();
         let all = self.blocks.iter().zip(&mut ring.blocks).filter(|(_, block)| **block != Block::Gone);
@@ -62,14 +62,14 @@ impl Queue {
         .sum()
     }
 
-    /// Returns the blocks that are elsewhere.
+    /// Returns the blocks of other processes.
     pub(super) fn elsewhere(&self) -> Vec<Range<usize>> {
         let ring = self.ring();
         let all = self.blocks.iter().zip(&ring.blocks);
         all.filter(|(_, state)| **state == Block::Elsewhere).map(|(ramps, _)| ramps.clone()).collect()
     }
 
-    /// Lets a number of blocks that are elsewhere be tried.
+    /// Frees a number of other processes' blocks for another attempt.
     pub(super) fn retry(&self, count: usize) {
         let mut ring = self.ring();
         ring.place = anywhere(ring.blocks.len());
@@ -94,7 +94,7 @@ impl Ring {
     }
 }
 
-/// Returns a random place below this number. It has no influence on results.
+/// Returns a random index below this number. It has no influence on results.
 fn anywhere(count: usize) -> usize {
     // The standard library seeds its hash tables from the system: a random number that needs no dependency.
     let random = RandomState::new().build_hasher().finish();

@@ -1,5 +1,5 @@
-//! One ramp, value after value: each is read if it is finished, continued if it was begun, and otherwise run
-//! from its start.
+//! One ramp, value after value: a finished value is read, an unfinished value is continued, and any other
+//! value is run from its start.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -15,26 +15,26 @@ use crate::store::{Claimed, Entries, Head, Marks};
 use crate::whole::{self, damaged};
 use crate::{Experiment, StudyError};
 
-/// Shortest piece of a run, so that it advances even if it is saved all the time.
+/// Shortest part of a run between two saves, so that a run advances even if it is saved all the time.
 const SHORTEST: Duration = Duration::from_millis(20);
 
-/// The reason why a value does not go on.
+/// The reason why a value does not continue.
 enum Pause {
     Done,
     Interrupted,
     Early(Early),
 }
 
-/// A value that is new in the store.
+/// A new value in the store.
 struct Made<E: Experiment> {
     record: Record<E>,
-    /// True if an earlier study has made it.
+    /// True if the value comes from an earlier study.
     is_taken: bool,
-    /// Warnings of its simulation.
+    /// Warnings of the value's simulation.
     warnings: Vec<String>,
 }
 
-/// The way through a ramp.
+/// The progress through a ramp.
 struct Walk<'a, 's, E: Experiment> {
     session: &'a Session<'s, E>,
     ramp: usize,
@@ -44,7 +44,7 @@ struct Walk<'a, 's, E: Experiment> {
     earlier: SameRamps<'a, E>,
     seen: Vec<Seen>,
     last: Option<Record<E>>,
-    /// True if there is a file of the next value half done.
+    /// True if there is a file with the next value's unfinished state.
     has_partial: bool,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn attempt<E: Experiment>(
         Claimed::Collision if session.is_of_one_ramp() => None,
         Claimed::Theirs | Claimed::Collision => return Ok(false),
     };
-    // Others may have done some of them before this process had the claim.
+    // Other processes may have finished some ramps before this process had the claim.
     let (entries, unfinished) = (study.store.refreshed()?, study.folder.unfinished()?);
     if let Some(error) = study.store.damage().filter(|_| !ramps.clone().all(|ramp| entries.is_done(ramp))) {
         session.if_sound::<()>(Err(error))?;
@@ -87,7 +87,7 @@ pub(super) fn attempt<E: Experiment>(
 }
 
 impl<E: Experiment> Walk<'_, '_, E> {
-    /// Takes a step; returns false if its value was interrupted.
+    /// Runs one value; returns false if it was interrupted.
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
         self.has_partial = self.unfinished.contains(&[self.ramp, value]);
@@ -120,7 +120,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let (study, ramp, value) = (self.session.study, self.ramp, self.seen.len());
         let Some(entry) = self.entries.find(ramp, value) else { return Ok(None) };
         let read = study.read(&entry).and_then(|record| {
-            // It may belong to another step, if an earlier value was run again since.
+            // The record may belong to another step, if an earlier value was run again since.
             if (record.leg(), record.ramped_value()) == (step.leg, step.at) {
                 return Ok(Some(record));
             }
@@ -136,11 +136,11 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(record)
     }
 
-    /// Runs the next value from a record, or takes it over from an earlier study; `None` if it was
-    /// interrupted.
+    /// Runs the next value from a record, or takes the value over from an earlier study. Returns `None` if
+    /// the value was interrupted.
     fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<Option<Made<E>>, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
-        // A plan of many values has not tried all of them.
+        // A plan with many values was checked at only some of them.
         let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
         let origin = study.origin(self.ramp, value);
         let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
@@ -166,7 +166,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(Some(Made { record, is_taken: false, warnings }))
     }
 
-    /// Returns an unfinished value as it was saved, or `None`.
+    /// Returns the saved data of an unfinished value, or `None` if there are none.
     fn saved<'v>(&mut self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
         let (study, index) = (self.session.study, self.seen.len());
         if !self.has_partial {
@@ -181,7 +181,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.session.if_sound(read)
     }
 
-    /// Runs the steps of a value until it is finished, piece by piece, and saves it now and then.
+    /// Runs the steps of a value until it is finished, and saves it at intervals.
     fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Pause, StudyError> {
         let control = self.session.control;
         let (began, mut saved) = (Instant::now(), Instant::now());
@@ -223,7 +223,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         whole::write_sealed::<Partial<E>>(&path, &partial)
     }
 
-    /// Keeps the record of a value, the last one that was seen.
+    /// Stores the record of a value as the last record.
     fn keep(&self, made: &Made<E>, time: Option<Duration>) -> Result<(), StudyError> {
         let (study, record) = (self.session.study, &made.record);
         self.session.open_study()?;
@@ -251,7 +251,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     }
 }
 
-/// Returns the line of a record for people, with the time that it took, unless it was taken over.
+/// Returns the readable line of a record, with the time that the value took, unless the value was taken over.
 fn line<E: Experiment>(Made { record, warnings, .. }: &Made<E>, time: Option<Duration>) -> String {
     let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
     let line = Object::default().with("ramp", record.ramp_index()).with("value", record.value_index());

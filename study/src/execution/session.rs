@@ -12,17 +12,17 @@ use crate::json::Object;
 use crate::store::{Entry, Marks};
 use crate::{Control, Experiment, Progress, Study, StudyError, Summary};
 
-/// Longest time until a thread checks whether it must stop.
+/// Longest time between two checks of a thread for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
 
-/// A run of a study.
+/// The state that the threads of one [`Study::run`] share.
 pub(super) struct Session<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) control: &'a Control<'a>,
     pub(super) earlier: Earlier<E>,
-    /// The ramps that are to be done.
+    /// The ramps to be run.
     ramps: Range<usize>,
-    /// Number of steps that are done, and of those in all values.
+    /// Number of finished steps, and number of steps in all values.
     steps: [AtomicU64; 2],
     /// Files that were damaged and have been replaced.
     redone: Mutex<Vec<PathBuf>>,
@@ -53,13 +53,13 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Returns whether this run was asked for one ramp alone, of which an engine knows that no other process
-    /// does it.
+    /// Returns whether this run is for one ramp alone. The caller then makes sure that no other process runs
+    /// this ramp.
     pub(super) fn is_of_one_ramp(&self) -> bool {
         self.ramps.len() == 1
     }
 
-    /// Strikes out the blocks of a queue that are done. A verification looks at all of them.
+    /// Marks the finished blocks of a queue as taken. A verification keeps all blocks.
     pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
@@ -70,7 +70,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         Ok(())
     }
 
-    /// Counts the steps of ramps that are done.
+    /// Counts the steps of finished ramps.
     pub(super) fn skip(&self, ramps: usize) {
         let plan = self.study.plan();
         let steps = (ramps * plan.value_count()) as u64 * plan.protocol().steps();
@@ -90,7 +90,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         }
     }
 
-    /// Returns what was read; notes a damaged file, and returns `None`.
+    /// Returns the data that were read, or notes a damaged file and returns `None`.
     pub(super) fn if_sound<T>(&self, read: Result<Option<T>, StudyError>) -> Result<Option<T>, StudyError> {
         match read {
             Err(StudyError::Damaged { path, reason }) => {
@@ -113,7 +113,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         self.study.folder.mark_incomplete()
     }
 
-    /// Lets all threads stop, since one has met an error.
+    /// Makes all threads stop, since one has met an error.
     pub(super) fn break_off(&self) {
         self.broken.store(true, Ordering::Relaxed);
     }
@@ -139,7 +139,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         let with = |mark: Marks| found().filter(|head| head.marks.has(mark)).count();
         let finished = found().count();
         let more = found().filter(|head| head.value >= values).count();
-        // Of a refinement that is not done, at least one value is missing.
+        // An unfinished refinement lacks at least one value.
         let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
         let (failed, warned) = (with(Marks::FAILED), with(Marks::WARNED));

@@ -1,4 +1,4 @@
-//! Runs in slices, of which an observer notices nothing.
+//! Runs in slices, which an observer sees as a single run.
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Boundary;
@@ -41,7 +41,7 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
         None => run_to(simulation, limits, driving, &mut sliced),
         Some(companion) => {
             let mut other = Sliced { observer: companion, is_under_way: riders.is_under_way };
-            // One more kind of event loop for all companions.
+            // A single additional event loop serves all companions.
             let both: &mut dyn Observer = &mut (&mut sliced, &mut other);
             let ended = run_to(simulation, limits, driving, both);
             other.end(ended, &mut riders.is_under_way, &simulation.snapshot())
@@ -69,7 +69,7 @@ struct Sliced<'a, O> {
 }
 
 impl<O: Observer> Sliced<'_, O> {
-    /// Tells the observer of the end of a run that is not cut.
+    /// Reports the end of an uncut run to the observer.
     fn end(
         self,
         ended: Result<RunEnd, RunError>,
@@ -81,7 +81,7 @@ impl<O: Observer> Sliced<'_, O> {
             return ended;
         }
         self.observer.on_end(moment);
-        // A verdict to stop comes too late now. A failure must still be reported, as after any run.
+        // At this point, a verdict to stop has no effect. A failure must still be reported, as after any run.
         match self.observer.verdict().err().filter(|_| ended.is_ok()) {
             Some(source) => Err(RunError::Observer { time: moment.time(), source }),
             None => ended,

@@ -102,7 +102,7 @@ impl<E: Experiment> Column<E> {
         !matches!(self.kind, Kind::Record(_))
     }
 
-    /// Returns the estimate for a record; `None` for a column that has no error.
+    /// Returns the estimate for a record, or `None` if the column has no error.
     pub(crate) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
             Kind::Sample(value) => Some(record.mean(|sample| value(sample).number().unwrap_or(f64::NAN))),
@@ -119,7 +119,7 @@ impl<E: Experiment> fmt::Debug for Column<E> {
     }
 }
 
-/// A further table, besides the tables of values and samples, with some rows for each record.
+/// A table besides the tables of values and samples, with any number of rows for each record.
 ///
 /// ```
 /// use granular_edmd_study::{Table, vibrated_box::VibratedBox};
@@ -171,7 +171,7 @@ impl<E: Experiment> fmt::Debug for Table<E> {
     }
 }
 
-/// Names that are taken, by the tables of every study and by the columns of every table.
+/// Reserved names: the tables of every study (`TABLES`) and the columns of every table (`PLACE`).
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 const PLACE: [&str; 12] = [
     "ramp",

@@ -51,7 +51,7 @@ pub enum Outcome {
         /// The limit.
         reason: String,
     },
-    /// The engine gave up for another reason, or a method of the experiment did.
+    /// The engine or a method of the experiment returned another error.
     ///
     /// The samples and the next value are as for a stalled value.
     Failed {
@@ -85,7 +85,7 @@ impl Outcome {
     }
 }
 
-/// A finished value: its parameters, samples, counts, and its last state if that is kept.
+/// A finished value: its parameters, samples and counters, and its last state if the plan keeps it.
 ///
 /// Samples, observer and times belong to the measured part, after the value has settled.
 #[doc(alias("checkpoint", "restart"))]
@@ -95,7 +95,7 @@ pub struct Record<E: Experiment> {
     pub(crate) contents: Contents<E::Sample, E::Observer>,
 }
 
-/// A record as it is in its file, without the experiment, which follows from the plan.
+/// The contents of a record's file. The experiment is missing, since it follows from the plan.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Contents<S, O> {
     pub(crate) origin: Origin,
@@ -108,9 +108,9 @@ pub(crate) struct Contents<S, O> {
     pub(crate) counters: Counters,
     /// Fingerprints of the rule and the walls that made the value.
     pub(crate) parts: [Option<Fingerprint>; 2],
-    /// Number of steps that are done.
+    /// Number of finished steps.
     pub(crate) steps: u64,
-    /// State at the end, and the driving then, if the state is kept.
+    /// The state and the driving at the end, if the plan keeps them.
     pub(crate) state: Option<Checkpoint>,
     pub(crate) driving: Option<Vec<u8>>,
 }
@@ -123,7 +123,7 @@ pub(crate) struct Measured<S, O> {
     pub(crate) observer: O,
 }
 
-/// The study and the place in it that a file belongs to.
+/// The study, ramp and value to which a file belongs.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Origin {
@@ -189,8 +189,8 @@ impl<E: Experiment> Record<E> {
         &self.experiment
     }
 
-    /// Returns a parameter of the experiment by its name, as in a [`Plan`](crate::Plan); `None` if
-    /// there is no parameter of this name.
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`](crate::Plan), or `None` if there
+    /// is no parameter of this name.
     pub fn parameter(&self, name: &str) -> Option<Scalar> {
         let tree = parameters::tree(&self.experiment).ok()?;
         let name = parameters::whole_name(&tree, name).ok()?;
@@ -212,7 +212,7 @@ impl<E: Experiment> Record<E> {
         &self.contents.measured.times
     }
 
-    /// Returns the observer as it was at the end.
+    /// Returns the observer in its state at the end.
     pub const fn observer(&self) -> &E::Observer {
         &self.contents.measured.observer
     }
@@ -238,8 +238,8 @@ impl<E: Experiment> Record<E> {
         }
     }
 
-    /// Returns the name of the rule or the walls if they are not those with which the value was run. Rules
-    /// and walls without fingerprints cannot be told apart.
+    /// Returns the name of the part, rule or walls, that differs from the part with which the value was run.
+    /// Rules and walls without fingerprints cannot be distinguished.
     pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
@@ -291,7 +291,7 @@ pub(crate) fn check(valid: bool, reason: &'static str) -> Result<(), &'static st
     if valid { Ok(()) } else { Err(reason) }
 }
 
-/// Checks that a state is of a time in this range, up to rounding.
+/// Checks that the time of a state is in this range, up to rounding.
 pub(crate) fn check_state(
     state: &Checkpoint,
     range: std::ops::RangeInclusive<f64>,

@@ -1,4 +1,5 @@
-//! Riders of a value beside its observer: a driving that is saved with it, and a companion that is not.
+//! The parts of a value's run besides its observer: a driving, which is saved with the value, and a
+//! companion, which is not.
 
 use std::path::Path;
 
@@ -8,7 +9,7 @@ use serde::de::DeserializeOwned;
 
 use crate::ExperimentError;
 
-/// A [`Driving`] that a study saves with a value half done, and goes on with.
+/// A [`Driving`] that a study saves with an unfinished value, and restores with it.
 ///
 /// Every driving that serde writes and reads is one.
 #[diagnostic::on_unimplemented(
@@ -22,7 +23,7 @@ pub trait SavedDriving: Driving + Send {
     /// If serde cannot write it.
     fn save(&self) -> Result<Vec<u8>, ExperimentError>;
 
-    /// Takes the state of a driving that was saved.
+    /// Restores the state of a saved driving.
     ///
     /// # Errors
     /// If the bytes are of another driving.
@@ -40,8 +41,8 @@ impl<D: Driving + Serialize + DeserializeOwned + Send> SavedDriving for D {
     }
 }
 
-/// The start of a value, or of the rest of one that was interrupted: what a
-/// [companion](super::Experiment::companion) is made for.
+/// The start of a value, or of the remainder of an interrupted value, for which a
+/// [companion](super::Experiment::companion) is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Start<'a> {
@@ -53,10 +54,10 @@ pub struct Start<'a> {
     pub value: usize,
     /// Seed of the ramp.
     pub seed: u64,
-    /// Absolute time from which the run goes on.
+    /// Absolute time from which the run starts or continues.
     pub time: f64,
-    /// True if the value goes on from where it was saved. One that was killed before its first save starts
-    /// anew, and files of its companion may be there.
+    /// True if the value continues from a saved state. A value that was killed before its first save starts
+    /// anew, and files of its companion may exist already.
     pub is_resumed: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Axes: the values that a parameter takes side by side.
+//! Axes: the values of a parameter in independent ramps.
 
 use super::values::Values;
 use crate::{PlanError, Scalar, Steps};
@@ -37,7 +37,7 @@ impl Axis {
         Self { parameter: parameter.into(), values }.checked()
     }
 
-    /// Creates an axis of the parameter of this name with values by a rule.
+    /// Creates an axis of the parameter of this name with values that follow from a rule.
     pub fn by_rule(parameter: impl Into<String>, steps: Steps) -> Self {
         Self { parameter: parameter.into(), values: Values::Rule(steps) }
     }
@@ -64,7 +64,7 @@ impl Axis {
         self.values.len()
     }
 
-    /// Returns the value of this index; `None` beyond the last one.
+    /// Returns the value of this index, or `None` beyond the last value.
     pub fn value(&self, index: usize) -> Option<Scalar> {
         (index < self.len()).then(|| self.values.at(index))
     }

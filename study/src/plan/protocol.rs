@@ -5,7 +5,7 @@ use granular_edmd::quantity::accept;
 
 use crate::Interval;
 
-/// Greatest length of a value in cycles, and largest number of samples, for which products stay exact.
+/// Largest length of a value in cycles, and largest number of samples, at which products are still exact.
 const MOST: u64 = 1 << 40;
 
 /// The schedule of a value: settle, then sample at equal intervals, always at the same phase of the base.
@@ -120,7 +120,8 @@ impl Protocol {
         self.settle.saturating_add(self.samples.saturating_mul(self.every))
     }
 
-    /// Returns the number of steps of a value: some without a sample, to settle, then one for each sample.
+    /// Returns the number of steps of a value: first the steps that settle, without a sample, then one step
+    /// for each sample.
     pub(crate) const fn steps(&self) -> u64 {
         self.settling_steps() + self.samples
     }
@@ -139,7 +140,7 @@ impl Protocol {
         }
     }
 
-    /// Returns the cycles that `steps` steps take.
+    /// Returns the number of cycles in `steps` steps.
     pub(crate) fn cycles_of(&self, steps: u64) -> u64 {
         steps.checked_sub(1).map_or(0, |last| self.end_of(last))
     }
@@ -154,7 +155,7 @@ impl Protocol {
         step >= self.settling_steps()
     }
 
-    /// Returns the last step of a value of which these steps are done.
+    /// Returns the step after this number of finished steps, or the last step of a finished value.
     pub(crate) fn last_of(&self, steps: u64) -> Interval {
         self.interval(self.steps().saturating_sub(1).min(steps))
     }

@@ -1,4 +1,4 @@
-//! Ramps: the values that a parameter takes one after the other.
+//! Ramps: the successive values of a parameter in one run.
 
 use granular_edmd::quantity::positive;
 use serde::{Deserialize, Serialize};
@@ -16,11 +16,11 @@ pub enum Course {
     Up,
     /// From the largest to the smallest.
     Down,
-    /// Up, and down again: the largest value comes once, all others twice.
+    /// Up, then down again: the largest value comes once, and all other values twice.
     UpAndDown,
 }
 
-/// A parameter that changes step by step, where each value starts from the last state of the previous one, so
+/// A parameter that changes step by step. Each value starts from the last state of the previous value, so
 /// that hysteresis shows.
 ///
 /// ```
@@ -84,7 +84,7 @@ impl Ramp {
         Self { parameter: parameter.into(), values, course, refine: None }.checked()
     }
 
-    /// Creates a ramp of the parameter of this name through values by a rule.
+    /// Creates a ramp of the parameter of this name through values that follow from a rule.
     pub fn by_rule(parameter: impl Into<String>, steps: Steps, course: Course) -> Self {
         Self { parameter: parameter.into(), values: Values::Rule(steps), course, refine: None }
     }
@@ -100,7 +100,7 @@ impl Ramp {
         Err(PlanError::varied(&self.parameter, reason))
     }
 
-    /// Returns the same ramp, which bisects each transition between two of its values down to this width.
+    /// Returns the same ramp with bisection of each transition between two of its values, down to this width.
     ///
     /// A transition is a change of [`Experiment::state`](super::Experiment::state). The ramp looks for
     /// transitions only between neighbors of different states. A ramp up brackets transitions from below, a
@@ -118,12 +118,12 @@ impl Ramp {
         Ok(Self { refine: Some(width), ..self })
     }
 
-    /// Returns the width to which transitions are bisected, if they are.
+    /// Returns the width to which transitions are bisected, or `None` without bisection.
     pub const fn refinement(&self) -> Option<Width> {
         self.refine
     }
 
-    /// Returns whether a value lies between the first and the last one.
+    /// Returns whether a value lies between the first and the last value of the ramp.
     pub(crate) fn spans(&self, at: f64) -> bool {
         self.values.at(0) <= at && at <= self.values.at(self.values.len() - 1)
     }

@@ -1,4 +1,4 @@
-//! The path of a ramp: first its own values, then those that bracket transitions between states.
+//! The path of a ramp: first its own values, then further values that bracket transitions between states.
 
 use std::ops::Range;
 
@@ -13,8 +13,8 @@ pub(crate) struct Seen {
 }
 
 impl<E: Experiment> Plan<E> {
-    /// Returns the parts of a record on which the path depends. A state may take long to tell, and only a
-    /// refined ramp asks for it.
+    /// Returns the parts of a record on which the path depends. Finding the name of a state may take long,
+    /// and only a refined ramp needs the name.
     pub(crate) fn seen(&self, record: &Record<E>) -> Seen {
         let state = if self.is_refined() { E::state(record) } else { None };
         Seen { leg: record.leg(), at: record.ramped_value(), state }
@@ -41,17 +41,17 @@ pub struct Bracket {
     pub far: f64,
     /// The state on the side from which the ramp came.
     pub from: String,
-    /// The state on the far side; empty if the record there shows none.
+    /// The state on the far side; empty if the far side's record shows no state.
     pub to: String,
 }
 
 impl Ramp {
-    /// Returns the next value after the finished ones; `None` if there is none.
+    /// Returns the next value after the finished values, or `None` if the path is complete.
     pub(crate) fn next(&self, seen: &[Seen]) -> Option<Step> {
         self.search(seen).err()
     }
 
-    /// Returns the brackets of all transitions; empty before all of them have the wanted width.
+    /// Returns the brackets of all transitions; empty until all of them have the requested width.
     pub(crate) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
         self.search(seen).unwrap_or_default()
     }
@@ -71,7 +71,7 @@ impl Ramp {
     }
 }
 
-/// A search for transitions among the values that are done.
+/// A search for transitions among the finished values.
 struct Search<'a> {
     seen: &'a [Seen],
     width: Width,
@@ -91,7 +91,7 @@ impl Search<'_> {
         if self.seen[far].state.is_none() {
             return Ok(());
         }
-        // The values beyond the transition, the closest last.
+        // The values beyond the transition, the closest value last.
         let mut beyond = vec![far];
         while let Some(&far) = beyond.last() {
             let [from, to] = [near, far].map(|index| &self.seen[index].state);
@@ -114,12 +114,12 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Returns the middle of two values; `None` if they are close enough.
+    /// Returns the middle of two values, or `None` if the values are close enough.
     fn middle(&self, near: usize, far: usize) -> Option<f64> {
         let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
         let width = far - near;
-        // The sum of the halves would round otherwise where both are possible, so it is for widths beyond all
-        // numbers alone.
+        // Where both forms are possible, the sum of the halves would round differently. It therefore serves
+        // only where the width overflows.
         let at = if width.is_finite() { near + 0.5 * width } else { 0.5 * near + 0.5 * far };
         // There is no number between two neighboring doubles.
         let is_between = (near < at && at < far) || (far < at && at < near);

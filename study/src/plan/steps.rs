@@ -1,17 +1,18 @@
-//! Values by a rule, which cost no memory however many they are.
+//! Values that follow from a rule, and cost no memory, however many there are.
 
 use granular_edmd::ParameterError;
 use granular_edmd::quantity::{accept, finite, positive};
 
-/// Largest number of values by a rule: larger numbers are not counted exactly.
+/// Largest number of values that follow from a rule: doubles do not count larger numbers exactly.
 const MOST: f64 = 9_007_199_254_740_992.0;
 
-/// Fraction of a step by which the last one may miss the end. It is some rounding of decimal fractions, since
-/// neither 0.1 nor 1/3 is a double.
+/// Fraction of a step by which the last step may miss the end. It allows for the rounding of decimal
+/// fractions, since neither 0.1 nor 1/3 is a double.
 const ROUNDING: f64 = 1e-9;
 
-/// Increasing values by a rule, as a plan has them instead of a list: `{ from = 0.0, to = 1.0, step = 0.1 }`
-/// for equal steps, `{ from = 1e-3, to = 1.0, log = 31 }` for 31 values in equal ratios.
+/// Increasing values that follow from a rule, in place of a list in a plan:
+/// `{ from = 0.0, to = 1.0, step = 0.1 }` for equal steps, `{ from = 1e-3, to = 1.0, log = 31 }` for 31
+/// values in equal ratios.
 ///
 /// ```
 /// use granular_edmd_study::{Axis, Steps};
@@ -24,7 +25,7 @@ const ROUNDING: f64 = 1e-9;
 pub struct Steps {
     from: f64,
     to: f64,
-    /// The difference of neighbors; none for equal ratios.
+    /// The difference of neighbors, or `None` for equal ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
     /// The number of values in equal ratios.
@@ -46,7 +47,8 @@ crate::gate::from_file! {
 }
 
 impl Steps {
-    /// Creates values in equal steps from `from` on, up to `to` if a whole number of steps leads there.
+    /// Creates values in equal steps from `from` on. The last value is `to` if a whole number of steps
+    /// reaches it.
     ///
     /// # Errors
     /// If a number is not finite, the step is not positive or below the rounding of the values, or `to` is

@@ -1,4 +1,4 @@
-//! Plans as text in TOML, which pass the same checks as plans that a program makes.
+//! Plans as TOML text, which pass the same checks as plans made by a program.
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ impl<E: Experiment> Plan<E> {
     }
 }
 
-/// Writes the plan as it is in its file.
+/// Writes the plan in the form of its file.
 impl<E: Experiment> fmt::Display for Plan<E> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.to_toml().map_err(|_| fmt::Error)?)

@@ -1,4 +1,4 @@
-//! Checks of a plan when it is made, so that its faults do not make a run fail later.
+//! Checks of a new plan, so that its faults do not make a run fail later.
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
@@ -16,18 +16,18 @@ const MOST_VALUES: usize = 1_000_000;
 const LARGEST_SEED: u64 = i64::MAX as u64;
 
 impl<E: Experiment> Plan<E> {
-    /// Returns the plan, if it can be carried out.
+    /// Returns the plan, or an error if it cannot be run.
     pub(super) fn checked(self) -> Result<Self, PlanError> {
         self.consistent()?.proven()
     }
 
-    /// Returns the plan, if the experiment takes the parameters of those values that are tried.
+    /// Returns the plan, or an error if the experiment rejects the parameters of a tried value.
     pub(super) fn proven(self) -> Result<Self, PlanError> {
         self.check_experiments()?;
         Ok(self)
     }
 
-    /// Returns the plan, if each of its parts is valid.
+    /// Returns the plan, or an error if one of its parts is not valid.
     pub(super) fn consistent(mut self) -> Result<Self, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
@@ -80,7 +80,8 @@ impl<E: Experiment> Plan<E> {
         Ok(())
     }
 
-    /// Checks that the experiment takes the parameters of each value, or of some if there are many.
+    /// Checks that the experiment accepts the parameters of each value, or of a selection if there are many
+    /// values.
     pub(crate) fn check_experiments(&self) -> Result<(), PlanError> {
         // With parameters that vary, the experiment as it stands is never run: a friction of 0 may not suit it.
         if self.varied.is_empty() {

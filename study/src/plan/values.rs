@@ -13,15 +13,15 @@ use crate::{PlanError, Scalar, Steps};
 /// Largest number of values that are tried when a plan is made.
 pub(crate) const MOST_TRIED: usize = 1024;
 
-/// Returns which of `count` indices are tried when a plan is made: all if they are few, otherwise the ends
-/// and some between at equal distances, so that a plan of a million values is made as fast as a small one.
-/// The others are refused when their turn comes.
+/// Returns the indices, out of `count`, that are tried when a plan is made: all if they are few, otherwise
+/// the ends and several between them at equal distances. A plan of a million values is thus made as fast as a
+/// small plan. The others are refused when their turn comes.
 pub(crate) fn tried(count: usize) -> impl Iterator<Item = usize> {
     let tried = count.min(MOST_TRIED);
     (0..tried).map(move |index| index * count.saturating_sub(1) / tried.saturating_sub(1).max(1))
 }
 
-/// Values of a parameter, at least one.
+/// One or more values of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(super) enum Values<T> {
@@ -70,12 +70,12 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
         }
     }
 
-    /// Returns a value that the list has twice.
+    /// Returns a value that occurs twice in the list, if any.
     pub(super) fn twice(&self) -> Option<Scalar> {
         let Self::List(list) = self else { return None };
         let mut known = HashSet::with_capacity(list.len());
         let mut all = list.iter().map(|value| value.clone().into());
-        // Zero is added so that both zeros are one value.
+        // Zero is added so that both zeros count as the same value.
         all.find(|value: &Scalar| {
             !known.insert(match value {
                 Scalar::Number(number) => Ok((number + 0.0).to_bits()),

@@ -1,4 +1,4 @@
-//! Claims: which process does which ramps, by the locks of a fixed number of files.
+//! Claims, which decide by locks on a fixed number of files which process runs which ramps.
 
 use std::fs::{File, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -14,29 +14,29 @@ use crate::whole::if_there;
 /// Number of lock files.
 const LOCKS: usize = 256;
 
-/// Largest number of blocks of ramps, each of which is claimed as one. Sixty-four processes then lose a few
+/// Largest number of blocks of ramps. A process claims whole blocks. Sixty-four processes then lose a few
 /// percent at the end, when some of them have a block left and the others none.
 const BLOCKS: usize = 2048;
 
-/// A right to do some ramps. It ends with the process, even if that is killed.
+/// The right to run a block of ramps. It ends with the process, even if that is killed.
 ///
 /// The file of the lock stays. If it were removed, two processes could hold the locks of two different files
 /// of the same name.
 #[derive(Debug)]
 pub(crate) struct Claim(Locked);
 
-/// The answer to a claim.
+/// The result of a claim.
 #[derive(Debug)]
 pub(crate) enum Claimed {
-    /// The ramps are for this process.
+    /// This process has the ramps.
     Ours(Claim),
-    /// Another process does them.
+    /// Another process has the ramps.
     Theirs,
-    /// Another process does other ramps under the lock of these.
+    /// Another process runs other ramps that share the lock of these ramps.
     Collision,
 }
 
-/// Returns the blocks of this number of ramps.
+/// Returns the blocks into which this number of ramps is divided.
 pub(crate) fn blocks(ramps: usize) -> impl Iterator<Item = Range<usize>> {
     let size = ramps.div_ceil(BLOCKS).max(1);
     (0..ramps).step_by(size).map(move |first| first..ramps.min(first + size))
@@ -78,7 +78,7 @@ impl Claims {
         }
     }
 
-    /// Returns the ramps that processes do, as far as the system tells.
+    /// Returns the ramps that processes are running, as far as the locks show.
     pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
         let files = if_there("read", &self.folder, std::fs::read_dir(&self.folder))?;
         let paths = files.into_iter().flatten().flatten().map(|file| file.path());
@@ -100,7 +100,7 @@ impl Drop for Claim {
     }
 }
 
-/// Writes which ramps a lock is for.
+/// Writes to the file of a lock which ramps it protects.
 fn tell(lock: &Locked, text: &str) -> io::Result<()> {
     let mut file = lock.file();
     file.set_len(0)?;
@@ -108,9 +108,9 @@ fn tell(lock: &Locked, text: &str) -> io::Result<()> {
     file.write_all(text.as_bytes())
 }
 
-/// Returns the ramps for which a lock is held; `None` if its file does not say so.
+/// Returns the ramps for which a lock is held, or `None` if its file names none.
 fn held(path: &Path) -> Option<Range<usize>> {
-    // The holder may be about to write it.
+    // The holder may be about to write the ramps.
     (0..20).find_map(|_| {
         let mut text = String::new();
         File::open(path).ok()?.read_to_string(&mut text).ok()?;
@@ -122,7 +122,7 @@ fn held(path: &Path) -> Option<Range<usize>> {
     })
 }
 
-/// Opens the file of a lock, in a folder that is made if it is not there.
+/// Opens the file of a lock, and creates its folder if necessary.
 pub(crate) fn open(path: &Path) -> Result<File, StudyError> {
     let mut options = File::options();
     options.read(true).write(true).create(true).truncate(false);

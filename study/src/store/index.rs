@@ -1,34 +1,35 @@
-//! The index of a store: what the heads of all pieces say, by ramp and value.
+//! The index of a store: the headers of all pieces, by ramp and value.
 
 use granular_edmd::file::{HEAD, Piece};
 
-/// The head of a record in a log.
+/// The header of a record in a log.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Head {
     pub(crate) ramp: usize,
     pub(crate) value: usize,
-    /// Of two records of one value, the one of the higher edition counts. Equal ones have the same contents.
+    /// If a value has two records, the record of the higher edition counts. Equal ones have the same
+    /// contents.
     pub(crate) edition: u16,
     pub(crate) marks: Marks,
     /// Wall-clock seconds that the value took; NaN if it was taken over.
     pub(crate) seconds: f32,
 }
 
-/// The head of a record, without its contents.
+/// The header of a record, without its contents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Marks(u16);
 
 impl Marks {
-    /// The value counts as not done.
+    /// The value counts as unfinished.
     pub(crate) const VOID: Self = Self(1);
-    /// The ramp ends with the value.
+    /// The value is the last of its ramp.
     pub(crate) const LAST: Self = Self(2);
-    /// The value was not finished.
+    /// The value stalled, failed or reached a limit.
     pub(crate) const FAILED: Self = Self(4);
-    /// Its run has warnings.
+    /// The value's run has warnings.
     pub(crate) const WARNED: Self = Self(8);
 
-    /// Adds a mark, if it is due.
+    /// Adds a mark if `is_due` is true.
     pub(crate) const fn with(self, mark: Self, is_due: bool) -> Self {
         if is_due { Self(self.0 | mark.0) } else { self }
     }
@@ -62,9 +63,10 @@ impl Head {
     }
 }
 
-/// A record, or a value that counts as not done: its head, and the place of its contents.
+/// The entry of a record, or of a value that counts as unfinished: its header, and the position of its
+/// contents in a log.
 ///
-/// There may be a million of them in memory, so it has no room to spare.
+/// A million entries may be in memory, so an entry is as small as possible.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
     head: [u8; HEAD],
@@ -96,7 +98,7 @@ impl Entry {
     }
 }
 
-/// All entries by ramp and value, one for each.
+/// All entries, one for each ramp and value, in order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Entries(Vec<Entry>);
 
@@ -105,15 +107,15 @@ impl Entries {
         self.0.len()
     }
 
-    /// Adds an entry of a log, out of order.
+    /// Adds an entry of a log at the end, before the entries are sorted.
     pub(super) fn push(&mut self, entry: Entry) {
         self.0.push(entry);
     }
 
-    /// Puts all in order, of which the first `sorted` entries are.
+    /// Sorts all entries. The first `sorted` entries are in order already.
     pub(super) fn settle(&mut self, sorted: usize) {
         let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
-        // A stable sort takes a time in proportion to the entries that are in order, and memory.
+        // For partly sorted entries, a stable sort takes only linear time, but additional memory.
         match sorted {
             0 => self.0.sort_unstable_by_key(key),
             _ => self.0.sort_by_key(key),
@@ -121,7 +123,7 @@ impl Entries {
         self.0.dedup_by_key(|entry| entry.place());
     }
 
-    /// Returns the entry of a value, also of one that counts as not done.
+    /// Returns the entry of a value, also of a value that counts as unfinished.
     pub(super) fn latest(&self, ramp: usize, value: usize) -> Option<Entry> {
         let place = self.0.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
         Some(self.0[place])

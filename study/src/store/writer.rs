@@ -1,4 +1,4 @@
-//! The log of one process, and beside it its lines for people, whose file is locked.
+//! The log of one process, with a second file of readable lines, which is locked.
 
 use std::fs::TryLockError;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -21,14 +21,14 @@ pub(super) struct Writer {
     path: PathBuf,
     log: Log,
     lines: Locked,
-    /// True if the last line is whole.
+    /// True if the last line is complete.
     is_whole: bool,
     /// Seconds of work that are not synced.
     at_risk: f32,
 }
 
 impl Writer {
-    /// Takes a log that no process writes, or begins one.
+    /// Opens a log that no process is writing, or creates a new log.
     pub(super) fn open(folder: &Path) -> Result<Self, StudyError> {
         let mut known = logs(folder)?;
         known.sort();
@@ -60,7 +60,7 @@ impl Writer {
     /// Appends a piece, and a line.
     pub(super) fn push(&mut self, head: Head, contents: &[u8], line: Option<&str>) -> Result<(), StudyError> {
         self.log.push(head.bytes(), contents).map_err(StudyError::io("write", &self.path))?;
-        // A disk takes longer to sync than many a value to be done again.
+        // Syncing a disk can take longer than running a value again.
         self.at_risk += head.seconds.max(0.0);
         if self.at_risk > AT_RISK {
             self.sync()?;
@@ -83,7 +83,7 @@ impl Writer {
     }
 }
 
-/// Goes to the end of the last whole line, and removes what follows it.
+/// Moves to the end of the last complete line, and removes everything after it.
 fn to_last_line_end(mut file: &std::fs::File) -> io::Result<&std::fs::File> {
     let mut bytes = Vec::new();
     file.rewind()?;

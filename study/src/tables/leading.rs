@@ -1,9 +1,9 @@
-//! The leading columns of every table, which tell the place of a row in the study.
+//! The leading columns of every table, which show to what part of the study a row belongs.
 
 use super::rows::Row;
 use crate::{Experiment, Leg, Plan, Record, Scalar};
 
-/// The place of a row: a value, all its repeats, or, without a value, a transition.
+/// The subject of a row: one value, all repeats of a value, or, without a value, a transition.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) ramp: usize,
@@ -22,7 +22,7 @@ impl Place {
         Self { ramp, value, leg: record.leg(), at: record.ramped_value(), is_point: false }
     }
 
-    /// Returns the place of a value of a plan.
+    /// Returns the place of a planned value, which needs no record.
     pub(super) fn in_plan<E: Experiment>(plan: &Plan<E>, ramp: usize, value: usize) -> Self {
         let (leg, at) = plan.step(value).unzip();
         Self { ramp, value: Some(value), leg, at, is_point: false }

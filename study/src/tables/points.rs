@@ -13,12 +13,12 @@ pub(super) struct Repeats(Vec<Vec<Repeat>>);
 /// The estimates of one repeat of a value, with the names of columns.
 pub(super) struct Repeat {
     pub(super) estimates: Vec<(String, Estimate)>,
-    /// True if the engine could not finish it.
+    /// True if the engine could not finish this repeat.
     pub(super) is_failed: bool,
 }
 
 impl Repeats {
-    /// Adds a value of one repeat.
+    /// Adds the estimates of one repeat of a value.
     pub(super) fn add(&mut self, value: usize, repeat: Repeat) {
         if self.0.len() <= value {
             self.0.resize_with(value + 1, Vec::new);
@@ -26,7 +26,7 @@ impl Repeats {
         self.0[value].push(repeat);
     }
 
-    /// Writes a row for each value of which a repeat is finished.
+    /// Writes a row for each value that has a finished repeat.
     pub(super) fn write<E: Experiment>(
         self,
         plan: &Plan<E>,

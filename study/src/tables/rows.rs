@@ -8,7 +8,7 @@ use granular_edmd::statistics::Estimate;
 
 use crate::{Scalar, StudyError};
 
-/// A table on its way to its file.
+/// A table that is being written to its file.
 pub(super) struct Rows {
     path: PathBuf,
     draft: Draft,
@@ -28,13 +28,13 @@ impl Rows {
         self.draft.write_all(row.as_bytes()).map_err(StudyError::io("write", &self.path))
     }
 
-    /// Puts the table in its place.
+    /// Renames the finished table to its final name.
     pub(super) fn finish(self) -> Result<(), StudyError> {
         self.draft.finish().map_err(StudyError::io("write", &self.path))
     }
 }
 
-/// A row as it grows.
+/// A growing row.
 #[derive(Debug, Clone)]
 pub(super) struct Row(String);
 

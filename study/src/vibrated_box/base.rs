@@ -31,7 +31,7 @@ pub enum Base {
     Thermal {
         /// $`T_0`$.
         temperature: f64,
-        /// True if tangential and angular velocity stay as they are.
+        /// True if collisions with the base change neither the tangential nor the angular velocity.
         #[serde(default)]
         slip: bool,
     },

@@ -34,7 +34,7 @@ impl Record<VibratedBox> {
         self.observer().profile()
     }
 
-    /// Returns the densest layer of the profile; `None` without samples.
+    /// Returns the densest layer of the profile, or `None` without samples.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.profile())
     }

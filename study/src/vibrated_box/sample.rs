@@ -30,9 +30,9 @@ pub struct Sample {
     pub rotational_energy: f64,
     /// $`T_y`$.
     pub vertical_temperature: f64,
-    /// Collisions of two disks since the sample before.
+    /// Number of disk–disk collisions since the previous sample.
     pub collisions: u64,
-    /// Mean energy change of those collisions; 0 if there were none.
+    /// Mean energy change in these collisions, or 0 without collisions.
     pub energy_change: f64,
 }
 
@@ -54,7 +54,7 @@ impl Observer for Measurement {
 }
 
 impl Measurement {
-    /// Takes a sample, with the collisions since the one before.
+    /// Takes a sample, with the collisions since the previous sample.
     pub(super) fn sample(&mut self, snapshot: &Snapshot<'_>) -> Sample {
         self.add_profile(snapshot);
         let change = std::mem::take(&mut self.change);
@@ -95,7 +95,7 @@ fn profile(snapshot: &Snapshot<'_>) -> Vec<f64> {
         profile.add(snapshot);
         profile.iter().map(|(_, fraction)| fraction).collect()
     });
-    // A height that is positive makes a profile.
+    // Creating the profile fails only for a height that is not positive.
     profile.unwrap_or_default()
 }
 

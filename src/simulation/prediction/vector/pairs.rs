@@ -1,6 +1,6 @@
 //! The search for partners, four pairs at a time, with selections by the bits of a mask (AVX-512).
 //!
-//! A mask has a bit for each lane, and what compares under a mask compares only the lanes that are in it.
+//! A mask has a bit for each lane; a comparison under a mask compares only the lanes whose bit is set.
 
 use std::arch::x86_64::{
     __m256d, __m256i, _CMP_EQ_OQ as EQUAL, _CMP_GT_OQ as GREATER, _CMP_LE_OQ as LESS_OR_EQUAL,
@@ -63,8 +63,8 @@ impl Search {
         }
     }
 
-    /// Predicts the collisions with four more disks, and takes those that are earlier. Of equal times, the
-    /// smaller partner wins.
+    /// Predicts the collisions with four more disks, and keeps the earlier collision in each lane. Of equal
+    /// times, the smaller partner wins.
     #[target_feature(enable = "avx512vl")]
     #[inline]
     fn improve<const IS_PERIODIC: bool>(&mut self, bodies: &Bodies, lanes: &[u32; LANES], common: &Common) {
@@ -102,9 +102,9 @@ impl Search {
     }
 }
 
-/// Returns the x of four trajectories, their y, and the same of their velocities.
+/// Returns the x and y of the positions of four trajectories, then the x and y of their velocities.
 ///
-/// Position and velocity are read one by one: the last collision wrote them so.
+/// Position and velocity are read separately, because the last collision wrote them separately.
 #[target_feature(enable = "avx512vl")]
 #[inline]
 fn columns(a: &Trajectory, b: &Trajectory, c: &Trajectory, d: &Trajectory) -> [__m256d; 4] {
@@ -148,7 +148,7 @@ fn nearest_image(x: __m256d, period: __m256d) -> __m256d {
     add(subtract(x, back), forth)
 }
 
-/// Returns the first `count` candidates by fours. The disk itself fills the last four.
+/// Returns the first `count` candidates in groups of four. The disk itself fills the last four.
 #[inline(always)]
 fn by_fours(candidates: &mut [u32], count: usize, disk: usize) -> &[[u32; LANES]] {
     candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
@@ -222,8 +222,8 @@ fn improve_both<const IS_PERIODIC: bool>(
     let search = |disk: usize| Search::new(&bodies.particles[disk].trajectory, Earliest::NONE);
     let (mut first, mut second) = (search(disks[0]), search(disks[1]));
     for turn in 0..one.len().max(two.len()) {
-        // The shorter list stays at its last four: a second prediction of a pair changes nothing. Neither
-        // list is empty, since each has the disk itself.
+        // The shorter list repeats its last four pairs, since a second prediction of a pair changes nothing.
+        // Neither list is empty, since each has the disk itself.
         first.improve::<IS_PERIODIC>(bodies, &one[turn.min(one.len() - 1)], common);
         second.improve::<IS_PERIODIC>(bodies, &two[turn.min(two.len() - 1)], common);
     }
