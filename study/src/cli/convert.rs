@@ -27,8 +27,8 @@ pub(super) struct Wishes {
     /// Largest overlap that is accepted, relative to the sum of the radii.
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Shrinks all radii in proportion until no disks overlap. Overlaps with walls remain, since the file does
-    /// not tell where walls are.
+    /// Shrinks all radii in proportion until no disks overlap. Overlaps with walls remain, since the file
+    /// does not say where walls are.
     #[arg(long)]
     shrink: bool,
     /// Mass per area of disks in a file without masses.

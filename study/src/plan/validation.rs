@@ -83,7 +83,7 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the experiment accepts the parameters of each value, or of a selection if there are many
     /// values.
     pub(crate) fn check_experiments(&self) -> Result<(), PlanError> {
-        // With parameters that vary, the experiment as it stands is never run: a friction of 0 may not suit it.
+        // With parameters that vary, the experiment as it stands is never run, and need not be possible.
         if self.varied.is_empty() {
             self.experiment.check().map_err(|source| Self::refused(&[], source))?;
         }
