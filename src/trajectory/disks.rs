@@ -10,6 +10,7 @@ use super::column::Quantity::{
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
 use super::column::SLOTS;
+use super::lines::as_whole;
 use super::settings::Settings;
 use super::table::Table;
 use super::{ReadError, State};
@@ -29,7 +30,7 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         table.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
     }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
-    let is_named = !is_numbered && table.names().iter().any(|name| name.parse::<u16>().is_err());
+    let is_named = !is_numbered && table.names().iter().any(|name| as_whole::<u16>(name).is_none());
     let names = if is_named { table.names() } else { Vec::new() };
     let mut state = State {
         disks,
@@ -78,7 +79,7 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
 /// Returns the numbers of the kinds that names stand for: the names themselves, or else their order.
 fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     let names = table.names();
-    let numbers: Option<Vec<u16>> = names.iter().map(|name| name.parse().ok()).collect();
+    let numbers: Option<Vec<u16>> = names.iter().map(|name| as_whole(name)).collect();
     let kinds = numbers.unwrap_or_else(|| (0..=u16::MAX).take(names.len()).collect());
     if kinds.len() == names.len() {
         return Ok(kinds);

@@ -8,6 +8,7 @@ mod corpus;
 mod corpus_data;
 mod corpus_dumps;
 mod corpus_files;
+mod corpus_kinds;
 mod corpus_xyz;
 mod faults;
 mod gsd;
