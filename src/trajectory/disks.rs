@@ -30,8 +30,7 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         table.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
     }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
-    let is_named = !is_numbered && table.names().iter().any(|name| as_whole::<u16>(name).is_none());
-    let names = if is_named { table.names() } else { Vec::new() };
+    let names = if is_numbered { Vec::new() } else { ordered(&table).unwrap_or_default() };
     let mut state = State {
         disks,
         domain: table.domain,
@@ -76,16 +75,27 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     Ok(disks)
 }
 
-/// Returns the numbers of the kinds that names stand for: the names themselves, or else their order.
+/// Returns the numbers of the kinds that names stand for: the names themselves, or else their places in
+/// order, which are the same for all frames with these names.
 fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     let names = table.names();
-    let numbers: Option<Vec<u16>> = names.iter().map(|name| as_whole(name)).collect();
-    let kinds = numbers.unwrap_or_else(|| (0..=u16::MAX).take(names.len()).collect());
-    if kinds.len() == names.len() {
-        return Ok(kinds);
-    }
+    let ordered = ordered(table);
+    let kind = |name: &&str| match &ordered {
+        Some(ordered) => ordered.binary_search(name).ok().and_then(|place| u16::try_from(place).ok()),
+        None => as_whole(name),
+    };
+    let kinds: Option<Vec<u16>> = names.iter().map(kind).collect();
     let found = names.len().to_string();
-    Err(ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found))
+    kinds.ok_or_else(|| {
+        ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found)
+    })
+}
+
+/// Returns the names of kinds in order, if they are not all numbers.
+fn ordered(table: &Table) -> Option<Vec<&str>> {
+    let mut names = table.names();
+    names.sort_unstable();
+    names.iter().any(|name| as_whole::<u16>(name).is_none()).then_some(names)
 }
 
 /// The values of a row by their slots.

@@ -21,7 +21,7 @@ pub(super) struct Table {
     values: Vec<f64>,
     /// Lines of the rows.
     pub(super) lines: Vec<usize>,
-    /// The number of each name, by first appearance.
+    /// The index of each name, which stands for it in the values.
     names: HashMap<String, usize>,
     /// Types count from 1, and a density is that of a sphere.
     pub(super) is_of_lammps: bool,
@@ -141,7 +141,7 @@ impl Table {
         self.lines
     }
 
-    /// Returns the names of kinds in the order of their appearance.
+    /// Returns the names of kinds by their indices.
     pub(super) fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
         names.sort_by_key(|&name| self.names[name]);
@@ -149,7 +149,7 @@ impl Table {
     }
 }
 
-/// Reads a cell. A name counts by its first appearance.
+/// Reads a cell. The index of a name stands for it.
 fn value(
     column: &Column,
     slot: usize,

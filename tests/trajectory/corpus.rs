@@ -121,7 +121,7 @@ fn tables_of_many_programs() {
             ),
             (
                 "x,y,radius,species\n1,2,0.5,\"a, b\"\n3,2,0.5,c\n",
-                "kinds 0 a, b, 1 c; (1 2) r0.5; (3 2) r0.5 k1",
+                "kinds 0 a, b, 1 c; (1 2) r0.5; (3 2) r0.5 k1 | kinds are numbered by name: a, b 0, c 1",
             ),
             ("x,y,radius,mass\r\n1,2,0.5,2\r\n", "(1 2) r0.5 m2"),
             (
@@ -202,8 +202,14 @@ fn radii_and_masses_from_the_reader() {
     check(
         &reader,
         &[
-            ("1\na comment\nH 1 2 0\n", "kinds 0 H; (1 2) r0.5 m3.141592653589793"),
-            ("1\na comment\nH 1 2 0 9 9\n", "kinds 0 H; (1 2) r0.5 m3.141592653589793"),
+            (
+                "1\na comment\nH 1 2 0\n",
+                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0",
+            ),
+            (
+                "1\na comment\nH 1 2 0 9 9\n",
+                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0",
+            ),
             ("x y\n1 2\n", "(1 2) r0.5 m3.141592653589793"),
             // A file knows better.
             ("x,y,radius,mass\n1,2,0.25,1\n", "(1 2) r0.25"),

@@ -32,7 +32,11 @@ fn dumps_of_lammps_and_liggghts() {
         ("id x y radius density", "1 1 2 0.5 6", "(1 2) r0.5 m3.141592653589793 #1"),
         ("id x y radius c_one[1] v_two", "1 1 2 0.5 9 9", "(1 2) r0.5 #1 | ignored columns: c_one[1], v_two"),
         ("id type element x y radius", "1 2 Fe 1 2 0.5", "(1 2) r0.5 k1 #1 | ignored columns: element"),
-        ("id element x y radius", "1 Fe 1 2 0.5", "kinds 0 Fe; (1 2) r0.5 #1"),
+        (
+            "id element x y radius",
+            "1 Fe 1 2 0.5",
+            "kinds 0 Fe; (1 2) r0.5 #1 | kinds are numbered by name: Fe 0",
+        ),
         // Rows stay in the order of the file.
         ("id x y radius", "2 1 2 0.5 / 1 3 2 0.5", "(1 2) r0.5 #2; (3 2) r0.5 #1"),
         // Disks outside of periodic sides are wrapped, others are not.
