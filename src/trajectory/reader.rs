@@ -31,7 +31,7 @@ use crate::quantity::non_negative;
 /// | angle | `angle`; `orientation`, as an angle or a quaternion x, y, z, w |
 /// | angular velocity | `angular_velocity`, `omega`, `omegaz`, `wz`; of three components the third |
 /// | id | `id`, `identifier` |
-/// | kind | `kind`; `type`, from 1 in LAMMPS; `species`, `element`, `name`: numbers, or names in their order |
+/// | kind | `kind`; `type`, from 1 in LAMMPS; `species`, `element`, `name`: numbers, or names in order |
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///

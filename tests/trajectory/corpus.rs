@@ -208,7 +208,7 @@ fn radii_and_masses_from_the_reader() {
             ),
             (
                 "1\na comment\nH 1 2 0 9 9\n",
-                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0",
+                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0 | ignored columns: 5 to 6",
             ),
             ("x y\n1 2\n", "(1 2) r0.5 m3.141592653589793"),
             // A file knows better.

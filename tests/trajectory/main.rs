@@ -9,6 +9,7 @@ mod corpus_data;
 mod corpus_dumps;
 mod corpus_files;
 mod corpus_kinds;
+mod corpus_notes;
 mod corpus_xyz;
 mod faults;
 mod gsd;
