@@ -65,6 +65,10 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     if !either(&[Radius, Diameter], 0) && settings.radius.is_none() {
         return missing("radius");
     }
+    if either(&[Momentum], 0) && !either(&[Mass, Density], 0) && settings.density.is_none() {
+        let what = "a column of masses, or a density (with_density, --density), for the momenta";
+        return Err(ReadError::missing(table.line, what));
+    }
     check_plane(table, settings)?;
     let kinds = kinds_of_names(table)?;
     let mut disks = Vec::with_capacity(table.lines.len());

@@ -26,7 +26,7 @@ use crate::quantity::non_negative;
 /// |---|---|
 /// | position | `pos`, `position`; `x y`; `xs ys` as shares of the box; `unwrapped`, `xu yu` |
 /// | radius | `radius`, `radii`, `r`; `diameter`, `d` |
-/// | velocity | `velo`, `vel`, `velocity`, `v`, `vx vy`; `momenta`, divided by the mass |
+/// | velocity | `velo`, `vel`, `velocity`, `v`, `vx vy`; `momenta`, if there are masses |
 /// | mass | `mass`, `masses`, `m`; `density`, as mass per area, or of a sphere in files of LAMMPS |
 /// | angle | `angle`; `orientation`, as an angle or a quaternion x, y, z, w |
 /// | angular velocity | `angular_velocity`, `omega`, `omegaz`, `wz`; of three components the third |

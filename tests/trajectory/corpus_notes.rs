@@ -13,3 +13,18 @@ fn columns_of_a_plain_xyz_that_nobody_names() {
         check(&reader, &[(&xyz("a comment", &format!("H 1 2 0{rest}")), &format!("{named}{note}"))]);
     }
 }
+
+/// ASE writes momenta and, unless it is asked to, no masses.
+#[test]
+fn momenta_need_masses() {
+    let text = xyz("Properties=species:S:1:pos:R:3:momenta:R:3:radius:R:1", "H 1 2 0 3 4 0 0.5");
+    let needed = "refused: line 2: a column of masses, or a density (with_density, --density), for the momenta is \
+                  missing";
+    check(&Reader::new(), &[(&text, needed)]);
+    let named = "kinds 0 H; (1 2) r0.5 m3.141592653589793 v(0.954929658551372 1.2732395447351628) | kinds are \
+                 numbered by name: H 0";
+    check(&Reader::new().with_density(4.0).unwrap(), &[(&text, named)]);
+    let dense = "Properties=pos:R:2:momenta:R:2:radius:R:1:density:R:1";
+    let moving = "(1 2) r0.5 m3.141592653589793 v(0.954929658551372 1.2732395447351628)";
+    check(&Reader::new(), &[(&xyz(dense, "1 2 3 4 0.5 4"), moving)]);
+}
