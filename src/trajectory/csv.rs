@@ -23,7 +23,7 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     if columns.iter().all(|column| column.slot.is_none()) {
         return Err(unknown(line, names));
     }
-    let mut table = Table::new(columns, line)?;
+    let mut table = Table::new(columns, line);
     while let Some((text, line)) = lines.next_filled() {
         if !text.starts_with('#') {
             table.push(cells(text, divider), line)?;

@@ -109,9 +109,17 @@ type Slots = [Option<f64>; SLOTS];
 fn slots(table: &Table, values: &[f64], line: usize) -> Result<Slots, ReadError> {
     let mut slots: Slots = [None; SLOTS];
     for ((column, slot), &value) in table.known().zip(values) {
-        if let Some(other) = slots[slot].replace(value) {
-            agree(&column.name, other, value, 0.0, line)?;
+        let Some(other) = slots[slot].replace(value) else { continue };
+        if slot == Name as usize && other != value {
+            let names = [other, value].map(|index| table.names()[index as usize]);
+            return Err(contradiction(&column.name, &names.join(" and "), line));
         }
+        // Whole numbers have no rounding.
+        let is_whole = slot < Position as usize || slot >= Image as usize;
+        if is_whole && other != value {
+            return Err(contradiction(&column.name, &format!("{other} and {value}"), line));
+        }
+        agree(&column.name, other, value, 0.0, line)?;
     }
     Ok(slots)
 }
@@ -122,8 +130,12 @@ fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f6
     if (one - other).abs() <= most || one.to_bits() == other.to_bits() {
         return Ok(one);
     }
-    let found = format!("{one} and {other}");
-    Err(ReadError::unexpected(line, what, "the same in all columns that tell it", found))
+    Err(contradiction(what, &format!("{one} and {other}"), line))
+}
+
+/// Creates the error of columns that tell different things.
+fn contradiction(what: &str, found: &str, line: usize) -> ReadError {
+    ReadError::unexpected(line, what, "the same in all columns that tell it", found)
 }
 
 /// Checks that the disks lie in one plane, move in it, and turn in it.
@@ -276,8 +288,7 @@ impl Row<'_> {
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);
         }
-        let found = format!("{angle} and that of the orientation");
-        Err(ReadError::unexpected(self.line, "angle", "the same in all columns that tell it", found))
+        Err(contradiction("angle", &format!("{angle} and that of the orientation"), self.line))
     }
 
     /// Returns the kind; its number says more than a type, and a type more than a name.

@@ -39,35 +39,21 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Creates a table of these columns, of which none may appear twice.
-    pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Result<Self, ReadError> {
+    /// Creates a table of these columns.
+    pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Self {
         let mut columns: Vec<Column> = columns.into_iter().collect();
         // Only LAMMPS counts types from 1; elsewhere, a type is a name.
         if columns.iter().all(|column| column.slot != Quantity::Name.slot(0)) {
             let types = columns.iter_mut().filter(|column| column.slot == Quantity::Type.slot(0));
             types.for_each(|column| column.slot = Quantity::Name.slot(0));
         }
-        Self::checked(columns, line)
+        Self { columns, line, ..Self::default() }
     }
 
     /// Creates a table of columns that have one component each, with the conventions of LAMMPS.
-    pub(super) fn of_lammps<'a>(
-        names: impl IntoIterator<Item = &'a str>,
-        line: usize,
-    ) -> Result<Self, ReadError> {
-        let columns = names.into_iter().flat_map(|name| Column::of(name, 1));
-        Ok(Self { is_of_lammps: true, ..Self::checked(columns.collect(), line)? })
-    }
-
-    fn checked(columns: Vec<Column>, line: usize) -> Result<Self, ReadError> {
-        for (index, column) in columns.iter().enumerate() {
-            let is_same = |other: &Column| other.slot == column.slot && other.name == column.name;
-            if column.slot.is_some() && columns[..index].iter().any(is_same) {
-                let what = format!("the column `{}`", column.name);
-                return Err(ReadError::Doubled { line, first: line, what });
-            }
-        }
-        Ok(Self { columns, line, ..Self::default() })
+    pub(super) fn of_lammps<'a>(names: impl IntoIterator<Item = &'a str>, line: usize) -> Self {
+        let columns = names.into_iter().flat_map(|name| Column::of(name, 1)).collect();
+        Self { columns, line, is_of_lammps: true, ..Self::default() }
     }
 
     /// Adds a row, with one cell for each column.

@@ -22,7 +22,7 @@ fn dumps_of_lammps_and_liggghts() {
         (
             "id type type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius",
             "1 1 1 1 2 0 0 0 0 3 4 0 9 9 9 0 0 5 0.5",
-            "refused: line 9: the column `type` stands in line 9 already",
+            "(1 2) r0.5 v(3 4) w5 #1 | ignored columns: fx, fy, fz",
         ),
         (
             "id type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius",

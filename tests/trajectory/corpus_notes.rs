@@ -2,7 +2,7 @@
 
 use granular_edmd::trajectory::Reader;
 
-use crate::corpus::{check, xyz};
+use crate::corpus::{check, dump, xyz};
 
 #[test]
 fn columns_of_a_plain_xyz_that_nobody_names() {
@@ -27,4 +27,30 @@ fn momenta_need_masses() {
     let dense = "Properties=pos:R:2:momenta:R:2:radius:R:1:density:R:1";
     let moving = "(1 2) r0.5 m3.141592653589793 v(0.954929658551372 1.2732395447351628)";
     check(&Reader::new(), &[(&xyz(dense, "1 2 3 4 0.5 4"), moving)]);
+}
+
+/// LIGGGHTS writes the type twice.
+#[test]
+fn columns_may_repeat_what_they_say() {
+    let types = |rows| dump("id type type x y z radius", rows);
+    let differ = "must be the same in all columns that tell it, but is";
+    let twice = |columns: &str, row: &str| format!("{columns}\n{row}\n");
+    check(
+        &Reader::new(),
+        &[
+            (&types("1 2 2 1 2 0 0.5"), "0..10p 0..5; (1 2) r0.5 k1 #1"),
+            (&types("1 2 1 1 2 0 0.5"), &format!("refused: line 10: type {differ} \"2 and 1\"")),
+            // A number of a kind has no rounding.
+            (
+                &types("1 20000 20001 1 2 0 0.5"),
+                &format!("refused: line 10: type {differ} \"20000 and 20001\""),
+            ),
+            (&twice("x,y,radius,x", "1,2,0.5,1"), "(1 2) r0.5"),
+            (&twice("x,y,radius,x", "1,2,0.5,3"), &format!("refused: line 2: x {differ} \"1 and 3\"")),
+            (
+                &twice("x,y,radius,species,element", "1,2,0.5,Fe,O"),
+                &format!("refused: line 2: element {differ} \"Fe and O\""),
+            ),
+        ],
+    );
 }

@@ -226,9 +226,8 @@ fn columns_that_contradict_each_other() {
         ],
         [
             "Properties=pos:R:2:pos:R:2:radius:R:1",
-            "1 2 1 2 0.5",
-            "refused: line 2: the column `pos` stands in line 2 \
-          already",
+            "1 2 1 3 0.5",
+            "refused: line 3: pos must be the same in all columns that tell it, but is \"2 and 3\"",
         ],
     ]);
 }

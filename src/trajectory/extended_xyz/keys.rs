@@ -67,7 +67,7 @@ impl<'a> Keys<'a> {
     pub(super) fn table(&self) -> Result<Table, ReadError> {
         let properties = self.value(&["Properties"])?;
         let columns = columns(properties.unwrap_or("species:S:1:pos:R:3"), self.line)?;
-        let mut table = Table::new(columns, self.line)?;
+        let mut table = Table::new(columns, self.line);
         table.time = self.time()?;
         table.gravity = self.value(&["Gravity"])?.map(|value| self.gravity(value)).transpose()?;
         table.domain = self.domain(&mut table.notes)?;

@@ -99,7 +99,7 @@ impl<R: Read + Seek> View<'_, R> {
         };
         let (center, columns) = (self.center()?, self.columns(count)?);
         let names = columns.iter().map(|column| (column.name, column.size)).chain([("pos", 3)]);
-        let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1)?;
+        let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1);
         self.space(center, &mut table)?;
         for row in 0..count {
             let values =
