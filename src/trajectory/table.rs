@@ -31,6 +31,8 @@ pub(super) struct Table {
     /// The box of which scaled positions are shares, if it is not the domain.
     pub(super) extent: Option<Domain>,
     pub(super) time: Option<f64>,
+    /// The name of a column of the time, which is the same for all disks; empty if the format has none.
+    pub(super) time_column: &'static str,
     pub(super) gravity: Option<Gravity>,
     /// Largest error of a position, from the precision of the file.
     pub(super) rounding: f64,
@@ -106,7 +108,7 @@ impl Table {
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |column: &Column| {
             let is_name = column.slot == Some(Quantity::Name as usize);
-            let is_time = self.is_of_lammps && column.name == "v_time";
+            let is_time = column.name.eq_ignore_ascii_case(self.time_column);
             column.slot.is_none() && !is_time
                 || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };

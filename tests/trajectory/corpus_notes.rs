@@ -54,3 +54,54 @@ fn columns_may_repeat_what_they_say() {
         ],
     );
 }
+
+/// ASE's `Z` is the number of an element.
+#[test]
+fn an_atomic_number_is_no_coordinate() {
+    let told = " | ignored columns: Z";
+    let two = "(1 2) r0.5; (3 2) r0.5";
+    let atoms = xyz("Properties=Z:I:1:pos:R:3:radius:R:1", "8 1 2 0 0.5 / 26 3 2 0 0.5");
+    let apart = xyz("Properties=x:R:1:y:R:1:z:R:1:radius:R:1", "1 2 1 0.5 / 3 2 1 0.5");
+    check(&Reader::new(), &[(&atoms, &format!("{two}{told}")), (&apart, two)]);
+}
+
+#[test]
+fn a_table_holds_one_state() {
+    for name in ["time", "Time", "frame", "step", "timestep"] {
+        let text = format!("{name},x,y,radius\n0,1,2,0.5\n0,3,2,0.5\n1,5,2,0.5\n");
+        let told = format!(
+            "refused: line 4: {name} must be the same in all rows, for a table holds one state, but is \"1\""
+        );
+        check(&Reader::new(), &[(&text, &told)]);
+    }
+    check(
+        &Reader::new(),
+        &[
+            ("time,x,y,radius\n2.5,1,2,0.5\n2.5,3,2,0.5\n", "t 2.5; (1 2) r0.5; (3 2) r0.5"),
+            // Units may follow the names.
+            ("x [sigma],y [sigma],radius [sigma],time [time]\n1,2,0.5,3\n", "t 3; (1 2) r0.5"),
+            ("step,x,y,radius\n7,1,2,0.5\n", "(1 2) r0.5 | ignored columns: step"),
+            ("time,x,y,radius\nnoon,1,2,0.5\n", "refused: line 2: time must be a number, but is \"noon\""),
+        ],
+    );
+}
+
+#[test]
+fn names_of_rows_as_r_writes_them() {
+    let told = " | ignored columns: (names of rows)";
+    check(
+        &Reader::new(),
+        &[
+            (
+                "\"x\" \"y\" \"radius\"\n\"1\" 1 2 0.5\n\"2\" 3 2 0.5\n",
+                &format!("(1 2) r0.5; (3 2) r0.5{told}"),
+            ),
+            ("\"species\" \"x\" \"y\" \"radius\"\n\"1\" \"3\" 1 2 0.5\n", &format!("(1 2) r0.5 k3{told}")),
+            // A cell too many may be any of them.
+            (
+                "x,y,radius\n1,2,0.5,9\n",
+                "refused: line 2: the number of values must be 3, one for each column, but is \"4\"",
+            ),
+        ],
+    );
+}
