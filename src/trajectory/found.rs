@@ -2,13 +2,14 @@
 
 use super::ReadError;
 use super::lines::Text;
+use super::settings::Settings;
 use super::table::Table;
 
 /// A frame that was found in a file, and is read only if it is wanted.
 pub(super) struct Found<'a> {
     /// The step by which the file calls the frame.
     pub(super) step: Option<u64>,
-    pub(super) read: Box<dyn FnOnce() -> Result<Table, ReadError> + 'a>,
+    pub(super) read: Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>,
 }
 
 impl<'a> Found<'a> {
@@ -18,7 +19,7 @@ impl<'a> Found<'a> {
         step: Option<u64>,
         read: impl FnOnce(&Text) -> Result<Table, ReadError> + 'a,
     ) -> Self {
-        let read = move || {
+        let read = move |_: &Settings| {
             let mut table = read(&text)?;
             match (text.is_torn(), table.is_own, table.lines.last()) {
                 (true, true, Some(&line)) => {

@@ -138,6 +138,8 @@ impl Reader {
 
     /// Returns the same reader, with this mass per area for the disks of a file without masses.
     ///
+    /// A file of GSD leaves out masses that are all 1; [`State::notes`] tells that the density counts instead.
+    ///
     /// # Errors
     /// If it is not in `[1e-30, 1e30]`.
     pub fn with_density(mut self, density: f64) -> Result<Self, ParameterError> {
@@ -177,7 +179,7 @@ impl Reader {
     }
 
     fn state(&self, frames: Frames<'_>) -> Result<State, ReadError> {
-        disks::state((self.frame.find(frames)?.read)()?, &self.settings)
+        disks::state((self.frame.find(frames)?.read)(&self.settings)?, &self.settings)
     }
 
     /// Returns the states of all frames of an input, one after another. The iterator ends after an error.
@@ -237,7 +239,7 @@ impl Iterator for States<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         let found = self.frames.as_mut()?.next()?;
-        let state = found.and_then(|found| disks::state((found.read)()?, &self.settings));
+        let state = found.and_then(|found| disks::state((found.read)(&self.settings)?, &self.settings));
         if state.is_err() {
             self.frames = None;
         }
