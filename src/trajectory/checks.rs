@@ -6,6 +6,7 @@ use super::{ReadError, State};
 use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::TOUCHING;
+use crate::error::Readable;
 
 /// Checks the disks of a state, whose lines these are.
 ///
@@ -15,6 +16,7 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
     let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
     if let Some(domain) = state.domain {
         for (disk, &line) in state.disks.iter_mut().zip(lines) {
+            fit(disk, &domain, line)?;
             state.wrapped += usize::from(enter(disk, &domain, accepted, line)?);
         }
     }
@@ -50,6 +52,15 @@ pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadEr
         }
     }
     Ok(has_zero)
+}
+
+/// Checks that a disk does not overlap its own images.
+fn fit(disk: &Disk, domain: &Domain, line: usize) -> Result<(), ReadError> {
+    let (width, periods) = (2.0 * disk.radius(), domain.periods().to_array());
+    let is_narrow = |period: &f64| *period > 0.0 && width > period * (1.0 + TOUCHING);
+    let Some(period) = periods.into_iter().find(is_narrow) else { return Ok(()) };
+    let requirement = format!("at most {}, a period of the box", Readable(period));
+    Err(ReadError::unexpected(line, "the diameter of the disk", requirement, width.to_string()))
 }
 
 /// Numbers of periods that a disk can have passed.

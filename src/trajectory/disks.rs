@@ -29,6 +29,12 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
     if table.has(Id, 0) && number(&mut disks, &table.lines)? {
         table.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
     }
+    if table.domain.is_none()
+        && table.has(Position, 0)
+        && [0, 1].iter().any(|&axis| table.has(Unwrapped, axis))
+    {
+        table.notes.push("unwrapped positions are ignored, for the file has no box".to_owned());
+    }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
     let names = if is_numbered { Vec::new() } else { ordered(&table).unwrap_or_default() };
     let mut state = State {
@@ -147,6 +153,7 @@ fn check_plane(table: &Table, settings: &Settings) -> Result<(), ReadError> {
     };
     let size = largest(&[Radius, Diameter], &[0]).max(settings.radius.unwrap_or_default());
     let turning = largest(&[AngularVelocity], &[2]);
+    let is_out = |height: f64, scale| !height.is_finite() || height.abs() > FLAT * scale;
     for (quantity, axis, scale, is_place) in [
         (Position, 2, size, true),
         (Scaled, 2, 1.0, true),
@@ -161,7 +168,7 @@ fn check_plane(table: &Table, settings: &Settings) -> Result<(), ReadError> {
     ] {
         let values = || quantity.slot(axis).into_iter().flat_map(|slot| table.values(slot));
         let plane = values().next().filter(|_| is_place).map_or(0.0, |(value, _)| value);
-        if let Some((value, line)) = values().find(|(value, _)| (value - plane).abs() > FLAT * scale) {
+        if let Some((value, line)) = values().find(|(value, _)| is_out(value - plane, scale)) {
             let [lie, stay] =
                 ["the same for all disks, which lie in a plane", "0, for disks move in a plane"];
             let requirement = if is_place { lie } else { stay };

@@ -105,3 +105,47 @@ fn names_of_rows_as_r_writes_them() {
         ],
     );
 }
+
+#[test]
+fn out_of_the_plane_is_no_number_either() {
+    let lie = "must be the same for all disks, which lie in a plane, but is";
+    let stay = "must be 0, for disks move in a plane, but is";
+    check(
+        &Reader::new(),
+        &[
+            ("x,y,z,radius\n1,2,nan,0.5\n", &format!("refused: line 2: z {lie} \"NaN\"")),
+            ("x,y,z,radius\n1,2,inf,0.5\n", &format!("refused: line 2: z {lie} \"inf\"")),
+            ("x,y,z,radius\n1,2,0,0.5\n3,2,nan,0.5\n", &format!("refused: line 3: z {lie} \"NaN\"")),
+            ("x,y,vz,radius\n1,2,nan,0.5\n", &format!("refused: line 2: vz {stay} \"NaN\"")),
+        ],
+    );
+}
+
+#[test]
+fn unwrapped_positions_need_a_box() {
+    let told = "(1 2) r0.5 | unwrapped positions are ignored, for the file has no box";
+    check(
+        &Reader::new(),
+        &[("x,y,xu,radius\n1,2,21,0.5\n", told), ("xu,yu,radius\n1,2,0.5\n", "(1 2) r0.5")],
+    );
+}
+
+/// A disk that is wider than a period overlaps itself.
+#[test]
+fn disks_fit_into_a_period() {
+    let keys = |pbc| format!("Lattice=\"2 0 0 0 3 0 0 0 1\" pbc=\"{pbc}\" Properties=pos:R:2:radius:R:1");
+    let told = |most: &str| {
+        format!(
+            "refused: line 3: the diameter of the disk must be at most {most}, a period of the box, but is \"3.5\""
+        )
+    };
+    check(
+        &Reader::new(),
+        &[
+            (&xyz(&keys("T F F"), "1 2 1"), "0..2p 0..3; (1 2) r1"),
+            (&xyz(&keys("T F F"), "1 2 1.75"), &told("2")),
+            (&xyz(&keys("F T F"), "1 2 1.75"), &told("3")),
+            (&xyz(&keys("F F F"), "1 2 1.75"), "0..2 0..3; (1 2) r1.75"),
+        ],
+    );
+}
