@@ -23,10 +23,11 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
     let least = if settings.shrinks { TOUCHING } else { accepted };
     let Some(found) = overlap::deepest(&state.disks, state.domain.as_ref(), least) else { return Ok(()) };
     let Overlap { pair: [a, b], depth, share, count, is_counted } = found;
-    let is_small = share < 1.0 && settings.tolerance.is_none_or(|tolerance| share <= tolerance);
+    let is_small = share <= DEEPEST && settings.tolerance.is_none_or(|tolerance| share <= tolerance);
     if !(settings.shrinks && is_small && is_counted) {
         let [line, other] = [lines[a].max(lines[b]), lines[a].min(lines[b])];
-        return Err(ReadError::Overlap { line, other, depth, share, count });
+        let advice = advice(share, settings);
+        return Err(ReadError::Overlap { line, other, depth, share, count, advice });
     }
     for (disk, &line) in state.disks.iter_mut().zip(lines) {
         *disk = disk
@@ -35,6 +36,19 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
     }
     state.shrunk = share;
     Ok(())
+}
+
+/// Deepest overlap for which radii shrink, as a share of the sum of the radii.
+const DEEPEST: f64 = 0.5;
+
+/// Returns the settings that accept overlaps as deep as this.
+fn advice(share: f64, settings: &Settings) -> &'static str {
+    match (settings.tolerance, settings.shrinks) {
+        _ if share > DEEPEST => "two disks lie nearly at the same place",
+        (_, false) => "a tolerance or shrunk radii accept them",
+        (Some(_), true) => "a larger tolerance accepts them",
+        (None, true) => "they are too many for radii to shrink",
+    }
 }
 
 /// Checks that no id appears twice. Ids from 0 on become ids from 1 on, for the id 0 stands for none.

@@ -10,10 +10,9 @@ use super::column::Quantity::{
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
 use super::column::SLOTS;
-use super::lines::as_whole;
 use super::settings::Settings;
 use super::table::Table;
-use super::{ReadError, State};
+use super::{ReadError, State, kinds};
 use crate::boundary::Domain;
 use crate::{Disk, Kind, ParameterError};
 
@@ -36,7 +35,7 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         table.notes.push("unwrapped positions are ignored, for the file has no box".to_owned());
     }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
-    let names = if is_numbered { Vec::new() } else { ordered(&table).unwrap_or_default() };
+    let names = if is_numbered { Vec::new() } else { kinds::ordered(&table).unwrap_or_default() };
     let mut state = State {
         disks,
         domain: table.domain,
@@ -76,36 +75,13 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
         return Err(ReadError::missing(table.line, what));
     }
     check_plane(table, settings)?;
-    let kinds = kinds_of_names(table)?;
+    let kinds = kinds::of_names(table)?;
     let mut disks = Vec::with_capacity(table.lines.len());
     for (values, line) in table.rows() {
         let row = Row { slots: slots(table, values, line)?, table, settings, line };
         disks.push(row.disk(row.kind(&kinds)?)?);
     }
     Ok(disks)
-}
-
-/// Returns the numbers of the kinds that names stand for: the names themselves, or else their places in
-/// order, which are the same for all frames with these names.
-fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
-    let names = table.names();
-    let ordered = ordered(table);
-    let kind = |name: &&str| match &ordered {
-        Some(ordered) => ordered.binary_search(name).ok().and_then(|place| u16::try_from(place).ok()),
-        None => as_whole(name),
-    };
-    let kinds: Option<Vec<u16>> = names.iter().map(kind).collect();
-    let found = names.len().to_string();
-    kinds.ok_or_else(|| {
-        ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found)
-    })
-}
-
-/// Returns the names of kinds in order, if they are not all numbers.
-fn ordered(table: &Table) -> Option<Vec<&str>> {
-    let mut names = table.names();
-    names.sort_unstable();
-    names.iter().any(|name| as_whole::<u16>(name).is_none()).then_some(names)
 }
 
 /// The values of a row by their slots.

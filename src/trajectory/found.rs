@@ -9,7 +9,7 @@ use super::table::Table;
 pub(super) struct Found<'a> {
     /// The step by which the file calls the frame.
     pub(super) step: Option<u64>,
-    pub(super) read: Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>,
+    pub(super) read: Reading<'a>,
 }
 
 impl<'a> Found<'a> {
@@ -36,6 +36,9 @@ impl<'a> Found<'a> {
         Self { step, read: Box::new(read) }
     }
 }
+
+/// The function that reads a frame.
+pub(super) type Reading<'a> = Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>;
 
 /// The frames of a file, one after another.
 pub(super) type Frames<'a> = Box<dyn Iterator<Item = Result<Found<'a>, ReadError>> + 'a>;
