@@ -89,6 +89,7 @@ mod frames;
 mod gsd;
 #[cfg(feature = "gzip")]
 mod gzip;
+mod kinds;
 mod lammps_data;
 mod lammps_dump;
 pub mod laws;

@@ -6,6 +6,7 @@ use super::{ReadError, State};
 use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::TOUCHING;
+use crate::error::Readable;
 
 /// Checks the disks of a state, with the lines from which they were read.
 ///
@@ -15,16 +16,18 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
     let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
     if let Some(domain) = state.domain {
         for (disk, &line) in state.disks.iter_mut().zip(lines) {
+            fit(disk, &domain, line)?;
             state.wrapped += usize::from(enter(disk, &domain, accepted, line)?);
         }
     }
     let least = if settings.shrinks { TOUCHING } else { accepted };
     let Some(found) = overlap::deepest(&state.disks, state.domain.as_ref(), least) else { return Ok(()) };
     let Overlap { pair: [a, b], depth, share, count, is_counted } = found;
-    let is_small = share < 1.0 && settings.tolerance.is_none_or(|tolerance| share <= tolerance);
+    let is_small = share <= DEEPEST && settings.tolerance.is_none_or(|tolerance| share <= tolerance);
     if !(settings.shrinks && is_small && is_counted) {
         let [line, other] = [lines[a].max(lines[b]), lines[a].min(lines[b])];
-        return Err(ReadError::Overlap { line, other, depth, share, count });
+        let advice = advice(share, settings);
+        return Err(ReadError::Overlap { line, other, depth, share, count, advice });
     }
     for (disk, &line) in state.disks.iter_mut().zip(lines) {
         *disk = disk
@@ -33,6 +36,19 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
     }
     state.shrunk = share;
     Ok(())
+}
+
+/// Deepest overlap for which radii shrink, as a share of the sum of the radii.
+const DEEPEST: f64 = 0.5;
+
+/// Returns the settings that accept overlaps as deep as this.
+fn advice(share: f64, settings: &Settings) -> &'static str {
+    match (settings.tolerance, settings.shrinks) {
+        _ if share > DEEPEST => "two disks lie nearly at the same place",
+        (_, false) => "a tolerance or shrunk radii accept them",
+        (Some(_), true) => "a larger tolerance accepts them",
+        (None, true) => "they are too many for radii to shrink",
+    }
 }
 
 /// Checks that no id appears twice. Ids from 0 on become ids from 1 on, for the id 0 stands for none.
@@ -52,7 +68,16 @@ pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadEr
     Ok(has_zero)
 }
 
-/// Range of the numbers of periods that a disk can have crossed.
+/// Checks that a disk does not overlap its own images.
+fn fit(disk: &Disk, domain: &Domain, line: usize) -> Result<(), ReadError> {
+    let (width, periods) = (2.0 * disk.radius(), domain.periods().to_array());
+    let is_narrow = |period: &f64| *period > 0.0 && width > period * (1.0 + TOUCHING);
+    let Some(period) = periods.into_iter().find(is_narrow) else { return Ok(()) };
+    let requirement = format!("at most {}, a period of the box", Readable(period));
+    Err(ReadError::unexpected(line, "the diameter of the disk", requirement, width.to_string()))
+}
+
+/// Numbers of periods that a disk can have passed.
 pub(super) const IMAGES: std::ops::RangeInclusive<f64> = -2_147_483_648.0..=2_147_483_647.0;
 
 /// Moves a disk into its box by whole periods, and returns whether it was outside.

@@ -3,10 +3,13 @@
 use std::io::{self, Write};
 
 use super::column::Column;
-use super::lines::{Text, lossy};
+use super::lines::{Text, finite, lossy};
 use super::table::Table;
 use super::{ReadError, State};
 use crate::disk::numbered;
+
+/// The column of the time.
+const TIME: &str = "time";
 
 /// Reads a table whose first line names the columns.
 ///
@@ -14,25 +17,59 @@ use crate::disk::numbered;
 /// begins with `#` is a comment, except before the names.
 pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut lines = text.lines()?;
-    let Some((names, line)) = lines.next_filled() else {
+    let Some((head, line)) = lines.next_filled() else {
         return Err(ReadError::End { line: 0, what: "a frame".to_owned() });
     };
-    let names = names.trim_start_matches('#').trim_start();
-    let divider = [',', ';', '\t'].into_iter().find(|&divider| names.contains(divider));
-    let columns: Vec<Column> = cells(names, divider).flat_map(|name| Column::of(name, 1)).collect();
+    let head = head.trim_start_matches('#').trim_start();
+    let divider = [',', ';', '\t'].into_iter().find(|&divider| head.contains(divider));
+    // A unit in brackets may follow a name.
+    let names = cells(head, divider).map(|name| name.split(" [").next().unwrap_or(name));
+    let mut columns: Vec<Column> = names.flat_map(|name| Column::of(name, 1)).collect();
     if columns.iter().all(|column| column.slot.is_none()) {
-        return Err(unknown(line, names));
+        return Err(unknown(line, head));
     }
-    let mut table = Table::new(columns, line)?;
-    while let Some((text, line)) = lines.next_filled() {
-        if !text.starts_with('#') {
-            table.push(cells(text, divider), line)?;
+    let rows = std::iter::from_fn(|| lines.next_filled()).filter(|(text, _)| !text.starts_with('#'));
+    let mut rows = rows.peekable();
+    if rows.peek().is_some_and(|(text, _)| has_name(text, divider, columns.len())) {
+        columns.insert(0, Column { name: "(names of rows)".to_owned(), slot: None });
+    }
+    let mut table = Table::new(columns, line);
+    table.time_column = TIME;
+    let common = common(&table.columns);
+    let mut first = None;
+    for (text, line) in rows {
+        table.push(cells(text, divider), line)?;
+        let first = *first.get_or_insert(text);
+        for &place in &common {
+            let [cell, known] = [text, first].map(|text| cells(text, divider).nth(place).unwrap_or_default());
+            let name = table.columns[place].name.as_str();
+            if cell != known {
+                let requirement = "the same in all rows, for a table holds one state";
+                return Err(ReadError::unexpected(line, name, requirement, cell));
+            }
+            if table.time.is_none() && name.eq_ignore_ascii_case(TIME) {
+                table.time = Some(finite(name, cell, line)?);
+            }
         }
     }
     Ok(table)
 }
 
-/// Creates the error of a text that has none of the formats.
+/// Returns the places of the columns that have the same value in all rows of a state.
+fn common(columns: &[Column]) -> Vec<usize> {
+    let is_common = |column: &Column| {
+        [TIME, "frame", "step", "timestep"].iter().any(|name| column.name.eq_ignore_ascii_case(name))
+    };
+    (0..columns.len()).filter(|&place| is_common(&columns[place])).collect()
+}
+
+/// Returns whether a row begins with a name in quotes for which there is no column, as R writes it.
+fn has_name(row: &str, divider: Option<char>, columns: usize) -> bool {
+    let has_bare_cell = row.matches('"').count() <= 2 * columns;
+    row.starts_with('"') && has_bare_cell && cells(row, divider).count() == columns + 1
+}
+
+/// Creates the error of a text in none of the formats.
 fn unknown(line: usize, found: &str) -> ReadError {
     let known = "extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose first line names columns \
                  such as x, y and radius";

@@ -12,7 +12,7 @@ use super::column::Quantity::{
 use super::column::SLOTS;
 use super::settings::Settings;
 use super::table::Table;
-use super::{ReadError, State};
+use super::{ReadError, State, kinds};
 use crate::boundary::Domain;
 use crate::{Disk, Kind, ParameterError};
 
@@ -28,9 +28,14 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
     if table.has(Id, 0) && number(&mut disks, &table.lines)? {
         table.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
     }
+    if table.domain.is_none()
+        && table.has(Position, 0)
+        && [0, 1].iter().any(|&axis| table.has(Unwrapped, axis))
+    {
+        table.notes.push("unwrapped positions are ignored, for the file has no box".to_owned());
+    }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
-    let is_named = !is_numbered && table.names().iter().any(|name| name.parse::<u16>().is_err());
-    let names = if is_named { table.names() } else { Vec::new() };
+    let names = if is_numbered { Vec::new() } else { kinds::ordered(&table).unwrap_or_default() };
     let mut state = State {
         disks,
         domain: table.domain,
@@ -65,8 +70,12 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     if !either(&[Radius, Diameter], 0) && settings.radius.is_none() {
         return missing("radius");
     }
+    if either(&[Momentum], 0) && !either(&[Mass, Density], 0) && settings.density.is_none() {
+        let what = "a column of masses, or a density (with_density, --density), for the momenta";
+        return Err(ReadError::missing(table.line, what));
+    }
     check_plane(table, settings)?;
-    let kinds = kinds_of_names(table)?;
+    let kinds = kinds::of_names(table)?;
     let mut disks = Vec::with_capacity(table.lines.len());
     for (values, line) in table.rows() {
         let row = Row { slots: slots(table, values, line)?, table, settings, line };
@@ -75,28 +84,24 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     Ok(disks)
 }
 
-/// Returns the numbers of named kinds: the names themselves if they are numbers, or else their order.
-fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
-    let names = table.names();
-    let numbers: Option<Vec<u16>> = names.iter().map(|name| name.parse().ok()).collect();
-    let kinds = numbers.unwrap_or_else(|| (0..=u16::MAX).take(names.len()).collect());
-    if kinds.len() == names.len() {
-        return Ok(kinds);
-    }
-    let found = names.len().to_string();
-    Err(ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found))
-}
-
-/// The values of a row, indexed by slot.
+/// The values of a row by their slots.
 type Slots = [Option<f64>; SLOTS];
 
 /// Returns the values of a row, indexed by slot, or an error if two columns contradict each other.
 fn slots(table: &Table, values: &[f64], line: usize) -> Result<Slots, ReadError> {
     let mut slots: Slots = [None; SLOTS];
     for ((column, slot), &value) in table.known().zip(values) {
-        if let Some(other) = slots[slot].replace(value) {
-            agree(&column.name, other, value, 0.0, line)?;
+        let Some(other) = slots[slot].replace(value) else { continue };
+        if slot == Name as usize && other != value {
+            let names = [other, value].map(|index| table.names()[index as usize]);
+            return Err(contradiction(&column.name, &names.join(" and "), line));
         }
+        // Whole numbers have no rounding.
+        let is_whole = slot < Position as usize || slot >= Image as usize;
+        if is_whole && other != value {
+            return Err(contradiction(&column.name, &format!("{other} and {value}"), line));
+        }
+        agree(&column.name, other, value, 0.0, line)?;
     }
     Ok(slots)
 }
@@ -107,8 +112,12 @@ fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f6
     if (one - other).abs() <= most || one.to_bits() == other.to_bits() {
         return Ok(one);
     }
-    let found = format!("{one} and {other}");
-    Err(ReadError::unexpected(line, what, "the same in all columns that tell it", found))
+    Err(contradiction(what, &format!("{one} and {other}"), line))
+}
+
+/// Creates the error of columns that tell different things.
+fn contradiction(what: &str, found: &str, line: usize) -> ReadError {
+    ReadError::unexpected(line, what, "the same in all columns that tell it", found)
 }
 
 /// Checks that the disks lie in one plane, move in it, and turn in it.
@@ -120,6 +129,7 @@ fn check_plane(table: &Table, settings: &Settings) -> Result<(), ReadError> {
     };
     let size = largest(&[Radius, Diameter], &[0]).max(settings.radius.unwrap_or_default());
     let turning = largest(&[AngularVelocity], &[2]);
+    let is_out = |height: f64, scale| !height.is_finite() || height.abs() > FLAT * scale;
     for (quantity, axis, scale, is_place) in [
         (Position, 2, size, true),
         (Scaled, 2, 1.0, true),
@@ -134,7 +144,7 @@ fn check_plane(table: &Table, settings: &Settings) -> Result<(), ReadError> {
     ] {
         let values = || quantity.slot(axis).into_iter().flat_map(|slot| table.values(slot));
         let plane = values().next().filter(|_| is_place).map_or(0.0, |(value, _)| value);
-        if let Some((value, line)) = values().find(|(value, _)| (value - plane).abs() > FLAT * scale) {
+        if let Some((value, line)) = values().find(|(value, _)| is_out(value - plane, scale)) {
             let [lie, stay] =
                 ["the same for all disks, which lie in a plane", "0, for disks move in a plane"];
             let requirement = if is_place { lie } else { stay };
@@ -261,8 +271,7 @@ impl Row<'_> {
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);
         }
-        let found = format!("{angle} and that of the orientation");
-        Err(ReadError::unexpected(self.line, "angle", "the same in all columns that tell it", found))
+        Err(contradiction("angle", &format!("{angle} and that of the orientation"), self.line))
     }
 
     /// Returns the kind: from its number if possible, or else from a type, or else from a name.

@@ -205,7 +205,7 @@ pub enum ReadError {
     },
     /// Disks overlap by more than rounding, or by more than the reader's tolerance.
     #[error("line {line}: the disk overlaps the disk of line {other} by {}, a share of {} of their distance at \
-        contact; it is the deepest of {count} such overlaps; a tolerance or shrunk radii accept them",
+        contact; it is the deepest of {count} such overlaps; {advice}",
         Rounded(*.depth), Rounded(*.share))]
     Overlap {
         /// Number of the line.
@@ -218,6 +218,8 @@ pub enum ReadError {
         share: f64,
         /// Number of overlaps, counted up to eight for each disk.
         count: usize,
+        /// The settings that accept them, or the reason why none should.
+        advice: &'static str,
     },
     /// The file does not have the frame.
     #[error("there is no frame of {wanted}: the file has {count}")]

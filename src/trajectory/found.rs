@@ -2,13 +2,14 @@
 
 use super::ReadError;
 use super::lines::Text;
+use super::settings::Settings;
 use super::table::Table;
 
 /// A frame that was found in a file, and is read only on request.
 pub(super) struct Found<'a> {
     /// The step with which the file labels the frame.
     pub(super) step: Option<u64>,
-    pub(super) read: Box<dyn FnOnce() -> Result<Table, ReadError> + 'a>,
+    pub(super) read: Reading<'a>,
 }
 
 impl<'a> Found<'a> {
@@ -18,7 +19,7 @@ impl<'a> Found<'a> {
         step: Option<u64>,
         read: impl FnOnce(&Text) -> Result<Table, ReadError> + 'a,
     ) -> Self {
-        let read = move || {
+        let read = move |_: &Settings| {
             let mut table = read(&text)?;
             match (text.is_torn(), table.is_own, table.lines.last()) {
                 (true, true, Some(&line)) => {
@@ -35,6 +36,9 @@ impl<'a> Found<'a> {
         Self { step, read: Box::new(read) }
     }
 }
+
+/// The function that reads a frame.
+pub(super) type Reading<'a> = Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>;
 
 /// The frames of a file, one after another.
 pub(super) type Frames<'a> = Box<dyn Iterator<Item = Result<Found<'a>, ReadError>> + 'a>;

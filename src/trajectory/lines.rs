@@ -1,9 +1,11 @@
 //! Lines of a text with their numbers, and the numbers in them.
 
 use std::io::{BufRead, Read};
+use std::str::FromStr;
 
 use super::ReadError;
 use crate::boundary::Domain;
+use crate::disk::LARGEST_ID;
 
 /// Largest number of bytes of a line. No line of a file of disks is nearly as long, but a small compressed
 /// file can expand to one that fills the memory.
@@ -164,12 +166,21 @@ pub(super) fn number(what: &str, text: &str, line: usize) -> Result<f64, ReadErr
     number.map_err(|_| ReadError::unexpected(line, what, "a number", text))
 }
 
-/// Reads a whole number, which may end in `.0`.
-pub(super) fn whole<T: std::str::FromStr>(what: &str, text: &str, line: usize) -> Result<T, ReadError> {
+/// Reads a whole number, which may be written as a float, such as `2.0` or `2.0e+00`.
+pub(super) fn whole<T: FromStr>(what: &str, text: &str, line: usize) -> Result<T, ReadError> {
     let requirement = format!("a whole number that fits into {}", std::any::type_name::<T>());
-    let text = text.trim();
-    let digits = text.strip_suffix(".0").unwrap_or(text);
-    digits.parse().map_err(|_| ReadError::unexpected(line, what, requirement, text))
+    as_whole(text).ok_or_else(|| ReadError::unexpected(line, what, requirement, text.trim()))
+}
+
+/// Returns the whole number that a text is, if it is one.
+pub(super) fn as_whole<T: FromStr>(text: &str) -> Option<T> {
+    let of_float = || {
+        let number = text.trim().parse::<f64>().ok()?;
+        // Above, not every whole number is a float.
+        let is_whole = number.fract() == 0.0 && number.abs() < LARGEST_ID as f64;
+        is_whole.then(|| (number as i64).to_string())?.parse().ok()
+    };
+    text.trim().parse().ok().or_else(of_float)
 }
 
 /// Reads a number that must be finite.

@@ -26,12 +26,12 @@ use crate::quantity::non_negative;
 /// |---|---|
 /// | position | `pos`, `position`; `x y`; `xs ys` as shares of the box; `unwrapped`, `xu yu` |
 /// | radius | `radius`, `radii`, `r`; `diameter`, `d` |
-/// | velocity | `velo`, `vel`, `velocity`, `v`, `vx vy`; `momenta`, divided by the mass |
+/// | velocity | `velo`, `vel`, `velocity`, `v`, `vx vy`; `momenta`, if there are masses |
 /// | mass | `mass`, `masses`, `m`; `density`, as mass per area, or of a sphere in files of LAMMPS |
 /// | angle | `angle`; `orientation`, as an angle or a quaternion x, y, z, w |
 /// | angular velocity | `angular_velocity`, `omega`, `omegaz`, `wz`; of three components the third |
 /// | id | `id`, `identifier` |
-/// | kind | `kind`; `type`, from 1 in LAMMPS; `species`, `element`, `name`: numbers, or by first appearance |
+/// | kind | `kind`; `type`, from 1 in LAMMPS; `species`, `element`, `name`: numbers, or names in order |
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///
@@ -128,8 +128,9 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] returns the amount.
-    /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Masses stay.
+    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
+    /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error, and always those of more
+    /// than half the sum of the radii. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -137,6 +138,8 @@ impl Reader {
     }
 
     /// Returns the same reader, with this mass per area for the disks of a file without masses.
+    ///
+    /// A file of GSD leaves out masses that are all 1; [`State::notes`] tells that the density counts instead.
     ///
     /// # Errors
     /// If it is not in `[1e-30, 1e30]`.
@@ -177,7 +180,7 @@ impl Reader {
     }
 
     fn state(&self, frames: Frames<'_>) -> Result<State, ReadError> {
-        disks::state((self.frame.find(frames)?.read)()?, &self.settings)
+        disks::state((self.frame.find(frames)?.read)(&self.settings)?, &self.settings)
     }
 
     /// Returns the states of all frames of an input, one after another. The iterator ends after an error.
@@ -237,7 +240,7 @@ impl Iterator for States<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         let found = self.frames.as_mut()?.next()?;
-        let state = found.and_then(|found| disks::state((found.read)()?, &self.settings));
+        let state = found.and_then(|found| disks::state((found.read)(&self.settings)?, &self.settings));
         if state.is_err() {
             self.frames = None;
         }

@@ -79,7 +79,8 @@ impl State {
         self.gravity
     }
 
-    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on.
+    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on, which is the
+    /// alphabetical order.
     ///
     /// It is empty if the kinds are numbers in the file.
     pub fn kind_names(&self) -> &[String] {
@@ -104,6 +105,9 @@ impl State {
     /// Returns sentences about all that the reader ignored or changed.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.notes.clone();
+        if !self.kind_names.is_empty() {
+            notes.push(format!("kinds are numbered by name: {}", self.numbered_names()));
+        }
         if !self.ignored.is_empty() {
             notes.push(format!("ignored columns: {}", self.ignored.join(", ")));
         }
@@ -118,7 +122,20 @@ impl State {
         }
         notes
     }
+
+    /// Returns the names of kinds with their numbers, of many kinds only the first.
+    fn numbered_names(&self) -> String {
+        let names = self.kind_names.iter().enumerate().take(MOST_NAMES);
+        let mut names: Vec<String> = names.map(|(number, name)| format!("{name} {number}")).collect();
+        if self.kind_names.len() > MOST_NAMES {
+            names.push(format!("and {} others", self.kind_names.len() - MOST_NAMES));
+        }
+        names.join(", ")
+    }
 }
+
+/// Most names of kinds in a note.
+const MOST_NAMES: usize = 8;
 
 /// Returns the rectangle around these disks.
 fn around(disks: &[Disk]) -> Domain {

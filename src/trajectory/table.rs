@@ -21,7 +21,7 @@ pub(super) struct Table {
     values: Vec<f64>,
     /// The line number of each row.
     pub(super) lines: Vec<usize>,
-    /// The number of each name, by first appearance.
+    /// The index of each name, which stands for it in the values.
     names: HashMap<String, usize>,
     /// True for a file of LAMMPS, in which types count from 1, and densities are densities of spheres.
     pub(super) is_of_lammps: bool,
@@ -32,6 +32,8 @@ pub(super) struct Table {
     /// The box to which scaled positions refer, if it is not the domain.
     pub(super) extent: Option<Domain>,
     pub(super) time: Option<f64>,
+    /// The name of a column of the time, which is the same for all disks; empty if the format has none.
+    pub(super) time_column: &'static str,
     pub(super) gravity: Option<Gravity>,
     /// Largest error of a position, from the precision of the file.
     pub(super) rounding: f64,
@@ -40,35 +42,21 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Creates a table of these columns. No column may appear twice.
-    pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Result<Self, ReadError> {
+    /// Creates a table of these columns.
+    pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Self {
         let mut columns: Vec<Column> = columns.into_iter().collect();
         // Only LAMMPS counts types from 1; elsewhere, a type is a name.
         if columns.iter().all(|column| column.slot != Quantity::Name.slot(0)) {
             let types = columns.iter_mut().filter(|column| column.slot == Quantity::Type.slot(0));
             types.for_each(|column| column.slot = Quantity::Name.slot(0));
         }
-        Self::checked(columns, line)
+        Self { columns, line, ..Self::default() }
     }
 
     /// Creates a table of columns that have one component each, with the conventions of LAMMPS.
-    pub(super) fn of_lammps<'a>(
-        names: impl IntoIterator<Item = &'a str>,
-        line: usize,
-    ) -> Result<Self, ReadError> {
-        let columns = names.into_iter().flat_map(|name| Column::of(name, 1));
-        Ok(Self { is_of_lammps: true, ..Self::checked(columns.collect(), line)? })
-    }
-
-    fn checked(columns: Vec<Column>, line: usize) -> Result<Self, ReadError> {
-        for (index, column) in columns.iter().enumerate() {
-            let is_same = |other: &Column| other.slot == column.slot && other.name == column.name;
-            if column.slot.is_some() && columns[..index].iter().any(is_same) {
-                let what = format!("the column `{}`", column.name);
-                return Err(ReadError::Doubled { line, first: line, what });
-            }
-        }
-        Ok(Self { columns, line, ..Self::default() })
+    pub(super) fn of_lammps<'a>(names: impl IntoIterator<Item = &'a str>, line: usize) -> Self {
+        let columns = names.into_iter().flat_map(|name| Column::of(name, 1)).collect();
+        Self { columns, line, is_of_lammps: true, ..Self::default() }
     }
 
     /// Adds a row, with one cell for each column.
@@ -121,7 +109,7 @@ impl Table {
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |column: &Column| {
             let is_name = column.slot == Some(Quantity::Name as usize);
-            let is_time = self.is_of_lammps && column.name == "v_time";
+            let is_time = column.name.eq_ignore_ascii_case(self.time_column);
             column.slot.is_none() && !is_time
                 || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };
@@ -142,7 +130,7 @@ impl Table {
         self.lines
     }
 
-    /// Returns the names of kinds in the order of their appearance.
+    /// Returns the names of kinds by their indices.
     pub(super) fn names(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.names.keys().map(String::as_str).collect();
         names.sort_by_key(|&name| self.names[name]);
@@ -150,7 +138,7 @@ impl Table {
     }
 }
 
-/// Reads a cell. A name counts by its first appearance.
+/// Reads a cell. The index of a name stands for it.
 fn value(
     column: &Column,
     slot: usize,

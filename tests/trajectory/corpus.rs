@@ -121,7 +121,7 @@ fn tables_of_many_programs() {
             ),
             (
                 "x,y,radius,species\n1,2,0.5,\"a, b\"\n3,2,0.5,c\n",
-                "kinds 0 a, b, 1 c; (1 2) r0.5; (3 2) r0.5 k1",
+                "kinds 0 a, b, 1 c; (1 2) r0.5; (3 2) r0.5 k1 | kinds are numbered by name: a, b 0, c 1",
             ),
             ("x,y,radius,mass\r\n1,2,0.5,2\r\n", "(1 2) r0.5 m2"),
             (
@@ -137,8 +137,8 @@ fn tables_of_many_programs() {
             (
                 "x,y,radius\n1,2,0.5\n1,2,0.5\n3,2,0.5\n3.5,2,0.5\n",
                 "refused: line 3: the disk overlaps the disk of line 2 by \
-          1, a share of 1 of their distance at contact; it is the deepest of 2 such overlaps; a tolerance or shrunk \
-          radii accept them",
+          1, a share of 1 of their distance at contact; it is the deepest of 2 such overlaps; two disks lie \
+          nearly at the same place",
             ),
         ],
     );
@@ -184,9 +184,19 @@ fn soft_disks() {
     let note = " | all radii are shrunk by the deepest overlap, a share of 0.01";
     assert_eq!(of(Reader::new().with_shrunk_radii()), radii("0.495") + note);
     assert_eq!(of(Reader::new().with_shrunk_radii().with_tolerance(0.011).unwrap()), radii("0.495") + note);
-    assert!(of(some.with_shrunk_radii()).starts_with(told));
-    let heap = "x,y,radius\n1,2,0.5\n1,2,0.5\n";
-    assert!(Reader::new().with_shrunk_radii().read_from(heap.as_bytes()).is_err(), "no radius is left");
+    let deeper = of(some.with_shrunk_radii());
+    assert!(deeper.starts_with(told) && deeper.ends_with("such overlaps; a larger tolerance accepts them"));
+    // Shrinking leaves at least half of each radius.
+    let near = |x: &str| format!("x,y,radius\n1,2,0.5\n{x},2,0.5\n");
+    let shrunk = |x: &str| shown(Reader::new().with_shrunk_radii().read_from(near(x).as_bytes()));
+    assert!(shrunk("1.5").starts_with("(1 2) r0.25; (1.5 2) r0.25 | all radii are shrunk"));
+    for x in ["1", "1.25", "1.49"] {
+        assert!(
+            shrunk(x).ends_with("such overlaps; two disks lie nearly at the same place"),
+            "{}",
+            shrunk(x)
+        );
+    }
     // Overlaps across a periodic side.
     let seam = xyz(
         "Lattice=\"10 0 0 0 5 0 0 0 1\" pbc=\"T F F\" Properties=pos:R:2:radius:R:1",
@@ -202,8 +212,14 @@ fn radii_and_masses_from_the_reader() {
     check(
         &reader,
         &[
-            ("1\na comment\nH 1 2 0\n", "kinds 0 H; (1 2) r0.5 m3.141592653589793"),
-            ("1\na comment\nH 1 2 0 9 9\n", "kinds 0 H; (1 2) r0.5 m3.141592653589793"),
+            (
+                "1\na comment\nH 1 2 0\n",
+                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0",
+            ),
+            (
+                "1\na comment\nH 1 2 0 9 9\n",
+                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0 | ignored columns: 5 to 6",
+            ),
             ("x y\n1 2\n", "(1 2) r0.5 m3.141592653589793"),
             // A file knows better.
             ("x,y,radius,mass\n1,2,0.25,1\n", "(1 2) r0.25"),

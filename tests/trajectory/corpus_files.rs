@@ -105,6 +105,20 @@ fn files_of_gsd() {
     );
 }
 
+/// Where a file has no diameters or masses, the reader's settings count, and else what the file has.
+#[test]
+fn settings_for_files_of_gsd() {
+    let reader = Reader::new().with_radius(0.25).unwrap();
+    let plain = "-4..4p -3..3p; (-2 1) r0.25; (0 0) r0.25; (1.5 -1) r0.25";
+    check_files(&reader, &[("hoomd_plane_3d.gsd", plain), ("hoomd_diameters_missing.gsd", plain)]);
+    let reader = Reader::new().with_radius(0.1).unwrap().with_density(4.0).unwrap();
+    let file = "-4..4p -3..3p; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)";
+    check_files(&reader.clone().with_frame(0), &[("hoomd_plain.gsd", file)]);
+    let told = " | masses are by the density, for the file has none, which may mean 1";
+    let dense = plain.replace("r0.25", "r0.1 m0.12566370614359174");
+    check_files(&reader, &[("hoomd_plane_3d.gsd", &format!("{dense}{told}"))]);
+}
+
 #[test]
 fn frames_of_gsd_by_number_and_step() {
     let first =

@@ -27,7 +27,7 @@ fn columns_of_extended_xyz() {
         [
             "Properties=species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1",
             "H 1 2 0 2 3 4 0 0.5",
-            "kinds 0 H; (1 2) r0.5 m2 v(1.5 2)",
+            "kinds 0 H; (1 2) r0.5 m2 v(1.5 2) | kinds are numbered by name: H 0",
         ],
         // OVITO has the angular velocity as a vector, and the orientation as a quaternion.
         ["Properties=pos:R:3:radius:R:1:omega:R:3", "1 2 0 0.5 0 0 0.75", "(1 2) r0.5 w0.75"],
@@ -70,7 +70,8 @@ fn kinds_by_names() {
         [
             "Properties=species:S:1:pos:R:3:radius:R:1",
             "steel 1 1 0 0.5 / glass 3 1 0 0.5 / steel 5 1 0 0.5",
-            "kinds 0 steel, 1 glass; (1 1) r0.5; (3 1) r0.5 k1; (5 1) r0.5",
+            "kinds 0 glass, 1 steel; (1 1) r0.5 k1; (3 1) r0.5; (5 1) r0.5 k1 \
+             | kinds are numbered by name: glass 0, steel 1",
         ],
         [
             "Properties=species:S:1:pos:R:3:radius:R:1",
@@ -91,7 +92,7 @@ fn kinds_by_names() {
         [
             "Properties=type:S:1:pos:R:3:radius:R:1",
             "A 1 1 0 0.5 / B 3 1 0 0.5",
-            "kinds 0 A, 1 B; (1 1) r0.5; (3 1) r0.5 k1",
+            "kinds 0 A, 1 B; (1 1) r0.5; (3 1) r0.5 k1 | kinds are numbered by name: A 0, B 1",
         ],
         [
             "Properties=species:S:1:type:I:1:pos:R:3:radius:R:1",
@@ -225,9 +226,8 @@ fn columns_that_contradict_each_other() {
         ],
         [
             "Properties=pos:R:2:pos:R:2:radius:R:1",
-            "1 2 1 2 0.5",
-            "refused: line 2: the column `pos` stands in line 2 \
-          already",
+            "1 2 1 3 0.5",
+            "refused: line 3: pos must be the same in all columns that tell it, but is \"2 and 3\"",
         ],
     ]);
 }

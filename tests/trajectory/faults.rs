@@ -29,7 +29,6 @@ fn faults_of_tables() {
     let cases = [
         ("", "the file ends after line 0, where a frame should follow"),
         ("x,y\n", "line 1: the column `radius` is missing"),
-        ("x,y,radius,x\n", "line 1: the column `x` stands in line 1 already"),
         ("x,y,radius\n1,2,0.5\n\n1,zwei,0.5\n", "line 4: y must be a number, but is \"zwei\""),
         ("x,y,radius\n1,2\n", "line 2: the number of values must be 3, one for each column, but is \"2\""),
         (

@@ -8,6 +8,8 @@ mod corpus;
 mod corpus_data;
 mod corpus_dumps;
 mod corpus_files;
+mod corpus_kinds;
+mod corpus_notes;
 mod corpus_xyz;
 mod faults;
 mod gsd;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::Gravity;
 use crate::boundary::Domain;
 use crate::trajectory::ReadError;
-use crate::trajectory::column::Column;
+use crate::trajectory::column::{Column, Quantity};
 use crate::trajectory::lines::{checked_box, finite, is_upright, number};
 use crate::trajectory::table::Table;
 
@@ -67,7 +67,7 @@ impl<'a> Keys<'a> {
     pub(super) fn table(&self) -> Result<Table, ReadError> {
         let properties = self.value(&["Properties"])?;
         let columns = columns(properties.unwrap_or("species:S:1:pos:R:3"), self.line)?;
-        let mut table = Table::new(columns, self.line)?;
+        let mut table = Table::new(columns, self.line);
         table.time = self.time()?;
         table.gravity = self.value(&["Gravity"])?.map(|value| self.gravity(value)).transpose()?;
         table.domain = self.domain(&mut table.notes)?;
@@ -199,6 +199,11 @@ fn columns(properties: &str, line: usize) -> Result<Vec<Column>, ReadError> {
             return Err(ReadError::unexpected(line, "`Properties`", most, properties));
         }
         columns.extend(Column::of(name, count));
+    }
+    // Beside a vector, ASE's `Z` is the number of an element.
+    let is = |column: &Column, name: &str| column.name.eq_ignore_ascii_case(name);
+    if columns.iter().any(|column| column.slot == Quantity::Position.slot(0) && !is(column, "x")) {
+        columns.iter_mut().filter(|column| is(column, "z")).for_each(|column| column.slot = None);
     }
     Ok(columns)
 }

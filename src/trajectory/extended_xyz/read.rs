@@ -4,6 +4,7 @@ use std::io::BufRead;
 
 use super::keys::Keys;
 use crate::trajectory::ReadError;
+use crate::trajectory::column::Column;
 use crate::trajectory::found::Found;
 use crate::trajectory::lines::{Input, Text};
 use crate::trajectory::table::Table;
@@ -28,10 +29,18 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
 fn table(keys: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
     let keys = Keys::parse(keys, line)?;
     let mut table = keys.table()?;
-    // A plain XYZ file may have more columns than the columns known to all programs.
-    let most = if keys.has_properties() { usize::MAX } else { table.columns.len() };
+    // A plain XYZ may have more columns than those that all programs know.
+    let known = table.columns.len();
+    let most = if keys.has_properties() { usize::MAX } else { known };
+    let mut widest = known;
     for (row, line) in rows.lines()? {
         table.push(row.split_whitespace().take(most), line)?;
+        widest = widest.max(row.split_whitespace().count());
+    }
+    if widest > known {
+        let first = known + 1;
+        let name = if widest == first { first.to_string() } else { format!("{first} to {widest}") };
+        table.columns.push(Column { name, slot: None });
     }
     Ok(table)
 }

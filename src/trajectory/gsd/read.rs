@@ -1,6 +1,7 @@
 //! Frames of GSD, read one by one.
 
 use std::cell::RefCell;
+use std::f64::consts::PI;
 use std::io::{BufRead, Cursor, Read, Seek};
 use std::rc::Rc;
 
@@ -13,6 +14,7 @@ use crate::trajectory::ReadError;
 use crate::trajectory::column::Column;
 use crate::trajectory::found::{Found, Frames};
 use crate::trajectory::lines::{checked_box, is_upright};
+use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
 /// Returns whether a file that begins with these bytes is a file of GSD.
@@ -42,8 +44,8 @@ pub(in crate::trajectory) fn frames_of_file<'a>(input: impl Read + Seek + 'a) ->
         let archive = Rc::clone(&archive);
         Ok(Found {
             step: Some(step),
-            read: Box::new(move || {
-                View { archive: &mut archive.borrow_mut(), frame, notes: Vec::new() }.table()
+            read: Box::new(move |settings| {
+                View { archive: &mut archive.borrow_mut(), frame, settings, notes: Vec::new() }.table()
             }),
         })
     }))
@@ -53,6 +55,7 @@ pub(in crate::trajectory) fn frames_of_file<'a>(input: impl Read + Seek + 'a) ->
 struct View<'a, R> {
     archive: &'a mut Archive<R>,
     frame: u64,
+    settings: &'a Settings,
     notes: Vec<String>,
 }
 
@@ -100,7 +103,7 @@ impl<R: Read + Seek> View<'_, R> {
         };
         let (center, columns) = (self.center()?, self.columns(count)?);
         let names = columns.iter().map(|column| (column.name, column.size)).chain([("pos", 3)]);
-        let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1)?;
+        let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1);
         self.space(center, &mut table)?;
         for row in 0..count {
             let values =
@@ -129,12 +132,17 @@ impl<R: Read + Seek> View<'_, R> {
             }
         }
         let diameters = self.diameters(count)?;
+        let (masses, density) = (self.rows("particles/mass", count, 1)?, self.settings.density);
+        if masses.is_none() && density.is_some() {
+            self.notes.push("masses are by the density, for the file has none, which may mean 1".to_owned());
+        }
         if let Some(inertia) = self.rows("particles/moment_inertia", count, 3)? {
-            let (sizes, mass) = (diameters.clone(), self.rows("particles/mass", count, 1)?);
+            let sizes = diameters.clone();
             let factor = move |row: usize, moment: f64| {
-                let mass = mass.as_ref().map_or(1.0, |mass| mass.number(row, 0));
-                let unit = 0.25 * mass * sizes[row] * sizes[row];
-                // Rounding must not give a homogeneous disk another moment of inertia.
+                let square = 0.25 * sizes[row] * sizes[row];
+                let by_density = || density.map_or(1.0, |density| density * PI * square);
+                let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
+                // Rounding does not make a homogeneous disk another one.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
                 let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
                 if is_other { moment / unit } else { homogeneous }
@@ -193,8 +201,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters: the diameters of the shapes if the file has shapes, or else its chunk of
-    /// diameters, which are 1 without a chunk.
+    /// Returns the diameters: those of the shapes if the file has shapes, or else its diameters, which are
+    /// by the settings, or else 1, where it has none.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {
@@ -208,13 +216,14 @@ impl<R: Read + Seek> View<'_, R> {
         };
         let (kinds, given) =
             (self.rows("particles/typeid", count, 1)?, self.rows("particles/diameter", count, 1)?);
-        if shapes.is_empty() && given.is_none() {
+        let default = self.settings.radius.map_or(1.0, |radius| 2.0 * radius);
+        if shapes.is_empty() && given.is_none() && self.settings.radius.is_none() {
             self.notes.push("all diameters are 1, for the file has none".to_owned());
         }
         let of_disk = |row| {
             let kind = kinds.as_ref().map_or(0, |kinds| kinds.number(row, 0) as usize);
             let shape = shapes.get(kind).copied();
-            shape.unwrap_or_else(|| given.as_ref().map_or(1.0, |given| given.number(row, 0)))
+            shape.unwrap_or_else(|| given.as_ref().map_or(default, |given| given.number(row, 0)))
         };
         Ok((0..count).map(of_disk).collect())
     }

@@ -118,7 +118,7 @@ impl<'a> Sections<'a> {
         let has_images = self.atoms.rows.first().is_some_and(|(row, _)| words(row).len() == size + 3);
         names.extend(["ix", "iy", "iz"].iter().filter(|_| has_images));
         let others = if self.velocities.is_some() { "vx vy vz wx wy wz" } else { "" };
-        let mut table = Table::of_lammps(names.iter().copied().chain(others.split_whitespace()), self.line)?;
+        let mut table = Table::of_lammps(names.iter().copied().chain(others.split_whitespace()), self.line);
         for &(row, line) in &self.atoms.rows {
             let mut atom = words(row);
             if atom.len() != names.len() {

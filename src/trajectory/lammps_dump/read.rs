@@ -72,7 +72,8 @@ fn name_and_rest(item: &str) -> [&str; 2] {
 impl Head {
     /// Reads the disks.
     fn table(&self, names: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
-        let mut table = Table::of_lammps(names.split_whitespace(), line)?;
+        let mut table = Table::of_lammps(names.split_whitespace(), line);
+        table.time_column = TIME;
         table.is_own = table.has(Quantity::Angle, 0);
         table.time = self.time.as_ref().map(|(time, line)| finite("the time", time, *line)).transpose()?;
         if let Some((words, bounds)) = &self.bounds {

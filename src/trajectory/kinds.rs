@@ -1,0 +1,28 @@
+//! Kinds by the names that a file gives them.
+
+use super::ReadError;
+use super::lines::as_whole;
+use super::table::Table;
+
+/// Returns the numbers of the kinds that names stand for: the names themselves, or else their places in
+/// order, which are the same for all frames with these names.
+pub(super) fn of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
+    let names = table.names();
+    let ordered = ordered(table);
+    let kind = |name: &&str| match &ordered {
+        Some(ordered) => ordered.binary_search(name).ok().and_then(|place| u16::try_from(place).ok()),
+        None => as_whole(name),
+    };
+    let kinds: Option<Vec<u16>> = names.iter().map(kind).collect();
+    let found = names.len().to_string();
+    kinds.ok_or_else(|| {
+        ReadError::unexpected(table.line, "the number of names of kinds", "at most 65536", found)
+    })
+}
+
+/// Returns the names of kinds in order, if they are not all numbers.
+pub(super) fn ordered(table: &Table) -> Option<Vec<&str>> {
+    let mut names = table.names();
+    names.sort_unstable();
+    names.iter().any(|name| as_whole::<u16>(name).is_none()).then_some(names)
+}
