@@ -23,6 +23,8 @@ pub(super) struct Table {
     pub(super) lines: Vec<usize>,
     /// The index of each name, which stands for it in the values.
     names: HashMap<String, usize>,
+    /// The names that the file gives to the numbers of kinds, from 0 on.
+    pub(super) kind_names: Vec<String>,
     /// Types count from 1, and a density is that of a sphere.
     pub(super) is_of_lammps: bool,
     /// This crate wrote the file. It always writes a last line break, so a file without one is torn.
