@@ -139,7 +139,7 @@ impl Reader {
 
     /// Returns the same reader, with this mass per area for the disks of a file without masses.
     ///
-    /// A file of GSD leaves out masses that are all 1; [`State::notes`] tells that the density counts instead.
+    /// A file of GSD leaves out masses that are all 1; [`State::notes`] tells if the density counts.
     ///
     /// # Errors
     /// If it is not in `[1e-30, 1e30]`.
