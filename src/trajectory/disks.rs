@@ -35,13 +35,14 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         table.notes.push("unwrapped positions are ignored, for the file has no box".to_owned());
     }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
-    let names = if is_numbered { Vec::new() } else { kinds::ordered(&table).unwrap_or_default() };
+    let ordered = kinds::ordered(&table).filter(|_| !is_numbered).unwrap_or_default();
+    let ordered: Vec<String> = ordered.into_iter().map(str::to_owned).collect();
     let mut state = State {
         disks,
         domain: table.domain,
         time: table.time,
         gravity: table.gravity,
-        kind_names: names.into_iter().map(str::to_owned).collect(),
+        kind_names: if is_numbered { std::mem::take(&mut table.kind_names) } else { ordered },
         ignored: table.ignored(),
         notes: std::mem::take(&mut table.notes),
         ..State::default()

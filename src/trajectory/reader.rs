@@ -129,8 +129,8 @@ impl Reader {
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
     /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
-    /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error, and always those of more
-    /// than half the sum of the radii. Masses stay.
+    /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Those of more than half the
+    /// sum of the radii always are. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -139,7 +139,7 @@ impl Reader {
 
     /// Returns the same reader, with this mass per area for the disks of a file without masses.
     ///
-    /// A file of GSD leaves out masses that are all 1; [`State::notes`] says that the density counts.
+    /// A file of GSD leaves out masses that are all 1; [`State::notes`] tells if the density counts.
     ///
     /// # Errors
     /// If it is not in `[1e-30, 1e30]`.

@@ -79,10 +79,10 @@ impl State {
         self.gravity
     }
 
-    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on, which is the
-    /// alphabetical order.
+    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. It is the
+    /// alphabetical order, unless the file numbers them.
     ///
-    /// It is empty if the kinds are numbers in the file.
+    /// It is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {
         &self.kind_names
     }

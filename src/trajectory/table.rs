@@ -23,7 +23,9 @@ pub(super) struct Table {
     pub(super) lines: Vec<usize>,
     /// The index of each name, which stands for it in the values.
     names: HashMap<String, usize>,
-    /// True for a file of LAMMPS, in which types count from 1, and densities are densities of spheres.
+    /// The names that the file gives to the numbers of kinds, from 0 on.
+    pub(super) kind_names: Vec<String>,
+    /// Types count from 1, and a density is that of a sphere.
     pub(super) is_of_lammps: bool,
     /// True if this crate wrote the file. The crate always writes a last line break, so a file without a last
     /// line break is incomplete.

@@ -78,7 +78,8 @@ fn data_of_lammps_by_sections_and_styles() {
                 &format!("{BOX}\n2 atom types"),
                 "Atom Type Labels\n\n1 big\n2 small # the others\n\nAtoms # sphere\n\n1 big 1 6 2 3 0\n2 small 0.5 6 5 3 0\n",
             ),
-            two.clone(),
+            two.replace("(2 3)", "kinds 0 big, 1 small; (2 3)")
+                + " | kinds are numbered by name: big 0, small 1",
         ),
         (
             data(BOX, "Atoms\n# id type\n\n1 1 1 6 2 3 0 # a big one\n  # a small one\n2 2 0.5 6 5 3 0\n"),

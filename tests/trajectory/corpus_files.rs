@@ -27,6 +27,8 @@ fn check_files(reader: &Reader, cases: &[(&str, &str)]) {
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), cases.len(), wrong.join("\n"));
 }
 
+const NAMED: &str = " | kinds are numbered by name: A 0, B 1";
+
 /// `files/make_gsd.py` has made these by the package `gsd`.
 #[test]
 fn files_of_gsd() {
@@ -36,7 +38,11 @@ fn files_of_gsd() {
         &Reader::new(),
         &[
             ("hoomd_plain.gsd", "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5"),
-            ("hoomd_shapes.gsd", "-4..4p -3..3p; (-2 1) r0.45; (0 0) r0.25 k1; (1.5 -1) r0.45"),
+            (
+                "hoomd_shapes.gsd",
+                "-4..4p -3..3p; kinds 0 A, 1 B; (-2 1) r0.45; (0 0) r0.25 k1; (1.5 -1) r0.45 \
+                 | kinds are numbered by name: A 0, B 1",
+            ),
             (
                 "hoomd_spheres.gsd",
                 "refused: frame 0: the shapes must be in `particles/type_shapes`, not in `state/hpmc/sphere/radius`",
@@ -56,7 +62,7 @@ fn files_of_gsd() {
             ),
             ("hoomd_plane_3d.gsd", &plain("")),
             ("hoomd_diameters_missing.gsd", &plain("")),
-            ("names.gsd", &plain(" k1")),
+            ("names.gsd", &(plain(" k1").replace("(-2", "kinds 0 A, 1 B; (-2") + NAMED)),
             (
                 "hoomd_overlap.gsd",
                 "refused: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
@@ -112,8 +118,8 @@ fn settings_for_files_of_gsd() {
     let plain = "-4..4p -3..3p; (-2 1) r0.25; (0 0) r0.25; (1.5 -1) r0.25";
     check_files(&reader, &[("hoomd_plane_3d.gsd", plain), ("hoomd_diameters_missing.gsd", plain)]);
     let reader = Reader::new().with_radius(0.1).unwrap().with_density(4.0).unwrap();
-    let file = "-4..4p -3..3p; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)";
-    check_files(&reader.clone().with_frame(0), &[("hoomd_plain.gsd", file)]);
+    let file = "-4..4p -3..3p; kinds 0 A, 1 B; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)".to_owned() + NAMED;
+    check_files(&reader.clone().with_frame(0), &[("hoomd_plain.gsd", &file)]);
     let told = " | masses are by the density, for the file has none, which may mean 1";
     let dense = plain.replace("r0.25", "r0.1 m0.12566370614359174");
     check_files(&reader, &[("hoomd_plane_3d.gsd", &format!("{dense}{told}"))]);
@@ -121,14 +127,16 @@ fn settings_for_files_of_gsd() {
 
 #[test]
 fn frames_of_gsd_by_number_and_step() {
-    let first =
-        "-4..4p -3..3p; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)";
+    let first = "-4..4p -3..3p; kinds 0 A, 1 B; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; \
+                 (1.5 -1) r0.5 i(-1 2)"
+        .to_owned()
+        + NAMED;
     let second =
         first.replace("(-2 1)", "(-1.75 1)").replace("(0 0)", "(0.25 0)").replace("(1.5 -1)", "(1.75 -1)");
     let last = "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5";
     let none = |what| format!("refused: there is no frame of {what}: the file has 3");
     for (reader, expected) in [
-        (Reader::new().with_frame(0), first),
+        (Reader::new().with_frame(0), first.as_str()),
         (Reader::new().with_frame(1), &second),
         (Reader::new().with_frame(-2), &second),
         (Reader::new().with_step(100), &second),

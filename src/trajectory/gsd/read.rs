@@ -13,7 +13,7 @@ use crate::boundary::Domain;
 use crate::trajectory::ReadError;
 use crate::trajectory::column::Column;
 use crate::trajectory::found::{Found, Frames};
-use crate::trajectory::lines::{checked_box, is_upright};
+use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
@@ -110,6 +110,12 @@ impl<R: Read + Seek> View<'_, R> {
                 columns.iter().flat_map(|column| (0..column.size).map(|part| (column.value)(row, part)));
             let place = (0..3).map(|axis| position.number(row, axis) + [center.x, center.y, 0.0][axis]);
             table.push_numbers(&values.chain(place).collect::<Vec<_>>(), row + 1);
+        }
+        if let Some(types) = self.find("particles/types")? {
+            let names = types.bytes.chunks(types.columns.max(1)).map(String::from_utf8_lossy);
+            let names: Vec<String> = names.map(|name| name.trim_end_matches('\0').to_owned()).collect();
+            let is_named = names.iter().any(|name| as_whole::<u16>(name).is_none());
+            table.kind_names = if is_named { names } else { Vec::new() };
         }
         table.rounding = rounding(&position, center);
         table.notes = self.notes;
