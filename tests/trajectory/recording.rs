@@ -491,7 +491,7 @@ fn a_process_that_is_killed_leaves_whole_frames() {
         child.args(["--exact", "recording::records_until_it_is_killed", "--ignored"]);
         let child = child.env("KILLED_RECORDING", &path).stdout(std::process::Stdio::null());
         let mut child = child.stderr(std::process::Stdio::null()).spawn().unwrap();
-        while fs::metadata(&path).map_or(0, |file| file.len()) < 50_000 {
+        while fs::metadata(&path).map_or(0, |file| file.len()) < 100_000 {
             assert!(child.try_wait().unwrap().is_none(), "{name}: the child has ended by itself");
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
