@@ -1,4 +1,5 @@
-//! Viscoelastic restitution r(v) = 1 - a v^(1/5) + b v^(2/5) with Coulomb friction, and a bulk damping of spins.
+//! Viscoelastic restitution r(v) = 1 - a v^(1/5) + b v^(2/5) with Coulomb friction, and a bulk damping of
+//! spins.
 use granular_edmd::prelude::*;
 use granular_edmd::Fingerprint;
 use granular_edmd::collision::Friction;

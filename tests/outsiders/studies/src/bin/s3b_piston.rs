@@ -1,4 +1,5 @@
-//! A lid of finite mass on a spring: exact, by a rule of reduced mass on the lid and a new motion after each touch.
+//! A lid of finite mass on a spring: exact, by a rule of reduced mass on the lid and a new motion after each
+//! touch.
 use granular_edmd::prelude::*;
 use granular_edmd::wall::{AccelerationBounds, WallState};
 use granular_edmd::simulation::Event;
