@@ -64,6 +64,12 @@ fn files_of_gsd() {
             ("hoomd_diameters_missing.gsd", &plain("")),
             ("names.gsd", &(plain(" k1").replace("(-2", "kinds 0 A, 1 B; (-2") + NAMED)),
             (
+                "unused.gsd",
+                &(plain(" k1")
+                    + " | angular momenta are ignored, for the file has no moments of inertia | ignored: \
+                       particles/charge, log/energy"),
+            ),
+            (
                 "hoomd_overlap.gsd",
                 "refused: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
                  distance at contact; it is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",

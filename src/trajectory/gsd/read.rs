@@ -17,6 +17,31 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
+/// Chunks with a meaning.
+const KNOWN: [&str; 21] = [
+    "configuration/box",
+    "configuration/dimensions",
+    "configuration/step",
+    "log/center",
+    "log/domain",
+    "log/gravity",
+    "log/particles/id",
+    "log/periodic",
+    "log/time",
+    "particles/N",
+    "particles/angmom",
+    "particles/diameter",
+    "particles/image",
+    "particles/mass",
+    "particles/moment_inertia",
+    "particles/orientation",
+    "particles/position",
+    "particles/type_shapes",
+    "particles/typeid",
+    "particles/types",
+    "particles/velocity",
+];
+
 /// Returns whether a file that begins with these bytes is a file of GSD.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
@@ -117,6 +142,8 @@ impl<R: Read + Seek> View<'_, R> {
             let is_named = names.iter().any(|name| as_whole::<u16>(name).is_none());
             table.kind_names = if is_named { names } else { Vec::new() };
         }
+        let ignored = self.archive.filled(self.frame).filter(|name| !KNOWN.contains(name));
+        table.columns.extend(ignored.map(|name| Column { name: name.to_owned(), slot: None }));
         table.rounding = rounding(&position, center);
         table.notes = self.notes;
         Ok(table)
@@ -169,6 +196,9 @@ impl<R: Read + Seek> View<'_, R> {
                 }));
             }
             columns.push(Values::new("inertia_factor", 1, move |row, _| factor(row, moments[row])));
+        } else if self.rows("particles/angmom", count, 4)?.is_some() {
+            let note = "angular momenta are ignored, for the file has no moments of inertia";
+            self.notes.push(note.to_owned());
         }
         columns.push(Values::new("diameter", 1, move |row, _| diameters[row]));
         Ok(columns)
