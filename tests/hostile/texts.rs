@@ -7,7 +7,7 @@ use std::path::Path;
 use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::observable::Snapshot;
 use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, Reader, State};
-use granular_edmd::{Disk, initial};
+use granular_edmd::{Disk, Gravity, initial};
 use proptest::prelude::*;
 
 use crate::cases::config;
@@ -46,7 +46,11 @@ fn is_sound(read: &Result<State, ReadError>) -> bool {
     match read {
         Ok(state) => {
             let is_sound = |disk: &Disk| disk.position().is_finite() && disk.radius() > 0.0;
-            state.disks().iter().all(is_sound) && state.time().is_none_or(f64::is_finite)
+            let is_finite = |gravity: Gravity| gravity.acceleration().is_finite();
+            state.disks().iter().all(is_sound)
+                && state.time().is_none_or(f64::is_finite)
+                && state.gravity().is_none_or(is_finite)
+                && state.domain().is_none_or(|domain| domain.width() > 0.0 && domain.top > domain.bottom)
         }
         // A message is for people: whatever is in the file, it fits on a screen.
         Err(error) => error.to_string().len() < 2000,

@@ -107,6 +107,16 @@ fn files_of_gsd() {
             ("no_positions.gsd", "refused: frame 0: the chunk `particles/position` is missing"),
             ("bad_radius.gsd", "refused: line 2 is no disk: radius must be finite and positive, but is 0"),
             ("bad_mass.gsd", "refused: line 2 is no disk: mass must be finite and positive, but is -1"),
+            ("bad_time.gsd", "refused: frame 0: the chunk `log/time` must be finite, but is [NaN]"),
+            (
+                "bad_gravity.gsd",
+                "refused: frame 0: the chunk `log/gravity` must be finite, but is [0.0, inf]",
+            ),
+            ("bad_center.gsd", "refused: frame 0: the chunk `log/center` must be finite, but is [NaN, 3.0]"),
+            (
+                "bad_domain.gsd",
+                "refused: line 1: the box must be from smaller to larger numbers, but is \"0 to NaN and 0 to 6\"",
+            ),
             ("moving_out.gsd", "refused: line 2: velo must be 0, for disks move in a plane, but is \"1\""),
             ("types.gsd", "refused: line 2: kind must be from 0 to 65535, but is \"70000\""),
             (

@@ -119,6 +119,16 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(Some(std::array::from_fn(|at| chunk.number(at / chunk.columns, at % chunk.columns))))
     }
 
+    /// Returns the numbers in a chunk that must hold `COUNT` finite ones, or `None` if there is no such chunk.
+    fn finite<const COUNT: usize>(&mut self, name: &str) -> Result<Option<[f64; COUNT]>, ReadError> {
+        match self.numbers(name)? {
+            Some(numbers) if numbers.iter().any(|number| !number.is_finite()) => {
+                Err(self.wrong(&format!("the chunk `{name}` must be finite, but is {numbers:?}")))
+            }
+            numbers => Ok(numbers),
+        }
+    }
+
     fn table(mut self) -> Result<Table, ReadError> {
         let [count] = self.numbers("particles/N")?.unwrap_or_default();
         let count = count as usize;
@@ -206,7 +216,7 @@ impl<R: Read + Seek> View<'_, R> {
 
     /// Returns the point from which positions count.
     fn center(&mut self) -> Result<DVec2, ReadError> {
-        Ok(self.numbers("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
+        Ok(self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
     }
 
     /// Sets the box, the time and gravity.
@@ -232,8 +242,8 @@ impl<R: Read + Seek> View<'_, R> {
             let domain = if sides == 0.0 { domain } else { domain.with_periodic_sides() };
             table.domain = Some(if ends == 0.0 { domain } else { domain.with_periodic_ends() });
         }
-        table.time = self.numbers("log/time")?.map(|[time]| time);
-        table.gravity = self.numbers("log/gravity")?.map(|gravity| DVec2::from_array(gravity).into());
+        table.time = self.finite("log/time")?.map(|[time]| time);
+        table.gravity = self.finite("log/gravity")?.map(|gravity| DVec2::from_array(gravity).into());
         Ok(())
     }
 
