@@ -49,8 +49,8 @@ struct Arguments {
 
 const DISKS: usize = 288;
 
-/// Width of the box, and the height of the lid at first. A crystal of 16 disks in a row fits at a distance of 1.1.
-const WIDTH: f64 = 17.6;
+/// Width of the box, and the height of the lid at first. Sixteen disks in a row fit at a distance of 1.07.
+const WIDTH: f64 = 17.1;
 const HEIGHT: f64 = 24.0;
 
 /// Mass of the lid, whatever its weight.
@@ -59,8 +59,8 @@ const MASS: f64 = 50.0;
 /// Distance of centers below which disks are neighbors: about the first minimum of g(r).
 const RANGE: f64 = 1.5;
 
-/// Distance from floor and lid at which disks do not notice them.
-const LAYER: f64 = 4.0;
+/// Distance from floor and lid from which on disks count for the filling.
+const EDGE: f64 = 2.0;
 
 /// The pressure at which fluid and hexatic phase are in balance, in T/d² (Bernard and Krauth).
 const FREEZING: f64 = 9.185;
@@ -91,25 +91,24 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Presses disks by a lid of this weight over the width.
 fn pressed(arguments: &Arguments, pressure: f64) -> Result<Lid, Box<dyn Error>> {
-    // A light lid rises; the stops are far away.
+    // A light lid rises; the stops are far away. The disks are packed while the lid is held.
     let piston = Piston::new(MASS, [-6.0 * HEIGHT, 0.9 * HEIGHT])?.with_force(pressure * WIDTH)?;
-    let container = Container::closed(WIDTH, HEIGHT)?.with_periodic_sides()?;
-    let container =
-        container.with_temperature(Wall::Floor, Thermal::new(1.0)?)?.with_piston(Wall::Lid, piston)?;
+    let held = Container::closed(WIDTH, HEIGHT)?.with_periodic_sides()?;
+    let disks = initial::packed_at_random(&held, initial::homogeneous([0.5; DISKS], 1.0)?, HEIGHT, 1)?;
+    let container = held.with_temperature(Wall::Floor, Thermal::new(1.0)?)?.with_piston(Wall::Lid, piston)?;
     let lid = container.index(Wall::Lid).ok_or("a lid")?;
-    let grains = initial::homogeneous([0.5; DISKS], 1.0)?;
-    let disks = initial::packed_at_random(&container, grains, HEIGHT, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
 
     let time = if arguments.quick { arguments.time.min(10.0) } else { arguments.time };
     let mut progress = Progress::of(format!("pressure {pressure}")).until(2.0 * time);
     run.run_until(time, &mut progress)?;
+    // A window with soft edges, which do not notice the layers of a crystal.
     let filling = from_fn(|snapshot: &Snapshot<'_>| {
-        let top = snapshot.wall_point(lid).map_or(f64::NAN, |point| point.y) - LAYER;
-        let is_inside = |disk: &&Disk| (LAYER..top).contains(&disk.position().y);
-        let inside = snapshot.disks().iter().filter(is_inside).count() as f64;
-        0.25 * PI * inside / (WIDTH * (top - LAYER))
+        let size = snapshot.wall_point(lid).map_or(f64::NAN, |point| point.y) - 2.0 * EDGE;
+        let phase = |disk: &Disk| PI * ((disk.position().y - EDGE) / size).clamp(0.0, 1.0);
+        let inside: f64 = snapshot.disks().iter().map(|disk| 2.0 * phase(disk).sin().powi(2)).sum();
+        0.25 * PI * inside / (WIDTH * size)
     });
     let mut series = Series::new((filling, HexaticOrder::new(RANGE)?), SampleTimes::every(0.5)?);
     run.run_until(2.0 * time, &mut (&mut series, &mut progress))?;
@@ -217,7 +216,8 @@ fn draw(lids: &[Lid]) -> Sheet {
     sheet.marks(&panel, looks[0], points(|lid| lid.local.mean()));
     sheet.marks(&panel, looks[1], points(|lid| lid.global.mean()));
     let names = [(looks[0], "of a disk, ⟨|ψ₆|⟩"), (looks[1], "of all, |⟨ψ₆⟩|")];
-    sheet.legend((panel.place.x + 16.0, panel.place.y + 24.0), &names);
+    sheet
+        .legend((panel.place.x + 0.5 * panel.place.width, panel.place.y + 0.66 * panel.place.height), &names);
     sheet
 }
 

@@ -37,7 +37,7 @@ struct Arguments {
     #[arg(long, value_delimiter = ',', default_value = "0,15,30,45,60", value_parser = clap::value_parser!(u32).range(..=100))]
     solutes: Vec<u32>,
     /// Time for which each pressure is measured, in units of d √(m/T) at first.
-    #[arg(long, default_value_t = 4000.0, value_parser = positive)]
+    #[arg(long, default_value_t = 12000.0, value_parser = positive)]
     time: f64,
     /// Measures for a time of 200 at most.
     #[arg(long)]
@@ -61,7 +61,7 @@ const SLACK: f64 = 1.0;
 
 /// Time before the measurement, in intervals in which crossings are counted.
 const SETTLE: f64 = 400.0;
-const INTERVAL: f64 = 10.0;
+const INTERVAL: f64 = 5.0;
 
 /// Half the width of the strips in the middle of both sides in which densities are measured.
 const STRIP: f64 = 5.0;
@@ -72,8 +72,10 @@ struct Osmosis {
     densities: [f64; 3],
     /// Osmotic pressure over the temperature, and its error.
     pressure: [f64; 2],
-    /// Crossings into the solution and out of it, in each interval.
-    crossings: [Vec<u64>; 2],
+    /// Times, and the solvent that has come into the solution since the time before, less what went out.
+    inflow: Vec<(f64, f64)>,
+    /// The same in equilibrium, in a unit of time.
+    exchange: Estimate,
     /// The disks and the place of the piston in the end.
     shot: Vec<Disk>,
     piston: f64,
@@ -120,7 +122,7 @@ fn grid(kind: Kind, count: u32, left: f64) -> impl Iterator<Item = Result<Disk, 
 }
 
 fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error>> {
-    let piston = Piston::new(20.0, [-10.0, 0.0])?.with_spring(STIFFNESS, SLACK)?;
+    let piston = Piston::new(20.0, [-10.0, 4.0])?.with_spring(STIFFNESS, SLACK)?;
     let container =
         Container::closed(WIDTH, HEIGHT)?.with_periodic_ends()?.with_piston(Wall::Left, piston)?;
     let [left, right] = [Wall::Left, Wall::Right].map(|wall| container.index(wall).unwrap_or_default());
@@ -132,8 +134,9 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
 
     let end = SETTLE + if arguments.quick { arguments.time.min(200.0) } else { arguments.time };
     let mut progress = Progress::of(format!("{solutes} solutes")).until(end);
-    let mut crossings = OfKind::new(SOLVENT, Crossings::new(line, SampleTimes::every(INTERVAL)?)?);
-    run.run_until(SETTLE, &mut (&mut crossings, &mut progress))?;
+    let counter = OfKind::new(SOLVENT, Crossings::new(line, SampleTimes::every(INTERVAL)?)?);
+    let (mut inflow, mut exchange) = (counter.clone(), counter);
+    run.run_until(SETTLE, &mut (&mut inflow, &mut progress))?;
     let density = |snapshot: &Snapshot<'_>, kind: Kind, middle: f64| {
         let is_inside = |disk: &&Disk| disk.kind() == kind && (disk.position().x - middle).abs() < STRIP;
         snapshot.disks().iter().filter(is_inside).count() as f64 / (2.0 * STRIP * HEIGHT)
@@ -146,8 +149,8 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
         (push, densities, Temperatures.measure(snapshot).translational())
     });
     let mut series = Series::new(state, SampleTimes::every(1.0)?);
-    let mut stress = WallStress::new(SampleTimes::every(INTERVAL)?).with_wall(right, HEIGHT)?;
-    run.run_until(end, &mut (&mut crossings, (&mut series, &mut stress), &mut progress))?;
+    let mut stress = WallStress::new(SampleTimes::every(4.0 * INTERVAL)?).with_wall(right, HEIGHT)?;
+    run.run_until(end, &mut (&mut exchange, (&mut series, &mut stress), &mut progress))?;
     gallery::output::warn(&run.warnings());
 
     let (solution, solvent) = (series.mean(|state| state.0)?, stress.pressure(right).ok_or("a right wall")?);
@@ -155,10 +158,14 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
     let temperature = series.mean(|state| state.2)?.mean();
     let error = solution.standard_error().hypot(solvent.standard_error());
     let pressure = [solution.mean() - solvent.mean(), error].map(|pressure| pressure / temperature);
-    let crossings = [crossings.inner().forward(), crossings.inner().backward()].map(<[u64]>::to_vec);
+    let inflow = inflow.into_inner();
+    let net =
+        inflow.forward().iter().zip(inflow.backward()).map(|(&there, &back)| there as f64 - back as f64);
+    let inflow = inflow.times().iter().copied().zip(net).collect();
+    let exchange = exchange.inner().flux()?;
     let piston = run.snapshot().wall_point(left).map_or(0.0, |point| point.x);
     let densities = [mean(0)?, mean(1)?, mean(2)?];
-    Ok(Osmosis { densities, pressure, crossings, shot: run.disks(), piston })
+    Ok(Osmosis { densities, pressure, inflow, exchange, shot: run.disks(), piston })
 }
 
 fn write(arguments: &Arguments, runs: &[Osmosis]) -> Result<(), Box<dyn Error>> {
@@ -169,7 +176,7 @@ fn write(arguments: &Arguments, runs: &[Osmosis]) -> Result<(), Box<dyn Error>> 
         let ([solute, solvent, _], [pressure, error], [theory, expected]) =
             (run.densities, run.pressure, run.theory());
         gallery::say!("n = {solute:.4}: Π = {pressure:.4} ± {error:.4} T/d², theory {theory:.4}");
-        gallery::say!("    solvent beside it: {solvent:.4}, theory {expected:.4}");
+        gallery::say!("    solvent beside it: {solvent:.4}, theory {expected:.4}; net flow {}", run.exchange);
         table.serialize((run.densities, run.pressure, theory, expected))?;
     }
     arguments.results.finish_table("membrane", table, Some(&draw(runs)?))
@@ -198,25 +205,30 @@ fn draw(runs: &[Osmosis]) -> Result<Sheet, Box<dyn Error>> {
         wall(shown.piston, Look::line(INK, "").with_width(5.0)),
     ];
     sheet.panel(place, MARGINS, plots, layout.with_y_label("y, in diameters"));
-    draw_flow(&mut sheet, Place { y: HEADER + box_height, height: FLOW, ..place }, shown);
+    draw_flow(&mut sheet, Place { y: HEADER + box_height, height: FLOW, ..place }, runs);
     draw_pressures(&mut sheet, Place { x: COLUMN, height: box_height + FLOW, ..place }, runs);
     Ok(sheet)
 }
 
-/// Draws crossings over time in both directions.
-fn draw_flow(sheet: &mut Sheet, place: Place, run: &Osmosis) {
-    let rate = |counts: &[u64]| -> Vec<_> {
-        let of = |(k, &count): (usize, &u64)| ((k as f64 + 0.5) * INTERVAL, count as f64 / INTERVAL);
-        counts.iter().enumerate().map(of).take_while(|(time, _)| *time < 0.75 * SETTLE).collect()
+/// Draws the solvent in the solution over time.
+fn draw_flow(sheet: &mut Sheet, place: Place, runs: &[Osmosis]) {
+    let layout =
+        panel::axes((0.0, SETTLE), (0.0, 1.1 * f64::from(SOLVENTS))).with_x_label("time, in d √(m/T)");
+    let looks = [LOOKS[0], LOOKS[1]].map(Look::without_marks);
+    let shown = [runs.first(), runs.last()].into_iter().flatten();
+    let names: Vec<_> = shown.clone().map(|run| format!("n = {:.2} of solute", run.densities[0])).collect();
+    let within = |run: &Osmosis| {
+        let sum = |sum: &mut f64, &(time, net): &(f64, f64)| {
+            *sum += net;
+            Some((time, *sum))
+        };
+        std::iter::once((0.0, 0.0)).chain(run.inflow.iter().scan(0.0, sum)).collect::<Vec<_>>()
     };
-    let rates = run.crossings.each_ref().map(|counts| rate(counts));
-    let most = 1.3 * rates.iter().flatten().map(|(_, rate)| *rate).fold(1.0, f64::max);
-    let layout = panel::axes((0.0, 0.75 * SETTLE), (0.0, most)).with_x_label("time, in d √(m/T)");
-    let looks = [LOOKS[0], LOOKS[1]].map(|look| look.without_marks());
-    let curves = looks.iter().zip(rates).map(|(look, rate)| look.curve(rate)).collect();
-    let panel = sheet.panel(place, MARGINS, curves, layout.with_y_label("solvent per time"));
-    let names = [(looks[0], "into the solution"), (looks[1], "out of it")];
-    sheet.legend((panel.place.x + 0.4 * panel.place.width, panel.place.y + 24.0), &names);
+    let curves = looks.iter().zip(shown).map(|(look, run)| look.curve(within(run))).collect();
+    let panel = sheet.panel(place, MARGINS, curves, layout.with_y_label("solvent on the left"));
+    let names: Vec<_> = looks.into_iter().zip(names.iter().map(String::as_str)).collect();
+    sheet
+        .legend((panel.place.x + 0.5 * panel.place.width, panel.place.y + 0.78 * panel.place.height), &names);
 }
 
 fn draw_pressures(sheet: &mut Sheet, place: Place, runs: &[Osmosis]) {
@@ -229,7 +241,8 @@ fn draw_pressures(sheet: &mut Sheet, place: Place, runs: &[Osmosis]) {
         theory.curve(runs.iter().map(|run| (run.densities[0], run.theory()[0]))),
         ideal.curve([(0.0, 0.0), (densest, densest)]),
     ];
-    let panel = sheet.panel(place, MARGINS, curves, layout.with_y_label("osmotic pressure, in T/d²"));
+    let margins = [86.0, MARGINS[1], MARGINS[2], MARGINS[3]];
+    let panel = sheet.panel(place, margins, curves, layout.with_y_label("osmotic pressure Π, in T/d²"));
     let points = || runs.iter().map(|run| (run.densities[0], run.pressure));
     sheet.bars(&panel, measured, points().map(|(x, [y, error])| [(x, y - error), (x, y + error)]));
     sheet.marks(&panel, measured, points().map(|(x, [y, _])| (x, y)));

@@ -1,7 +1,7 @@
 //! Rolling friction: disks that roll to rest, and grains that flow down a rough slope more slowly.
 //!
 //! A lone disk rolls on a floor. Rolling friction of the coefficient μ takes the torque `μmgR` from it, so
-//! it slows at `2μg/3`, as a disk in lasting contact would. Below, 200 grains flow down a slope, and a line
+//! it slows at `2μg/3`, as a disk in lasting contact would. Below, 140 grains flow down a slope, and a line
 //! across it counts them.
 //!
 //! ```text
@@ -33,7 +33,7 @@ use gallery::sheet::Sheet;
 #[derive(Parser)]
 struct Arguments {
     /// Coefficients of rolling friction.
-    #[arg(long, value_delimiter = ',', default_value = "0,0.05,0.1,0.2,0.4", value_parser = non_negative)]
+    #[arg(long, value_delimiter = ',', default_value = "0,0.1,0.2,0.4", value_parser = non_negative)]
     coefficients: Vec<f64>,
     /// Time for which each flow is measured, after as long a time without, in units of √(d/g).
     #[arg(long, default_value_t = 80.0, value_parser = positive)]
@@ -45,11 +45,11 @@ struct Arguments {
     results: Results,
 }
 
-const GRAINS: usize = 200;
+const GRAINS: usize = 140;
 const SLOPE: f64 = 20.0;
 
 /// Number of the bumps of the slope, and their distance.
-const BUMPS: u32 = 20;
+const BUMPS: u32 = 14;
 const PITCH: f64 = 1.35;
 const WIDTH: f64 = BUMPS as f64 * PITCH;
 const TOP: f64 = 14.0;
@@ -107,7 +107,8 @@ fn rolling_speed(coefficient: f64, time: f64) -> f64 {
 /// Returns the grains that flow down a slope in a unit of time, and the grains in the end.
 fn flow(arguments: &Arguments, coefficient: f64) -> Result<(Estimate, Vec<Disk>), Box<dyn Error>> {
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps()?);
-    let disks = initial::random(&ground, GRAINS, 0.5, 20.0, 1)?;
+    let grains = initial::homogeneous(initial::Radii::uniform(0.4, 0.5)?.draw(GRAINS, 1), 1.0)?;
+    let disks = initial::placed_at_random(&ground, grains, 24.0, 1)?;
     let gravity = Gravity::tilted(1.0, SLOPE.to_radians())?;
     let mut run =
         Simulation::builder(rule(coefficient, 0.05)?, ground).disks(disks).gravity(gravity).build()?;
@@ -136,14 +137,14 @@ fn write(arguments: &Arguments, all: &[Rolled]) -> Result<(), Box<dyn Error>> {
 }
 
 const MARGINS: Margins = [62.0, 16.0, 28.0, 58.0];
-const HEADER: f64 = 66.0;
+const HEADER: f64 = 88.0;
 const HEIGHT: f64 = 330.0;
 const COLUMN: f64 = 480.0;
 
 /// Draws the speeds and the flow over the coefficient, and the slope with the first and the last.
 fn draw(all: &[Rolled]) -> Result<Sheet, Box<dyn Error>> {
     let mut sheet = Sheet::new(2.0 * COLUMN, HEADER + 2.0 * HEIGHT);
-    let about = "Grains of diameter d: r = 0.7, κ = 0.5, rolling friction μ; above, a disk on a floor; below, 200 on a rough slope of 20°";
+    let about = "Grains of diameters from 0.8 d to d: r = 0.7, κ = 0.5, rolling friction μ; above, a disk on a floor; below, 140 on a rough slope of 20°, blue if slower than 0.5 √(gd), red if faster than 1.5";
     sheet.header(MARGINS[0], "Rolling friction", &[about]);
     let place = Place { x: 0.0, y: HEADER, width: COLUMN, height: HEIGHT };
     let layout = panel::axes((0.0, LONG), (0.0, 1.1 * SPEED)).with_x_label("time, in √(d/g)");
@@ -160,12 +161,12 @@ fn draw(all: &[Rolled]) -> Result<Sheet, Box<dyn Error>> {
     let names: Vec<_> = all.iter().map(|one| format!("μ = {}", one.coefficient)).collect();
     let names = names.iter().enumerate().map(|(number, name)| (look(number), name.as_str()));
     let names: Vec<_> = names.chain([(Look::line(QUIET, "").with_width(1.2), "2μg/3")]).collect();
-    sheet.legend((panel.place.x + 0.66 * panel.place.width, panel.place.y + 80.0), &names);
+    sheet.legend((panel.place.x + 0.7 * panel.place.width, panel.place.y + 44.0), &names);
 
     let widest = 1.1 * all.iter().map(|one| one.coefficient).fold(0.01, f64::max);
     let most = 1.2 * all.iter().map(|one| one.flux.mean()).fold(1.0, f64::max);
     let layout = panel::axes((-0.02, widest), (0.0, most)).with_x_label("rolling friction μ");
-    let layout = layout.with_y_label("flow on the slope, in grains per √(d/g)");
+    let layout = layout.with_y_label("flow, in grains per √(d/g)");
     let panel = sheet.panel(Place { x: COLUMN, ..place }, MARGINS, Vec::new(), layout);
     let measured = Look::marks(BLUE, Mark::Disk);
     let ends = |one: &Rolled| {
@@ -193,7 +194,7 @@ fn draw_slope(sheet: &mut Sheet, place: Place, one: &Rolled) -> Result<(), Box<d
     let seen = one.shot.iter().filter(|grain| grain.position().y < top);
     let plots = vec![faces(seen, unit, GAP, color), faces(bumps()?.iter(), unit, GAP, |_| INK)];
     sheet.panel(place, MARGINS, plots, layout.with_y_label("height, in diameters"));
-    let words = format!("μ = {}; blue, light, red: speed below 0.5, below 1.5, above", one.coefficient);
+    let words = format!("μ = {}", one.coefficient);
     sheet.text(place.x + MARGINS[0], place.y + 20.0, SMALL, INK, &words);
     Ok(())
 }
