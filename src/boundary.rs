@@ -142,8 +142,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
-/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap`, and
-///     [`wall_point`](Self::wall_point) stays on its wall.
+/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap` for the default
+///     kind, and [`wall_point`](Self::wall_point) stays on its wall.
 /// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
 ///     have equal fingerprints, whatever their state and their origin.
 ///

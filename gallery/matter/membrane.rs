@@ -2,8 +2,8 @@
 //!
 //! A solution on the left and a solvent on the right are parted by a membrane, which stops the solute only.
 //! The left wall is a piston on a spring, and shows the pressure. Solvent flows through the membrane until as
-//! much comes back; the solution then has the greater pressure. All disks are hard, elastic and of diameter 1,
-//! and the box is periodic upward.
+//! much comes back; the solution then has the greater pressure. All disks are hard, elastic and of diameter
+//! 1, and the box is periodic upward.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin membrane

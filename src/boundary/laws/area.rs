@@ -1,10 +1,10 @@
 //! The check of free areas by the gaps between disks and walls.
 //!
-//! A region is halved until the gaps decide about each cell of it. A wall that is farther from the middle of a
-//! cell than its corners does not reach into the cell, since the gap grows by no more than the disk moves. In
-//! a small cell whose middle and corners have the gaps to one straight wall, the wall is straight up to
-//! `BEND`, and the free share has a closed form. Cells at corners of the free area, at thin walls and at tight
-//! arcs are halved further. The last cells, if still nothing is known of them, count as uncertain.
+//! A region is halved until the gaps decide about each cell of it. A wall that is farther from the middle of
+//! a cell than its corners does not reach into the cell, since the gap grows by no more than the disk moves.
+//! In a small cell whose middle and corners have the gaps to one straight wall, the wall is straight up to
+//! `BEND`, and the free share has a closed form. Cells at corners of the free area, at thin walls and at
+//! tight arcs are halved further. The last cells, if still nothing is known of them, count as uncertain.
 
 use glam::DVec2;
 
