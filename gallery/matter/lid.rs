@@ -10,8 +10,8 @@
 //! ```
 //!
 //! The example writes `lid.svg`, `lid.png` and `lid.csv`. Literature: D. Henderson, Mol. Phys. 30, 971
-//! (1975), for the fluid; J. G. Kirkwood, J. Chem. Phys. 18, 380 (1950), for the free area in the crystal; E. P.
-//! Bernard and W. Krauth, Phys. Rev. Lett. 107, 155704 (2011), for the transition.
+//! (1975), for the fluid; J. G. Kirkwood, J. Chem. Phys. 18, 380 (1950), for the free area in the crystal; E.
+//! P. Bernard and W. Krauth, Phys. Rev. Lett. 107, 155704 (2011), for the transition.
 
 use std::error::Error;
 use std::f64::consts::PI;
