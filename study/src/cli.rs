@@ -27,7 +27,6 @@
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | not finished: other processes work on it (`--no-wait`), also from `status` |
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
-//! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
 //! | 6 | from `diff`: the two runs differ |
 //! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
 //! | 8 | from `status`: not finished, and no process works on it |
@@ -75,8 +74,6 @@ enum End {
     Elsewhere = 3,
     /// All values are finished, but not the tables.
     NoTables = 4,
-    /// A standard state is slower than in an earlier table, beyond the noise.
-    Slower = 5,
     /// Two runs differ.
     Different = 6,
     /// The study is complete, but some values stalled, failed or reached a limit.
@@ -109,8 +106,8 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
         Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
-        Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
-        Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
+        Command::Bench { plan: Some(plan), json, quick } => bench::plan::<E>(&plan, json, quick),
+        Command::Bench { plan: None, quick, .. } => bench::table(quick),
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),
