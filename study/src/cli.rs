@@ -55,9 +55,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde_json::json;
 
 use super::errors::{PlanError, StudyError, chain};
-use super::json::Object;
 use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
@@ -213,13 +213,12 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let failed = study.failed()?;
     let (spent, left) = study.seconds()?;
     if json {
-        let object = Object::default().with("ramps", ramps);
-        let object =
-            found.iter().fold(object, |object, (name, of)| object.with(name, format_args!("{of:?}")));
-        let object = object.with("failed", format_args!("{failed:?}")).with("tables", has_tables);
-        // JSON has no NaN.
-        let told = |seconds: f64| if seconds.is_finite() { seconds.to_string() } else { "null".to_owned() };
-        say(&object.with("seconds", told(spent)).with("seconds_left", told(left)).line())?;
+        let [done, running, begun, waiting] = found.each_ref().map(|(_, of)| of);
+        let object = json!({
+            "ramps": ramps, "done": done, "running": running, "begun": begun, "waiting": waiting,
+            "failed": failed, "tables": has_tables, "seconds": spent, "seconds_left": left,
+        });
+        say(&object.to_string())?;
     } else {
         let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
         let tables = if has_tables { "tables of all" } else { "no tables of all" };

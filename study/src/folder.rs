@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use granular_edmd::file::{Locked, is_temporary};
 
 use super::provenance::Provenance;
-use super::whole::{self, if_there};
+use super::whole::{self, damaged, if_there};
 use super::{PlanError, StudyError};
 
 /// Text of the README in the folder of a study.
@@ -140,7 +140,7 @@ impl Folder {
         let is_new = whole::publish(&self.plan(), plan.as_bytes())?;
         // If a process is killed here, the folder has a plan but no provenance and no records.
         if !self.root.join(LOGS).exists() {
-            whole::publish(&self.provenance_file(), provenance.text().as_bytes())?;
+            whole::publish(&self.provenance_file(), self.page(provenance)?.as_bytes())?;
         }
         self.write_about()?;
         Ok(is_new)
@@ -150,17 +150,24 @@ impl Folder {
         self.root.join(PROVENANCE)
     }
 
-    /// Returns the provenance of the study, which is empty if its file is missing.
-    pub(super) fn provenance(&self) -> Result<Provenance, StudyError> {
+    /// Returns the provenance of the study, or `None` if its file is missing.
+    pub(super) fn provenance(&self) -> Result<Option<Provenance>, StudyError> {
         let path = self.provenance_file();
-        let text = whole::if_there("read", &path, fs::read_to_string(&path))?;
-        Ok(Provenance::of_text(text.unwrap_or_default()))
+        let text = if_there("read", &path, fs::read_to_string(&path))?;
+        let read = text.map(|text| serde_json::from_str(&text)).transpose();
+        read.map_err(|reason| damaged(&path, format!("it is no provenance ({reason})")))
     }
 
     /// Replaces the provenance.
     pub(super) fn replace_provenance(&self, provenance: &Provenance) -> Result<(), StudyError> {
         let _lock = self.take_lock()?;
-        whole::write(&self.provenance_file(), provenance.text().as_bytes())
+        whole::write(&self.provenance_file(), self.page(provenance)?.as_bytes())
+    }
+
+    /// Returns the provenance as the text of its file.
+    fn page(&self, provenance: &Provenance) -> Result<String, StudyError> {
+        let page = serde_json::to_string_pretty(provenance).map(|page| page + "\n");
+        page.map_err(|source| StudyError::Encode { path: self.provenance_file(), source: source.into() })
     }
 
     /// Writes the README of the folder, if it is missing or cut short. An edited one stays.

@@ -64,7 +64,6 @@ mod experiment;
 mod folder;
 mod gate;
 pub mod guide;
-mod json;
 mod leg;
 mod maker;
 mod opening;
