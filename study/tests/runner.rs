@@ -420,7 +420,20 @@ fn a_trajectory_has_a_frame_after_each_cycle() {
     assert_eq!(code(&scratch.runs(&arguments)), Some(1));
     let output = scratch.runs(&["trajectory", "plan.toml", "--out", "other.xyz", "--ramp", "4"]);
     assert_eq!(code(&output), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("the plan has 4, from 0 on"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("below the number of ramps"));
+    // A study knows the starts of all its values.
+    let ramp = "[ramp]\nparameter = \"gravity\"\nvalues = [0.02, 0.03]\n";
+    fs::write(scratch.0.join("ramp.toml"), SMALL.split_once("[[sweep]]").unwrap().0.to_owned() + ramp).unwrap();
+    assert_eq!(code(&scratch.runs(&["run", "ramp.toml", "--out", "study", "--threads", "1"])), Some(0));
+    let frames = |value: &str, cycles: &str| {
+        let name = format!("{value}-{cycles}.csv");
+        let place = ["trajectory", "study", "--value", value, "--cycles", cycles, "--out", "value.xyz"];
+        assert_eq!(code(&scratch.runs(&place)), Some(0));
+        assert_eq!(code(&scratch.runs(&["convert", "value.xyz", &name, "--frame", "0"])), Some(0));
+        fs::remove_file(scratch.0.join("value.xyz")).unwrap();
+        fs::read_to_string(scratch.0.join(name)).unwrap()
+    };
+    assert_ne!(frames("0", "1"), frames("1", "1"));
 }
 
 /// Returns the lines of a table after its headings.

@@ -1,4 +1,4 @@
-//! The runs of `replay` and `diff`: a value of a plan or of a study, from its start or from a file.
+//! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a file.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ impl<E: Experiment> Source<E> {
 }
 
 /// Starts from a file: a checkpoint, or disks.
-pub(super) fn begun<E: Experiment>(
+fn begun<E: Experiment>(
     experiment: &E,
     path: &Path,
     seed: u64,
