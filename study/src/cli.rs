@@ -17,8 +17,8 @@
 //! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
 //! and waiting, ramp and value of those values that were not finished, whether there are tables of all, and
 //! about how many seconds of one processor the finished values took and the others will take.
-//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units of all
-//! columns.
+//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units and
+//! the meanings of all columns.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -43,6 +43,8 @@ mod files;
 mod keys;
 mod plans;
 mod replay;
+mod schema;
+mod shape;
 mod source;
 mod template;
 mod trajectory;
@@ -95,7 +97,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
 ) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => plans::new(example, file.as_deref()),
-        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
+        Command::Explain { key, schema } => plans::explain::<E>(key.as_deref(), schema),
         Command::Check { plan } => plans::check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),

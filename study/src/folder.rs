@@ -24,7 +24,7 @@ values.csv            a row for each value: parameters, means, standard errors, 
 samples.csv           a row for each sample
 points.csv            a row for each value, all repeats of it together
 transitions.csv       a row for each transition that a refined ramp brackets
-columns.csv           the names and units of all columns of all tables
+columns.csv           the names, units and meanings of all columns of all tables
 logs/L.records        finished values as processes have added them, each with a checksum
 logs/L.jsonl          when values were finished, and the seconds that they took; not a result. It is locked while
                       a process writes this log

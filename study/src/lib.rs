@@ -66,6 +66,7 @@ mod gate;
 pub mod guide;
 mod leg;
 mod maker;
+mod meanings;
 mod opening;
 mod parameters;
 mod plan;

@@ -32,8 +32,11 @@ pub(super) enum Command {
     },
     /// Explains a key of a plan or a column of the tables, or all of them: meaning, unit, range and default.
     Explain {
-        /// Name of the key, for example `friction` or `protocol.settle`.
+        /// Name of the key, for example `friction`, `protocol.settle` or `protocol`.
         key: Option<String>,
+        /// Prints a JSON schema of plans instead, by which editors complete and check them.
+        #[arg(long, conflicts_with = "key")]
+        schema: bool,
     },
     /// Checks a plan, and prints how many ramps and values it has.
     Check {

@@ -8,7 +8,7 @@ use std::path::Path;
 use clap::{CommandFactory, ValueEnum};
 
 use super::arguments::Arguments;
-use super::{End, Failure, LISTED, keys, read, refused, say, template};
+use super::{End, Failure, LISTED, keys, read, refused, say, schema, template};
 use crate::errors::StudyError;
 use crate::{Experiment, Plan, PlanError, Ramp};
 
@@ -29,8 +29,12 @@ pub(super) fn new<E: Experiment>(
     Ok(End::Done)
 }
 
-pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
-    say(&keys::explained::<E>(key).map_err(PlanError::Toml)?)?;
+pub(super) fn explain<E: Experiment>(key: Option<&str>, schema: bool) -> Result<End, Failure> {
+    say(&if schema {
+        serde_json::to_string_pretty(&schema::schema::<E>())?
+    } else {
+        keys::explained::<E>(key).map_err(PlanError::Toml)?
+    })?;
     Ok(End::Done)
 }
 
