@@ -175,7 +175,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let read = whole::read_sealed::<Partial<E>>(&path).and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
             study.check_origin(&partial.0, self.ramp, index, &path)?;
-            value.go_on(partial)?.map(Some).map_err(|reason| damaged(&path, reason))
+            value.go_on(partial, &path).map(Some)
         });
         self.session.if_sound(read)
     }
