@@ -1,5 +1,5 @@
-//! The meanings of the keys of plans and of the columns of tables, for `explain`, its schema, the comments of a
-//! new plan, and `columns.csv`.
+//! The meanings of the keys of plans and of the columns of tables, for `explain`, its schema, the comments of
+//! a new plan, and `columns.csv`.
 
 use super::experiment::columns::{Column, error_names};
 use super::{Experiment, Plan};

@@ -51,8 +51,8 @@ impl Provenance {
         let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
         let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
         let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
-        let [rule, boundary] = [rule, boundary]
-            .map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
+        let [rule, boundary] =
+            [rule, boundary].map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
         Self {
             results: results.to_string(),
             revision: revision.to_string(),

@@ -423,7 +423,8 @@ fn a_trajectory_has_a_frame_after_each_cycle() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("below the number of ramps"));
     // A study knows the starts of all its values.
     let ramp = "[ramp]\nparameter = \"gravity\"\nvalues = [0.02, 0.03]\n";
-    fs::write(scratch.0.join("ramp.toml"), SMALL.split_once("[[sweep]]").unwrap().0.to_owned() + ramp).unwrap();
+    fs::write(scratch.0.join("ramp.toml"), SMALL.split_once("[[sweep]]").unwrap().0.to_owned() + ramp)
+        .unwrap();
     assert_eq!(code(&scratch.runs(&["run", "ramp.toml", "--out", "study", "--threads", "1"])), Some(0));
     let frames = |value: &str, cycles: &str| {
         let name = format!("{value}-{cycles}.csv");

@@ -68,7 +68,9 @@ fn misfit(value: &Value, schema: &Value) -> Option<String> {
     };
     let mut items = value.as_array().into_iter().flatten().filter(|_| !schema["items"].is_null());
     let absent = absent.map(|name| format!("`{name}` is missing"));
-    absent.or_else(|| parts.find_map(of_part)).or_else(|| items.find_map(|item| misfit(item, &schema["items"])))
+    absent
+        .or_else(|| parts.find_map(of_part))
+        .or_else(|| items.find_map(|item| misfit(item, &schema["items"])))
 }
 
 /// Returns the plans of a page, between the marks of code.
@@ -163,7 +165,8 @@ fn keys_are_required_as_plans_require_them() {
             "" => plan.clone(),
             _ => plan[group].as_table().unwrap().clone(),
         };
-        let required = if group.is_empty() { &schema["required"] } else { &schema["properties"][group]["required"] };
+        let required =
+            if group.is_empty() { &schema["required"] } else { &schema["properties"][group]["required"] };
         let required: Vec<&str> = required.as_array().unwrap().iter().filter_map(Value::as_str).collect();
         for name in of(&plan).keys() {
             let mut rest = of(&plan);
@@ -175,7 +178,8 @@ fn keys_are_required_as_plans_require_them() {
                 changed.insert(group.to_owned(), rest.into());
             }
             let made = Plan::<VibratedBox>::from_toml(&toml::to_string(&changed).unwrap());
-            let is_missed = made.is_err_and(|error| error.to_string().contains(&format!("missing field `{name}`")));
+            let is_missed =
+                made.is_err_and(|error| error.to_string().contains(&format!("missing field `{name}`")));
             assert_eq!(required.contains(&name.as_str()), is_missed, "{group} {name}");
         }
     }

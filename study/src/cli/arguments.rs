@@ -72,7 +72,8 @@ pub(super) enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Writes the disks after each cycle of a value, for OVITO, LAMMPS or ParaView, by the ending of the file.
+    /// Writes the disks after each cycle of a value, for OVITO, LAMMPS or ParaView, by the ending of the
+    /// file.
     Trajectory(super::trajectory::Wishes),
     /// Writes the disks of a file of any format to a file of another format.
     ///

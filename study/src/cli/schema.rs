@@ -52,7 +52,8 @@ fn group<E: Experiment>(key: &str, shape: &Shape) -> Value {
         schema["minProperties"] = 1.into();
         schema["maxProperties"] = 1.into();
     } else {
-        let is_required = |name: &&str| of_key::<E>(&whole(name)).is_some_and(|told| told.ends_with("Required."));
+        let is_required =
+            |name: &&str| of_key::<E>(&whole(name)).is_some_and(|told| told.ends_with("Required."));
         schema["required"] = names().filter(is_required).collect();
     }
     schema

@@ -1,16 +1,16 @@
 //! The shape of a type in a file, found by letting the type read one.
 
-use serde::de::value::Error;
+use serde::de::value::{Error, MapDeserializer, SeqDeserializer};
 use serde::de::{
-    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, MapAccess,
-    SeqAccess, VariantAccess, Visitor,
+    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, VariantAccess,
+    Visitor,
 };
 
 /// Largest number of readings, far above the number of parts of which only one is seen in a reading.
 const READINGS: usize = 1000;
 
 /// Largest depth. A type that contains itself has no end.
-const DEPTH: usize = 16;
+const DEPTH: usize = 8;
 
 /// The keys that a type accepts, with the kinds of their values.
 #[derive(Debug)]
@@ -82,32 +82,25 @@ impl<'s> Reader<'s> {
     }
 }
 
+/// Implements the methods for values without parts.
 macro_rules! values {
-    ($($method:ident: $kind:ident => $visit:ident($value:expr)),+) => {$(
+    ($($kind:ident => $visit:ident($value:expr): $($method:ident)+;)+) => {$($(
         fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
             self.shape.begin(Kind::$kind, &[]);
             visitor.$visit($value)
         }
-    )+};
+    )+)+};
 }
 
 impl<'de> Deserializer<'de> for Reader<'_> {
     type Error = Error;
 
     values! {
-        deserialize_bool: Flag => visit_bool(false),
-        deserialize_i8: Integer => visit_i8(1),
-        deserialize_i16: Integer => visit_i16(1),
-        deserialize_i32: Integer => visit_i32(1),
-        deserialize_i64: Integer => visit_i64(1),
-        deserialize_u8: Integer => visit_u8(1),
-        deserialize_u16: Integer => visit_u16(1),
-        deserialize_u32: Integer => visit_u32(1),
-        deserialize_u64: Integer => visit_u64(1),
-        deserialize_f32: Number => visit_f32(1.0),
-        deserialize_f64: Number => visit_f64(1.0),
-        deserialize_str: Text => visit_str(""),
-        deserialize_string: Text => visit_str("")
+        Flag => visit_bool(false): deserialize_bool;
+        Integer => visit_u64(1): deserialize_i8 deserialize_i16 deserialize_i32 deserialize_i64
+            deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64;
+        Number => visit_f64(1.0): deserialize_f32 deserialize_f64;
+        Text => visit_str(""): deserialize_str deserialize_string;
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
@@ -129,7 +122,7 @@ impl<'de> Deserializer<'de> for Reader<'_> {
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         self.shape.begin(Kind::List, &[""]);
-        visitor.visit_seq(Parts { rest: self.unknown(), value: None })
+        visitor.visit_seq(SeqDeserializer::new(self.unknown().map(|(_, item)| item)))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -139,7 +132,7 @@ impl<'de> Deserializer<'de> for Reader<'_> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         self.shape.begin(Kind::Table, fields);
-        visitor.visit_map(Parts { rest: self.unknown(), value: None })
+        visitor.visit_map(MapDeserializer::new(self.unknown()))
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -149,7 +142,7 @@ impl<'de> Deserializer<'de> for Reader<'_> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         self.shape.begin(Kind::Choice, variants);
-        visitor.visit_enum(Parts { rest: self.unknown(), value: None })
+        visitor.visit_enum(Variant(self.unknown().next()))
     }
 
     serde::forward_to_deserialize_any! {
@@ -157,40 +150,23 @@ impl<'de> Deserializer<'de> for Reader<'_> {
     }
 }
 
-/// The parts of a value, one after the other.
-struct Parts<'s, I> {
-    rest: I,
-    value: Option<Reader<'s>>,
-}
+impl<'de> IntoDeserializer<'de, Error> for Reader<'_> {
+    type Deserializer = Self;
 
-impl<'de, 's, I: Iterator<Item = (&'static str, Reader<'s>)>> MapAccess<'de> for Parts<'s, I> {
-    type Error = Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
-        let Some((name, value)) = self.rest.next() else { return Ok(None) };
-        self.value = Some(value);
-        seed.deserialize(name.into_deserializer()).map(Some)
-    }
-
-    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Error> {
-        seed.deserialize(self.value.take().ok_or_else(|| Error::custom("a value comes after its key"))?)
+    fn into_deserializer(self) -> Self {
+        self
     }
 }
 
-impl<'de, 's, I: Iterator<Item = (&'static str, Reader<'s>)>> SeqAccess<'de> for Parts<'s, I> {
-    type Error = Error;
+/// A variant with its contents; `None` at the largest depth.
+struct Variant<'s>(Option<(&'static str, Reader<'s>)>);
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
-        self.rest.next().map(|(_, item)| seed.deserialize(item)).transpose()
-    }
-}
-
-impl<'de, 's, I: Iterator<Item = (&'static str, Reader<'s>)>> EnumAccess<'de> for Parts<'s, I> {
+impl<'de, 's> EnumAccess<'de> for Variant<'s> {
     type Error = Error;
     type Variant = Reader<'s>;
 
-    fn variant_seed<V: DeserializeSeed<'de>>(mut self, seed: V) -> Result<(V::Value, Reader<'s>), Error> {
-        let (name, contents) = self.rest.next().ok_or_else(|| Error::custom("all variants are known"))?;
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Reader<'s>), Error> {
+        let (name, contents) = self.0.ok_or_else(|| Error::custom("the type is too deep"))?;
         Ok((seed.deserialize(name.into_deserializer())?, contents))
     }
 }
