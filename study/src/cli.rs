@@ -147,6 +147,12 @@ fn read(path: &Path) -> Result<String, Failure> {
     Ok(text.map_err(StudyError::io("read", path))?)
 }
 
+/// Writes a new file. An existing one is not overwritten.
+fn write_new(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(bytes));
+    Ok(written.map_err(StudyError::io("write", path))?)
+}
+
 /// Returns the error of a plan, with the name of its file.
 fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
     move |source| StudyError::Unreadable { path: path.to_owned(), source }

@@ -120,8 +120,8 @@ fn the_keys_of_the_schema_are_those_that_a_plan_takes() {
         let message = Plan::<VibratedBox>::from_toml(&text).unwrap_err().to_string();
         let (_, expected) = message.rsplit_once("expected ").unwrap_or_else(|| panic!("{group}: {message}"));
         let in_group = keys(&schema, "").into_iter().map(|(key, _)| key).filter_map(|key| {
-            let name = key.strip_prefix(group)?.trim_start_matches('.').to_owned();
-            (!name.is_empty() && !name.contains('.')).then_some(name)
+            let name = if group.is_empty() { &key } else { key.strip_prefix(group)?.strip_prefix('.')? };
+            (!name.contains('.')).then(|| name.to_owned())
         });
         let names: BTreeSet<String> = in_group.collect();
         assert_eq!(named(expected), names.iter().map(String::as_str).collect(), "{group}: {message}");
