@@ -73,7 +73,7 @@ struct Reader<'s> {
     depth: usize,
 }
 
-impl<'s> Reader<'s> {
+impl Reader<'_> {
     /// Returns the parts that are not known yet.
     fn unknown(self) -> impl Iterator<Item = (&'static str, Self)> {
         let depth = self.depth + 1;
@@ -150,7 +150,7 @@ impl<'de> Deserializer<'de> for Reader<'_> {
     }
 }
 
-impl<'de> IntoDeserializer<'de, Error> for Reader<'_> {
+impl IntoDeserializer<'_, Error> for Reader<'_> {
     type Deserializer = Self;
 
     fn into_deserializer(self) -> Self {
