@@ -140,7 +140,7 @@ impl Folder {
         let is_new = whole::publish(&self.plan(), plan.as_bytes())?;
         // If a process is killed here, the folder has a plan but no provenance and no records.
         if !self.root.join(LOGS).exists() {
-            whole::publish(&self.provenance_file(), self.page(provenance)?.as_bytes())?;
+            whole::publish(&self.provenance_file(), provenance.text().as_bytes())?;
         }
         self.write_about()?;
         Ok(is_new)
@@ -161,13 +161,7 @@ impl Folder {
     /// Replaces the provenance.
     pub(super) fn replace_provenance(&self, provenance: &Provenance) -> Result<(), StudyError> {
         let _lock = self.take_lock()?;
-        whole::write(&self.provenance_file(), self.page(provenance)?.as_bytes())
-    }
-
-    /// Returns the provenance as the text of its file.
-    fn page(&self, provenance: &Provenance) -> Result<String, StudyError> {
-        let page = serde_json::to_string_pretty(provenance).map(|page| page + "\n");
-        page.map_err(|source| StudyError::Encode { path: self.provenance_file(), source: source.into() })
+        whole::write(&self.provenance_file(), provenance.text().as_bytes())
     }
 
     /// Writes the README of the folder, if it is missing or cut short. An edited one stays.

@@ -1,72 +1,7 @@
-//! The meanings of the keys of plans and of the columns of tables, for `explain`, its schema, the comments of
-//! a new plan, and `columns.csv`.
+//! The meanings of the columns of tables, for `columns.csv` and the command `explain`.
 
 use super::experiment::columns::{Column, error_names};
 use super::{Experiment, Plan};
-
-/// The keys that every plan has, whatever its experiment, by section.
-pub(super) const OF_PLANS: [(&str, &str); 24] = [
-    (
-        "seed",
-        "Seed of all random numbers, a whole number below 2^63: the same plan gives the same bytes. Required.",
-    ),
-    (
-        "repeats",
-        "Number of times that each point is done, each with another seed. 1 if not given. Eight give a mean an error that can be trusted; fewer do if all together have 120 independent samples: see not_converged in points.csv.",
-    ),
-    (
-        "end_states",
-        "`true` keeps the state at the end of each value, so that a later plan with more samples goes on from it. `false` if not given.",
-    ),
-    ("experiment", "The system: each of its parameters can be ramped or swept. Required."),
-    ("protocol", "What is measured at each value, and when. Required."),
-    (
-        "protocol.settle",
-        "Cycles that are run and not measured before each value, at least 0. A cycle is a period of the base, or a unit of time without one. Required.",
-    ),
-    (
-        "protocol.samples",
-        "Number of samples of each value, at least 1. Errors are trustworthy from some hundred independent ones on. Required.",
-    ),
-    (
-        "protocol.every",
-        "Cycles from one sample to the next, at least 1. Samples so close that they resemble each other add little. Required.",
-    ),
-    (
-        "protocol.phase",
-        "Part of a cycle at which samples are taken, above 0 and at most 1. 1 if not given: the end of the cycle.",
-    ),
-    (
-        "protocol.most_collisions",
-        "Number of collisions after which a value is ended, the same on every machine. No limit if not given.",
-    ),
-    ("ramp", "A hysteresis experiment: one run, whose parameter changes step by step. None if not given."),
-    (
-        "ramp.parameter",
-        "Parameter that changes step by step, each value from the last state of the one before. Required.",
-    ),
-    ("ramp.values", "Values of the ramp, which increase: a list, or a rule. Required."),
-    ("ramp.course", "`up`, `down`, or `up_and_down`, which shows hysteresis. `up` if not given."),
-    (
-        "ramp.refine",
-        "Width to which each change of the state between two values is bisected, absolute or relative. None if not given.",
-    ),
-    ("ramp.refine.absolute", "Width in the unit of the parameter, above 0."),
-    ("ramp.refine.relative", "Width as a fraction of the value, above 0; all values must then be positive."),
-    ("sweep", "Independent runs. None if not given."),
-    (
-        "sweep.parameter",
-        "Parameter that differs between ramps, which are independent of each other and may run side by side. Required.",
-    ),
-    (
-        "sweep.values",
-        "Values of the sweep: a list in any order, or a rule. Several sweeps make all combinations. Required.",
-    ),
-    ("values.from", "First value of a rule. Required."),
-    ("values.to", "Last value of a rule. Required."),
-    ("values.step", "Difference of neighbors, for equal steps. A rule has either this or `log`."),
-    ("values.log", "Number of values, for equal ratios. A rule has either this or `step`."),
-];
 
 /// The columns that the tables of every study have.
 pub(super) const OF_TABLES: [(&str, &str); 15] = [
@@ -93,16 +28,6 @@ pub(super) const OF_TABLES: [(&str, &str); 15] = [
     ),
 ];
 
-/// Returns the meaning of a key of a plan by its whole name, such as `protocol.settle` or
-/// `experiment.friction`.
-pub(super) fn of_key<E: Experiment>(key: &str) -> Option<&'static str> {
-    match key.strip_prefix("experiment.") {
-        Some(parameter) => find(E::meanings(), parameter),
-        // A rule of values means the same in a ramp and in a sweep.
-        None => find(&OF_PLANS, key).or_else(|| find(&OF_PLANS, key.split_once('.')?.1)),
-    }
-}
-
 /// Returns the meaning of a column of a table of a plan; empty if the experiment tells none.
 pub(super) fn of_column<E: Experiment>(plan: &Plan<E>, table: &str, column: &str) -> String {
     let whole_name = |name: &str| plan.varied().zip(&plan.varied).find(|(short, _)| *short == name);
@@ -126,6 +51,7 @@ pub(super) fn of_error<E: Experiment>(column: &str) -> Option<String> {
     })
 }
 
-fn find(meanings: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
+/// Returns the meaning of a name.
+pub(super) fn find(meanings: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
     meanings.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
 }

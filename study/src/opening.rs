@@ -25,8 +25,6 @@ pub struct Study<E> {
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// This program as the maker of the study.
-    ours: Provenance,
     /// The code that made the study, and the makers whose records it accepts.
     provenance: Option<Provenance>,
     /// The maker of this program's records.
@@ -95,9 +93,10 @@ impl<E: Experiment> Study<E> {
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
         let before = study.read_provenance()?;
-        let differences = study.ours.differences(before.as_ref());
+        let now = study.ours();
+        let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
-            study.folder.replace_provenance(&study.ours.clone().after(before.as_ref()))?;
+            study.folder.replace_provenance(&now.after(before.as_ref()))?;
         }
         Ok(differences)
     }
@@ -120,21 +119,26 @@ impl<E: Experiment> Study<E> {
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
-        let (ours, maker) = (Provenance::here(&plan, &hash), provenance::maker::<E>());
+        let maker = provenance::maker::<E>();
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
-        Ok(Self { folder, store, claims, plan, text, hash, ours, provenance: None, maker })
+        Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
     }
 
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
     /// plan.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        self.folder.create(&self.text, &self.ours, || check(&self.plan))
+        self.folder.create(&self.text, &self.ours(), || check(&self.plan))
     }
 
     /// Returns the study, or an error if this program may not continue it.
     fn checked(mut self) -> Result<Self, StudyError> {
         self.provenance = self.check_code()?;
         Ok(self)
+    }
+
+    /// Returns this program as the maker of the study.
+    fn ours(&self) -> Provenance {
+        Provenance::here(&self.plan, &self.hash)
     }
 
     /// Reads the provenance, which must belong to this plan if it is there.
@@ -149,7 +153,7 @@ impl<E: Experiment> Study<E> {
     fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
         self.folder.check_format()?;
         let provenance = self.read_provenance()?;
-        let differences = self.ours.differences(provenance.as_ref());
+        let differences = self.ours().differences(provenance.as_ref());
         if differences.is_empty() {
             return Ok(provenance);
         }

@@ -67,6 +67,12 @@ impl Provenance {
         }
     }
 
+    /// Returns the text of the file.
+    pub(super) fn text(&self) -> String {
+        // Texts are always JSON.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
     /// Returns the same provenance after an earlier one, all of whose makers were accepted.
     pub(super) fn after(self, before: Option<&Self>) -> Self {
         Self { accepted: before.map_or_else(String::new, Self::keys), ..self }

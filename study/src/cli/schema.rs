@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
+use super::keys::of_key;
 use super::shape::{Kind, Shape};
-use crate::meanings::of_key;
 use crate::{Experiment, Plan, Steps};
 
 /// Returns the schema of the plans of an experiment.

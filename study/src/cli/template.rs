@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
+use super::keys::of_key;
 use super::shape::Shape;
-use crate::meanings::of_key;
 use crate::parameters;
 use crate::{Column, Experiment, Plan, PlanError};
 
