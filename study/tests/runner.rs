@@ -635,7 +635,7 @@ fn files_of_disks_are_converted() {
     assert_eq!(
         notes,
         [
-            "note: ignored columns: fx",
+            "note: ignored: fx",
             "note: disks outside of periodic sides, wrapped: 1",
             "note: first.csv has no place for the box of the file",
         ]
