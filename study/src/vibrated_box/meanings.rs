@@ -59,7 +59,10 @@ pub(super) const MEANINGS: [(&str, &str); 44] = [
         "base.thermal.slip",
         "`true` if the thermal base leaves tangential and angular velocity as they are. `false` if not given.",
     ),
-    ("state", "Convective regime: no roll, one roll, two rolls, coexistence of one roll and two, or collapsed."),
+    (
+        "state",
+        "Convective regime: no roll, one roll, two rolls, coexistence of one roll and two, or collapsed.",
+    ),
     (
         "one_roll",
         "First order parameter: above 0 for one clockwise roll, below 0 for a counterclockwise one.",
