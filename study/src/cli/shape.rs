@@ -58,13 +58,6 @@ impl Shape {
     fn is_known(&self) -> bool {
         self.kind != Kind::Unknown && self.parts.iter().all(|(_, part)| part.is_known())
     }
-
-    /// Sets the kind and the parts, unless an earlier reading has found them.
-    fn begin(&mut self, kind: Kind, parts: &[&'static str]) {
-        if self.kind == Kind::Unknown {
-            *self = Self { kind, parts: parts.iter().map(|name| (*name, Self::UNKNOWN)).collect() };
-        }
-    }
 }
 
 /// A file that has all that the type asks for, and notes it. Parts that are known are left out.
@@ -74,10 +67,18 @@ struct Reader<'s> {
 }
 
 impl Reader<'_> {
+    /// Sets the kind and the parts, unless an earlier reading has found them.
+    fn begin(&mut self, kind: Kind, parts: &[&'static str]) {
+        let (kind, parts) = if self.depth < DEPTH { (kind, parts) } else { (Kind::Any, [].as_slice()) };
+        if self.shape.kind == Kind::Unknown {
+            *self.shape = Shape { kind, parts: parts.iter().map(|name| (*name, Shape::UNKNOWN)).collect() };
+        }
+    }
+
     /// Returns the parts that are not known yet.
     fn unknown(self) -> impl Iterator<Item = (&'static str, Self)> {
         let depth = self.depth + 1;
-        let parts = self.shape.parts.iter_mut().filter(move |(_, part)| depth < DEPTH && !part.is_known());
+        let parts = self.shape.parts.iter_mut().filter(|(_, part)| !part.is_known());
         parts.map(move |(name, shape)| (*name, Reader { shape, depth }))
     }
 }
@@ -85,8 +86,8 @@ impl Reader<'_> {
 /// Implements the methods for values without parts.
 macro_rules! values {
     ($($kind:ident => $visit:ident($value:expr): $($method:ident)+;)+) => {$($(
-        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-            self.shape.begin(Kind::$kind, &[]);
+        fn $method<V: Visitor<'de>>(mut self, visitor: V) -> Result<V::Value, Error> {
+            self.begin(Kind::$kind, &[]);
             visitor.$visit($value)
         }
     )+)+};
@@ -103,8 +104,8 @@ impl<'de> Deserializer<'de> for Reader<'_> {
         Text => visit_str(""): deserialize_str deserialize_string;
     }
 
-    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
-        self.shape.begin(Kind::Any, &[]);
+    fn deserialize_any<V: Visitor<'de>>(mut self, _: V) -> Result<V::Value, Error> {
+        self.begin(Kind::Any, &[]);
         Err(Error::custom("the type decides by the value"))
     }
 
@@ -120,28 +121,28 @@ impl<'de> Deserializer<'de> for Reader<'_> {
         visitor.visit_newtype_struct(self)
     }
 
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        self.shape.begin(Kind::List, &[""]);
+    fn deserialize_seq<V: Visitor<'de>>(mut self, visitor: V) -> Result<V::Value, Error> {
+        self.begin(Kind::List, &[""]);
         visitor.visit_seq(SeqDeserializer::new(self.unknown().map(|(_, item)| item)))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
-        self,
+        mut self,
         _: &'static str,
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.shape.begin(Kind::Table, fields);
+        self.begin(Kind::Table, fields);
         visitor.visit_map(MapDeserializer::new(self.unknown()))
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
-        self,
+        mut self,
         _: &'static str,
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.shape.begin(Kind::Choice, variants);
+        self.begin(Kind::Choice, variants);
         visitor.visit_enum(Variant(self.unknown().next()))
     }
 
@@ -174,8 +175,8 @@ impl<'de, 's> EnumAccess<'de> for Variant<'s> {
 impl<'de> VariantAccess<'de> for Reader<'_> {
     type Error = Error;
 
-    fn unit_variant(self) -> Result<(), Error> {
-        self.shape.begin(Kind::Word, &[]);
+    fn unit_variant(mut self) -> Result<(), Error> {
+        self.begin(Kind::Word, &[]);
         Ok(())
     }
 
@@ -193,5 +194,51 @@ impl<'de> VariantAccess<'de> for Reader<'_> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         self.deserialize_struct("", fields, visitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Deserialize)]
+    #[expect(dead_code, reason = "its shape alone is of interest")]
+    struct Odd {
+        below: Option<Box<Self>>,
+        value: toml::Value,
+        none: NoNumber,
+        way: Way,
+        last: bool,
+    }
+
+    #[derive(Deserialize)]
+    #[expect(dead_code, reason = "its shape alone is of interest")]
+    enum Way {
+        Straight,
+        To(f64),
+        Round { turns: Vec<u32> },
+        Both(u8, u8),
+    }
+
+    #[derive(Deserialize)]
+    #[serde(try_from = "u8")]
+    struct NoNumber;
+
+    impl TryFrom<u8> for NoNumber {
+        type Error = &'static str;
+
+        fn try_from(_: u8) -> Result<Self, &'static str> {
+            Err("no number is right")
+        }
+    }
+
+    /// A type may contain itself, look at the value before it decides, and refuse whatever it reads.
+    #[test]
+    fn odd_types_have_a_shape() {
+        let kinds = |shape: &Shape| shape.parts.iter().map(|(_, part)| part.kind).collect::<Vec<_>>();
+        let shape = Shape::of::<Odd>();
+        assert_eq!(kinds(&shape), [Kind::Table, Kind::Any, Kind::Integer, Kind::Choice, Kind::Flag]);
+        assert_eq!(kinds(&shape.parts[3].1), [Kind::Word, Kind::Number, Kind::Table, Kind::Any]);
     }
 }
