@@ -8,7 +8,7 @@ use std::error::Error;
 use std::io;
 use std::path::Path;
 
-use granular_edmd::boundary::{Container, Part, VesselError, Wall};
+use granular_edmd::boundary::{Container, VesselError, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::simulation::{BoundaryFault, Checkpoint};
@@ -50,9 +50,8 @@ fn errors_that_happen_tell_each_thing_once() {
 fn errors_about_contents_name_the_file() {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("contents-{}", std::process::id()));
     std::fs::write(&file, "0 0\n4 4\n4 0\n0 3\n").unwrap();
-    let errors: [Box<dyn Error>; 4] = [
+    let errors: [Box<dyn Error>; 3] = [
         Box::new(Checkpoint::read(&file).unwrap_err()),
-        Box::new(Part::polygon_from_file(&file).unwrap_err()),
         Box::new(Reader::new().read(&file).unwrap_err()),
         Box::new(Recorder::append(&file, ExtendedXyz, SampleTimes::every(1.0).unwrap()).unwrap_err()),
     ];
@@ -63,8 +62,6 @@ fn errors_about_contents_name_the_file() {
     }
     let said = report(errors[0].as_ref());
     assert!(said.ends_with(": this is not a checkpoint: it does not begin as one"), "{said}");
-    let said = report(errors[1].as_ref());
-    assert!(said.contains("crosses or touches itself: its side from point 0"), "{said}");
 }
 
 fn thermal() -> granular_edmd::boundary::Thermal {

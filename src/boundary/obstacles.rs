@@ -133,7 +133,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     }
 
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
-        let circle = |obstacle: &Disk| Brick::round(obstacle.position(), obstacle.radius()).outline(0.0);
+        let circle = |obstacle: &Disk| Brick::round(obstacle.position(), obstacle.radius()).outline();
         self.boundary.wall_lines(time).into_iter().chain(self.obstacles.iter().map(circle)).collect()
     }
 
