@@ -192,7 +192,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn react(&mut self, impact: &Impact) -> Reaction {
         // An obstacle never moves, and the boundary knows no wall of its index.
-        if impact.wall() < self.boundary.wall_count() { self.boundary.react(impact) } else { Reaction::None }
+        if impact.wall < self.boundary.wall_count() { self.boundary.react(impact) } else { Reaction::None }
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
