@@ -1,5 +1,5 @@
-//! Tests that the event loop allocates nothing, that disks which come and go leave no memory behind, and that readers need no more memory than a few times their
-//! file, with an allocator that counts.
+//! Tests that the event loop allocates nothing, that disks which come and go leave no memory behind, and that
+//! readers need no more memory than a few times their file, with an allocator that counts.
 //!
 //! Only a change of the size of the cells allocates, when the state has become denser or more dilute. Dense
 //! and dilute runs that have settled have no such change.
