@@ -85,21 +85,27 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// # Who asks what, and when
 /// ```text
-/// when                          the engine asks                         for
-/// ----------------------------  --------------------------------------  ---------------------------------
-/// a run is built, or its walls  set_time_origin, domain, interior,      cells of neighbors; disks that do
-/// are set                       wall_count, overlap, tight_fit          not fit are refused
-/// cells are made                may_touch of each cell                  cells away from walls, asked once
-/// a disk's flight is predicted  first_touch (in cells at walls)         the end of the flight
-/// the touch is due              surface, overlap                        contact; a rule gives an impulse,
-///                                                                       or the wall emits or takes it
-/// after the blow                react; if Moved, may_meet of disks      walls with a mass; flights that end
-///                               at walls, and first_touch again         otherwise now
-/// the epoch moves               set_time_origin                         late times that keep their digits
-/// a checkpoint, a resumption    fingerprint, state; set_state           the same walls, where they were
-/// a sample, a picture           wall_point, wall_motion, area,          observables and files
-///                               wall_lines, edges
-/// an initial state              interior, overlap                       places for disks
+/// when                          who asks     asks                                for
+/// ----------------------------  -----------  ----------------------------------  -------------------------
+/// a run is built, or its walls  the engine   set_time_origin, domain, interior,  cells of neighbors; disks
+/// are set                                    wall_count, overlap, tight_fit,     that do not fit are
+///                                            wall_point                          refused; a wall that has
+///                                                                                jumped is a warning
+/// cells are made                the engine   may_touch of each cell              cells away from walls
+/// a disk's flight is predicted  the engine   first_touch (in cells at walls)     the end of the flight
+/// the touch is due              the engine   overlap, surface                    the contact, for a rule;
+///                                                                                or the wall emits or
+///                                                                                absorbs the disk
+/// after the rule's impulse      the engine   react; if Moved, may_meet of disks  walls with a mass; flights
+///                                            at walls, and first_touch again     that now end otherwise
+/// the epoch moves               the engine   set_time_origin, overlap            late times that keep their
+///                                                                                digits; disks in walls
+/// a checkpoint, a resumption    checkpoints  fingerprint, state; set_state       the same walls, where they
+///                                                                                were
+/// a sample, a picture           a Snapshot   wall_point, wall_motion, surface,   observables, files and
+///                                            area, wall_lines, edges             pictures
+/// an initial state              initial      interior, overlap                   places for disks
+/// an error, a warning           the engine   wall_name                           its text
 /// ```
 ///
 /// # Contract
@@ -137,8 +143,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
-/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap`, and
-///     [`wall_point`](Self::wall_point) stays on its wall.
+/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap` for the default
+///     kind, and [`wall_point`](Self::wall_point) stays on its wall.
 /// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
 ///     have equal fingerprints, whatever their state and their origin.
 ///
@@ -323,8 +329,8 @@ pub trait Boundary {
         None
     }
 
-    /// Returns the area of the part of `region` in which the center of a disk of this radius is free at
-    /// `time`, or `None` if the boundary does not know the area.
+    /// Returns the area of the part of `region` in which the center of a disk of this radius and of the
+    /// default kind is free at `time`, or `None` if the boundary does not know the area.
     ///
     /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
     /// it, and refuse to measure without it where the domain is not all free. As long as the

@@ -59,7 +59,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.
 ///
-/// If the boundary knows its free `area`, overlaps at random places must agree with it.
+/// If the boundary knows its free `area`, the gaps to its walls, as overlaps of larger disks show them, must
+/// agree with it to 2e-5 of the region.
 ///
 /// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check changes the boundary's time origin.

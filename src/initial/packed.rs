@@ -29,7 +29,8 @@ const APART: f64 = 1e-9;
 /// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
 /// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
 ///
-/// The disks are packed in the interior of the boundary, in which walls must not move. To pack disks around
+/// The disks are packed in the interior of the boundary, in which walls must not move. Give a container a
+/// piston that falls or is pushed after the disks are packed. To pack disks around
 /// one that has its place already, put that one into the boundary as
 /// [`Obstacles`](crate::boundary::Obstacles).
 ///
@@ -40,7 +41,7 @@ const APART: f64 = 1e-9;
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or the
 /// disks do not find room or jam. The error of a jam names the area fraction of the disks in the rectangle of
 /// the interior below the height. If a periodic boundary is too narrow for the engine, or the boundary breaks
-/// its contract.
+/// its contract, or has a piston that moves before a disk hits it.
 ///
 /// ```
 /// use std::f64::consts::PI;

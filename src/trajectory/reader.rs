@@ -52,7 +52,7 @@ use crate::quantity::non_negative;
 ///
 /// let state = Reader::new().with_shrunk_radii().read_from(dump.as_bytes())?;
 /// let shrunk = "all radii are shrunk by the deepest overlap, a share of 0.0625";
-/// assert_eq!(state.notes(), ["ignored columns: fx", shrunk]);
+/// assert_eq!(state.notes(), ["ignored: fx", shrunk]);
 /// let run = Simulation::builder(Elastic, Container::closed(9.0, 9.0)?).disks(state.into_disks()).build()?;
 /// assert_eq!((run.disks()[0].velocity().x, run.disks()[0].radius()), (3.0, 0.46875));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -87,7 +87,7 @@ impl State {
         &self.kind_names
     }
 
-    /// Returns the names of the file's columns that do not belong to a property of a disk.
+    /// Returns the names of columns, keys and chunks of the file that determine nothing in this state.
     pub fn ignored(&self) -> &[String] {
         &self.ignored
     }
@@ -109,7 +109,7 @@ impl State {
             notes.push(format!("kinds are numbered by name: {}", self.numbered_names()));
         }
         if !self.ignored.is_empty() {
-            notes.push(format!("ignored columns: {}", self.ignored.join(", ")));
+            notes.push(format!("ignored: {}", self.ignored.join(", ")));
         }
         if self.wrapped > 0 {
             notes.push(format!("disks outside of periodic sides, wrapped: {}", self.wrapped));

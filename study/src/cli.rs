@@ -17,8 +17,8 @@
 //! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
 //! and waiting, ramp and value of those values that were not finished, whether there are tables of all, and
 //! about how many seconds of one processor the finished values took and the others will take.
-//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units of all
-//! columns.
+//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units and
+//! the meanings of all columns.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -27,7 +27,6 @@
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | not finished: other processes work on it (`--no-wait`), also from `status` |
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
-//! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
 //! | 6 | from `diff`: the two runs differ |
 //! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
 //! | 8 | from `status`: not finished, and no process works on it |
@@ -44,6 +43,8 @@ mod files;
 mod keys;
 mod plans;
 mod replay;
+mod schema;
+mod shape;
 mod source;
 mod template;
 mod trajectory;
@@ -56,9 +57,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde_json::json;
 
 use super::errors::{PlanError, StudyError, chain};
-use super::json::Object;
 use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
@@ -75,8 +76,6 @@ enum End {
     Elsewhere = 3,
     /// All values are finished, but not the tables.
     NoTables = 4,
-    /// A standard state is slower than in an earlier table, beyond the noise.
-    Slower = 5,
     /// Two runs differ.
     Different = 6,
     /// The study is complete, but some values stalled, failed or reached a limit.
@@ -98,7 +97,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
 ) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => plans::new(example, file.as_deref()),
-        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
+        Command::Explain { key, schema } => plans::explain::<E>(key.as_deref(), schema),
         Command::Check { plan } => plans::check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
@@ -109,8 +108,8 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
         Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
-        Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
-        Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
+        Command::Bench { plan: Some(plan), json, quick } => bench::plan::<E>(&plan, json, quick),
+        Command::Bench { plan: None, quick, .. } => bench::table(quick),
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),
@@ -146,6 +145,12 @@ fn read(path: &Path) -> Result<String, Failure> {
     let text =
         if path == Path::new("-") { io::read_to_string(io::stdin()) } else { fs::read_to_string(path) };
     Ok(text.map_err(StudyError::io("read", path))?)
+}
+
+/// Writes a new file. An existing one is not overwritten.
+fn write_new(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(bytes));
+    Ok(written.map_err(StudyError::io("write", path))?)
 }
 
 /// Returns the error of a plan, with the name of its file.
@@ -216,13 +221,12 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let failed = study.failed()?;
     let (spent, left) = study.seconds()?;
     if json {
-        let object = Object::default().with("ramps", ramps);
-        let object =
-            found.iter().fold(object, |object, (name, of)| object.with(name, format_args!("{of:?}")));
-        let object = object.with("failed", format_args!("{failed:?}")).with("tables", has_tables);
-        // JSON has no NaN.
-        let told = |seconds: f64| if seconds.is_finite() { seconds.to_string() } else { "null".to_owned() };
-        say(&object.with("seconds", told(spent)).with("seconds_left", told(left)).line())?;
+        let [done, running, begun, waiting] = found.each_ref().map(|(_, of)| of);
+        let object = json!({
+            "ramps": ramps, "done": done, "running": running, "begun": begun, "waiting": waiting,
+            "failed": failed, "tables": has_tables, "seconds": spent, "seconds_left": left,
+        });
+        say(&object.to_string())?;
     } else {
         let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
         let tables = if has_tables { "tables of all" } else { "no tables of all" };

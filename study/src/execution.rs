@@ -38,7 +38,7 @@ impl<E: Experiment> Study<E> {
     /// started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
         let ramps = self.plan().ramp_count();
-        self.run_blocks(0..ramps, blocks(ramps).collect(), control)
+        self.run_blocks(0..ramps, blocks(ramps), control)
     }
 
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
@@ -51,13 +51,13 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_ramp(ramp)?;
-        self.run_blocks(ramp..ramp + 1, std::iter::once(ramp..ramp + 1).collect(), control)
+        self.run_blocks(ramp..ramp + 1, std::iter::once(ramp..ramp + 1), control)
     }
 
     fn run_blocks(
         &self,
         ramps: Range<usize>,
-        blocks: Vec<Range<usize>>,
+        blocks: impl Iterator<Item = Range<usize>>,
         control: &Control<'_>,
     ) -> Result<Summary, StudyError> {
         self.check_unchanged()?;
@@ -98,7 +98,7 @@ fn all<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<Vec<usi
         session.strike_done(queue)?;
         let elsewhere = queue.elsewhere();
         if elsewhere.is_empty() || !session.control.waits || session.must_stop() {
-            return Ok(elsewhere.into_iter().flatten().collect());
+            return Ok(elsewhere);
         }
         session.sleep(patience);
         patience = PATIENCE[1].min(2 * patience);
@@ -124,10 +124,10 @@ fn work_in_parallel<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> R
 /// Runs blocks of the queue until it is empty.
 fn work<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<(), StudyError> {
     while !session.must_stop()
-        && let Some((index, ramps)) = queue.next()
+        && let Some(ramps) = queue.next()
     {
         if !ramp::attempt(session, &ramps).inspect_err(|_| session.break_off())? {
-            queue.leave(index);
+            queue.leave(ramps);
         }
     }
     Ok(())

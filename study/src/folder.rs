@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use granular_edmd::file::{Locked, is_temporary};
 
 use super::provenance::Provenance;
-use super::whole::{self, if_there};
+use super::whole::{self, damaged, if_there};
 use super::{PlanError, StudyError};
 
 /// Text of the README in the folder of a study.
@@ -24,7 +24,7 @@ values.csv            a row for each value: parameters, means, standard errors, 
 samples.csv           a row for each sample
 points.csv            a row for each value, all repeats of it together
 transitions.csv       a row for each transition that a refined ramp brackets
-columns.csv           the names and units of all columns of all tables
+columns.csv           the names, units and meanings of all columns of all tables
 logs/L.records        finished values as processes have added them, each with a checksum
 logs/L.jsonl          when values were finished, and the seconds that they took; not a result. It is locked while
                       a process writes this log
@@ -150,11 +150,12 @@ impl Folder {
         self.root.join(PROVENANCE)
     }
 
-    /// Returns the provenance of the study, which is empty if its file is missing.
-    pub(super) fn provenance(&self) -> Result<Provenance, StudyError> {
+    /// Returns the provenance of the study, or `None` if its file is missing.
+    pub(super) fn provenance(&self) -> Result<Option<Provenance>, StudyError> {
         let path = self.provenance_file();
-        let text = whole::if_there("read", &path, fs::read_to_string(&path))?;
-        Ok(Provenance::of_text(text.unwrap_or_default()))
+        let text = if_there("read", &path, fs::read_to_string(&path))?;
+        let read = text.map(|text| serde_json::from_str(&text)).transpose();
+        read.map_err(|reason| damaged(&path, format!("it is no provenance ({reason})")))
     }
 
     /// Replaces the provenance.

@@ -26,15 +26,6 @@ impl Maker {
     pub(super) fn key(&self) -> String {
         format!("{}:{}:{}", self.results, self.revision, self.columns)
     }
-
-    /// Returns the names and values of the fields that decide whether a study accepts the code.
-    pub(super) fn deciding(&self) -> [(&'static str, String); 3] {
-        [
-            ("results", self.results.to_string()),
-            ("revision", self.revision.to_string()),
-            ("columns", self.columns.to_string()),
-        ]
-    }
 }
 
 /// Formats a record's maker for a cell of a table.

@@ -25,8 +25,8 @@ pub struct Study<E> {
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// The makers whose records the study accepts.
-    provenance: Provenance,
+    /// The code that made the study, and the makers whose records it accepts.
+    provenance: Option<Provenance>,
     /// The maker of this program's records.
     maker: Maker,
 }
@@ -93,10 +93,10 @@ impl<E: Experiment> Study<E> {
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
         let before = study.read_provenance()?;
-        let differences = before.differences(&study.plan);
+        let now = study.ours();
+        let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
-            let now = Provenance::here(&study.plan, &study.hash, &before.keys());
-            study.folder.replace_provenance(&now)?;
+            study.folder.replace_provenance(&now.after(before.as_ref()))?;
         }
         Ok(differences)
     }
@@ -119,16 +119,15 @@ impl<E: Experiment> Study<E> {
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
-        let (provenance, maker) = (Provenance::of_text(String::new()), provenance::maker::<E>());
+        let maker = provenance::maker::<E>();
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
-        Ok(Self { folder, store, claims, plan, text, hash, provenance, maker })
+        Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
     }
 
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
     /// plan.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        let provenance = Provenance::here(&self.plan, &self.hash, "");
-        self.folder.create(&self.text, &provenance, || check(&self.plan))
+        self.folder.create(&self.text, &self.ours(), || check(&self.plan))
     }
 
     /// Returns the study, or an error if this program may not continue it.
@@ -137,19 +136,24 @@ impl<E: Experiment> Study<E> {
         Ok(self)
     }
 
-    /// Reads the provenance, which must be whole and belong to this plan.
-    fn read_provenance(&self) -> Result<Provenance, StudyError> {
+    /// Returns this program as the maker of the study.
+    fn ours(&self) -> Provenance {
+        Provenance::here(&self.plan, &self.hash)
+    }
+
+    /// Reads the provenance, which must belong to this plan if it is there.
+    fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
         let provenance = self.folder.provenance()?;
-        if provenance.is_there() && !provenance.is_of(&self.hash) {
+        if provenance.as_ref().is_some_and(|provenance| !provenance.is_of(&self.hash)) {
             return Err(StudyError::Foreign { path: self.folder.provenance_file() });
         }
         Ok(provenance)
     }
 
-    fn check_code(&self) -> Result<Provenance, StudyError> {
+    fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
         self.folder.check_format()?;
         let provenance = self.read_provenance()?;
-        let differences = provenance.differences(&self.plan);
+        let differences = self.ours().differences(provenance.as_ref());
         if differences.is_empty() {
             return Ok(provenance);
         }
@@ -210,7 +214,7 @@ impl<E: Experiment> Study<E> {
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
             return Err(damaged(path, "it is of another value"));
         }
-        if self.is_ours(found) || self.provenance.takes(&found.maker) {
+        if self.is_ours(found) || self.provenance.as_ref().is_some_and(|code| code.takes(&found.maker)) {
             return Ok(());
         }
         Err(StudyError::Changed { path: path.to_owned(), part: "revision" })

@@ -4,7 +4,6 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::{Fingerprint, RESULTS};
 
-use super::json::{self, Object};
 use super::maker::Maker;
 use super::{Difference, Experiment, Plan};
 
@@ -28,75 +27,91 @@ fn columns<E: Experiment>() -> Fingerprint {
 }
 
 /// The file `provenance.json`: the code that may continue a study, and the program that began it.
-#[derive(Debug, Clone)]
-pub(super) struct Provenance(String);
-
-/// Name of the field with earlier makers that were accepted.
-const ACCEPTED: &str = "accepted";
-
-/// Name of the field with the hash of the plan.
-const PLAN: &str = "plan";
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(super) struct Provenance {
+    results: String,
+    revision: String,
+    columns: String,
+    rule: String,
+    boundary: String,
+    version: String,
+    program: String,
+    target: String,
+    /// Hash of the plan.
+    plan: String,
+    /// The earlier makers that were accepted, as keys separated by blanks.
+    accepted: String,
+}
 
 impl Provenance {
-    /// Describes this program as the maker of the study of a plan, after the earlier, accepted ones.
-    pub(super) fn here<E: Experiment>(plan: &Plan<E>, hash: &blake3::Hash, accepted: &str) -> Self {
+    /// Describes this program as the maker of the study of a plan.
+    pub(super) fn here<E: Experiment>(plan: &Plan<E>, hash: &blake3::Hash) -> Self {
+        let Maker { version, results, revision, columns } = maker::<E>();
         let program = std::env::current_exe().ok();
         let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
-        let deciding = deciding(plan).into_iter();
-        let page = deciding.fold(Object::default(), |page, (name, value)| page.text(name, &value));
-        let page = page.text("version", env!("CARGO_PKG_VERSION"));
-        let page = page.text("program", &program.to_string_lossy());
-        let page = page.text("target", &format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS));
-        Self(page.text(PLAN, hash.to_hex().as_str()).text(ACCEPTED, accepted).page())
+        let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
+        let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
+        let [rule, boundary] =
+            [rule, boundary].map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
+        Self {
+            results: results.to_string(),
+            revision: revision.to_string(),
+            columns: columns.to_string(),
+            rule,
+            boundary,
+            version,
+            program: program.to_string_lossy().into_owned(),
+            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            plan: hash.to_hex().to_string(),
+            accepted: String::new(),
+        }
     }
 
-    /// Wraps the text of the file unchanged.
-    pub(super) const fn of_text(text: String) -> Self {
-        Self(text)
+    /// Returns the text of the file.
+    pub(super) fn text(&self) -> String {
+        // Texts are always JSON.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    pub(super) fn text(&self) -> &str {
-        &self.0
-    }
-
-    /// Returns whether the file exists.
-    pub(super) fn is_there(&self) -> bool {
-        !self.0.is_empty()
+    /// Returns the same provenance after an earlier one, all of whose makers were accepted.
+    pub(super) fn after(self, before: Option<&Self>) -> Self {
+        Self { accepted: before.map_or_else(String::new, Self::keys), ..self }
     }
 
     /// Returns whether the study was begun with the plan of this hash.
     pub(super) fn is_of(&self, hash: &blake3::Hash) -> bool {
-        json::field(&self.0, PLAN) == Some(hash.to_hex().as_str())
+        self.plan == hash.to_hex().as_str()
     }
 
-    /// Returns those deciding fields in which this program differs.
-    pub(super) fn differences<E: Experiment>(&self, plan: &Plan<E>) -> Vec<Difference> {
-        let ours = deciding(plan).into_iter();
-        let both = ours.map(|(name, ours)| (name, json::field(&self.0, name).map(str::to_owned), ours));
-        both.filter(|(_, old, new)| old.as_ref() != Some(new))
-            .map(|(name, old, new)| Difference { field: name.to_owned(), old, new: Some(new) })
-            .collect()
+    /// Returns the deciding fields in which this program differs from the one that made the study.
+    pub(super) fn differences(&self, there: Option<&Self>) -> Vec<Difference> {
+        let all = self.deciding().into_iter().enumerate().map(|(place, (name, ours))| Difference {
+            field: name.to_owned(),
+            old: there.map(|there| there.deciding()[place].1.clone()),
+            new: Some(ours.clone()),
+        });
+        all.filter(|field| field.old != field.new).collect()
+    }
+
+    /// Returns the fields that decide whether a program may continue the study of a plan.
+    const fn deciding(&self) -> [(&'static str, &String); 5] {
+        [
+            ("results", &self.results),
+            ("revision", &self.revision),
+            ("columns", &self.columns),
+            ("rule", &self.rule),
+            ("boundary", &self.boundary),
+        ]
     }
 
     /// Returns the present maker and the earlier, accepted ones, as keys separated by blanks.
-    pub(super) fn keys(&self) -> String {
-        let of = |name| json::field(&self.0, name).unwrap_or_default();
-        let present = format!("{}:{}:{}", of("results"), of("revision"), of("columns"));
-        format!("{} {present}", of(ACCEPTED)).trim_start().to_owned()
+    fn keys(&self) -> String {
+        let Self { results, revision, columns, accepted, .. } = self;
+        format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()
     }
 
     /// Returns whether the study accepts records of this maker.
     pub(super) fn takes(&self, maker: &Maker) -> bool {
         self.keys().split(' ').any(|key| key == maker.key())
     }
-}
-
-/// Returns the fields that decide whether a program may continue the study of a plan: the fields of its
-/// maker, and the fingerprints of rule and walls at the parameters of the plan.
-fn deciding<E: Experiment>(plan: &Plan<E>) -> Vec<(&'static str, String)> {
-    let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
-    let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
-    let told = |part: Option<Fingerprint>| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string());
-    let parts = [("rule", told(rule)), ("boundary", told(boundary))];
-    maker::<E>().deciding().into_iter().chain(parts).collect()
 }

@@ -1,4 +1,6 @@
-//! Seeds that follow from another seed.
+//! Seeds that follow from another seed, and numbers that have no influence on results.
+
+use std::hash::{BuildHasher, Hasher, RandomState};
 
 use super::Scalar;
 
@@ -21,4 +23,11 @@ pub(super) fn seed_at(seed: u64, parameter: &str, value: &Scalar) -> u64 {
 fn derived(seed: u64, bytes: &[u8]) -> u64 {
     let hash = blake3::Hasher::new().update(&seed.to_le_bytes()).update(bytes).finalize();
     u64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
+}
+
+/// Returns a random index below this number, or 0. It has no influence on results.
+pub(super) fn anywhere(count: usize) -> usize {
+    // The standard library seeds its hash tables from the system: a random number that needs no dependency.
+    let random = RandomState::new().build_hasher().finish();
+    random.checked_rem(count as u64).unwrap_or(0) as usize
 }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use granular_edmd::observable::Heading;
 
 use super::experiment::columns::{Column, Kind, Table, error_names};
+use super::meanings;
 use super::{Bracket, Experiment, Plan, Record, Scalar, StudyError};
 use leading::{Place, leading, row};
 use points::{Repeat, Repeats};
@@ -44,12 +45,13 @@ impl<'a, E: Experiment> Tables<'a, E> {
     pub(super) fn new(plan: &'a Plan<E>, folder: &Path) -> Result<Self, StudyError> {
         let columns = E::columns();
         let mut described = Rows::begin(folder, "columns")?;
-        described.push(Row::of(["table", "column", "unit"]))?;
+        described.push(Row::of(["table", "column", "unit", "meaning"]))?;
         let mut begin = |name: &str, place: Place, own: Vec<Heading>| -> Result<Rows, StudyError> {
             let leading = leading(plan, place).into_iter().map(|(name, _)| Heading::new(name, ""));
             let headings: Vec<Heading> = leading.chain(own).collect();
             for heading in &headings {
-                described.push(Row::of([name, heading.name(), heading.unit()]))?;
+                let meaning = meanings::of_column(plan, name, heading.name());
+                described.push(Row::of([name, heading.name(), heading.unit(), &meaning]))?;
             }
             let mut rows = Rows::begin(folder, name)?;
             rows.push(Row::of(headings.iter().map(Heading::name)))?;

@@ -1,10 +1,13 @@
 //! Files of disks with random changes, cut anywhere, or of random bytes: the reader gives an error that
 //! names a line, or disks that survive their file.
 
+use std::fs;
+use std::path::Path;
+
 use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::observable::Snapshot;
 use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, Reader, State};
-use granular_edmd::{Disk, initial};
+use granular_edmd::{Disk, Gravity, initial};
 use proptest::prelude::*;
 
 use crate::cases::config;
@@ -43,7 +46,11 @@ fn is_sound(read: &Result<State, ReadError>) -> bool {
     match read {
         Ok(state) => {
             let is_sound = |disk: &Disk| disk.position().is_finite() && disk.radius() > 0.0;
-            state.disks().iter().all(is_sound) && state.time().is_none_or(f64::is_finite)
+            let is_finite = |gravity: Gravity| gravity.acceleration().is_finite();
+            state.disks().iter().all(is_sound)
+                && state.time().is_none_or(f64::is_finite)
+                && state.gravity().is_none_or(is_finite)
+                && state.domain().is_none_or(|domain| domain.width() > 0.0 && domain.top > domain.bottom)
         }
         // A message is for people: whatever is in the file, it fits on a screen.
         Err(error) => error.to_string().len() < 2000,
@@ -101,6 +108,61 @@ fn huge_numbers_are_only_numbers() {
     let begun = std::time::Instant::now();
     assert!(read(heap.as_bytes()).is_err());
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
+/// Files of other programs, of each format.
+fn files() -> Vec<(String, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trajectory/files");
+    let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending != "py"));
+    paths.sort();
+    paths.into_iter().map(|path| (path.display().to_string(), fs::read(path).unwrap())).collect()
+}
+
+/// A change of a file: bytes at a place, given as a share of its length, that take the place of others.
+fn change() -> impl Strategy<Value = (f64, usize, Vec<u8>)> {
+    let number =
+        prop::sample::select(vec![0, 1, 2, 255, 1 << 16, 1 << 31, u64::from(u32::MAX), 1 << 62, u64::MAX]);
+    let reals = prop::sample::select(vec![f32::NAN, f32::INFINITY, -0.0, 1e-40, f32::MAX]);
+    let bytes = prop_oneof![
+        any::<u8>().prop_map(|byte| vec![byte]),
+        number.prop_map(|number| number.to_le_bytes().to_vec()),
+        reals.prop_map(|real| real.to_le_bytes().to_vec()),
+        prop::collection::vec(any::<u8>(), 0..12),
+    ];
+    // The head and the index of a file say what the rest means.
+    let place = prop_oneof![0.0..1.0, (0.0..1.0_f64).prop_map(|place| place.powi(4))];
+    (place, 0..12_usize, bytes)
+}
+
+fn changed(bytes: &[u8], changes: &[(f64, usize, Vec<u8>)]) -> Vec<u8> {
+    changes.iter().fold(bytes.to_vec(), |mut bytes, (place, removed, inserted)| {
+        let start = (place * bytes.len() as f64) as usize;
+        let end = (start + removed).min(bytes.len());
+        bytes.splice(start..end, inserted.iter().copied());
+        bytes
+    })
+}
+
+proptest! {
+    #![proptest_config(config(300))]
+
+    /// As many bytes are inserted as removed in half of the cases, so that the places in an index remain.
+    #[test]
+    fn changed_files_are_read_or_refused(
+        mut changes in prop::collection::vec(change(), 1..4),
+        keeps in any::<bool>(),
+        frame in -3..3_isize,
+    ) {
+        if keeps {
+            changes.iter_mut().for_each(|(_, removed, inserted)| *removed = inserted.len());
+        }
+        for (name, bytes) in files() {
+            let bytes = changed(&bytes, &changes);
+            let read = Reader::new().with_frame(frame).read_from(bytes.as_slice());
+            prop_assert!(is_sound(&read), "{}: {:?}", name, read);
+        }
+    }
 }
 
 proptest! {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError, Radii};
-use granular_edmd::wall::BiParabolic;
+use granular_edmd::wall::{BiParabolic, Piston};
 use granular_edmd::{Disk, Kind};
 
 use super::{assert_apart, assert_same_disks, disks};
@@ -93,6 +93,21 @@ fn an_intruder_stays_where_it_is() {
     let mut packed = initial::packed_at_random(&around, disks(vec![0.5; count]), 20.0, 1).unwrap();
     packed.push(intruder);
     assert_apart(container, &packed);
+}
+
+/// A piston that falls would reach the disks while they are packed.
+#[test]
+fn pistons_that_move_are_added_afterwards() {
+    let piston = Piston::new(2.0, [0.0, 25.0]).unwrap().with_start(10.0, 0.0).unwrap();
+    let packed = |piston: Piston| {
+        let container = Container::closed(16.0, 40.0).unwrap().with_piston(Wall::Lid, piston).unwrap();
+        initial::packed_at_random(&container, disks(vec![0.5; 100]), 40.0, 1)
+    };
+    assert_eq!(packed(piston.clone()).unwrap().len(), 100);
+    let error = packed(piston.with_force(40.0).unwrap()).unwrap_err().to_string();
+    let expected = "way of the wall \"lid\" in a unit of time must be 0 while disks are packed (add the piston \
+                    afterwards), but is 10";
+    assert_eq!(error, expected);
 }
 
 /// A wide mixture: the largest is 40 times as large as the smallest.

@@ -95,15 +95,9 @@ fn tables_of_many_programs() {
             ("x,y,radius\n1,2,0.5\n", "(1 2) r0.5"),
             ("Y,X,R\n2,1,0.5\n", "(1 2) r0.5"),
             // pandas and R have a column of their own.
-            (
-                ",x,y,radius\n0,1,2,0.5\n1,3,2,0.5\n",
-                "(1 2) r0.5; (3 2) r0.5 | ignored columns: (without a name)",
-            ),
-            (
-                "\"\",\"x\",\"y\",\"radius\"\n\"1\",1,2,0.5\n",
-                "(1 2) r0.5 | ignored columns: (without a name)",
-            ),
-            ("x;y;d;weight\n1;2;1;9\n", "(1 2) r0.5 | ignored columns: weight"),
+            (",x,y,radius\n0,1,2,0.5\n1,3,2,0.5\n", "(1 2) r0.5; (3 2) r0.5 | ignored: (without a name)"),
+            ("\"\",\"x\",\"y\",\"radius\"\n\"1\",1,2,0.5\n", "(1 2) r0.5 | ignored: (without a name)"),
+            ("x;y;d;weight\n1;2;1;9\n", "(1 2) r0.5 | ignored: weight"),
             ("x\ty\tradius\tvx\tvy\n1\t2\t0.5\t3\t4\n", "(1 2) r0.5 v(3 4)"),
             ("# x y radius omega\n1 2 0.5 3\n# the end\n", "(1 2) r0.5 w3"),
             ("x, y, radius, angle\n1, 2, 0.5, 3\n", "(1 2) r0.5 a3"),
@@ -218,7 +212,7 @@ fn radii_and_masses_from_the_reader() {
             ),
             (
                 "1\na comment\nH 1 2 0 9 9\n",
-                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0 | ignored columns: 5 to 6",
+                "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0 | ignored: 5 to 6",
             ),
             ("x y\n1 2\n", "(1 2) r0.5 m3.141592653589793"),
             // A file knows better.

@@ -22,16 +22,16 @@ fn dumps_of_lammps_and_liggghts() {
         (
             "id type type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius",
             "1 1 1 1 2 0 0 0 0 3 4 0 9 9 9 0 0 5 0.5",
-            "(1 2) r0.5 v(3 4) w5 #1 | ignored columns: fx, fy, fz",
+            "(1 2) r0.5 v(3 4) w5 #1 | ignored: fx, fy, fz",
         ),
         (
             "id type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius",
             "1 1 1 2 0 0 0 0 3 4 0 9 9 9 0 0 5 0.5",
-            "(1 2) r0.5 v(3 4) w5 #1 | ignored columns: fx, fy, fz",
+            "(1 2) r0.5 v(3 4) w5 #1 | ignored: fx, fy, fz",
         ),
         ("id x y radius density", "1 1 2 0.5 6", "(1 2) r0.5 m3.141592653589793 #1"),
-        ("id x y radius c_one[1] v_two", "1 1 2 0.5 9 9", "(1 2) r0.5 #1 | ignored columns: c_one[1], v_two"),
-        ("id type element x y radius", "1 2 Fe 1 2 0.5", "(1 2) r0.5 k1 #1 | ignored columns: element"),
+        ("id x y radius c_one[1] v_two", "1 1 2 0.5 9 9", "(1 2) r0.5 #1 | ignored: c_one[1], v_two"),
+        ("id type element x y radius", "1 2 Fe 1 2 0.5", "(1 2) r0.5 k1 #1 | ignored: element"),
         (
             "id element x y radius",
             "1 Fe 1 2 0.5",

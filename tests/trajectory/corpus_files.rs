@@ -64,6 +64,12 @@ fn files_of_gsd() {
             ("hoomd_diameters_missing.gsd", &plain("")),
             ("names.gsd", &(plain(" k1").replace("(-2", "kinds 0 A, 1 B; (-2") + NAMED)),
             (
+                "unused.gsd",
+                &(plain(" k1")
+                    + " | angular momenta are ignored, for the file has no moments of inertia | ignored: \
+                       particles/charge, log/energy"),
+            ),
+            (
                 "hoomd_overlap.gsd",
                 "refused: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
                  distance at contact; it is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
@@ -101,6 +107,16 @@ fn files_of_gsd() {
             ("no_positions.gsd", "refused: frame 0: the chunk `particles/position` is missing"),
             ("bad_radius.gsd", "refused: line 2 is no disk: radius must be finite and positive, but is 0"),
             ("bad_mass.gsd", "refused: line 2 is no disk: mass must be finite and positive, but is -1"),
+            ("bad_time.gsd", "refused: frame 0: the chunk `log/time` must be finite, but is [NaN]"),
+            (
+                "bad_gravity.gsd",
+                "refused: frame 0: the chunk `log/gravity` must be finite, but is [0.0, inf]",
+            ),
+            ("bad_center.gsd", "refused: frame 0: the chunk `log/center` must be finite, but is [NaN, 3.0]"),
+            (
+                "bad_domain.gsd",
+                "refused: line 1: the box must be from smaller to larger numbers, but is \"0 to NaN and 0 to 6\"",
+            ),
             ("moving_out.gsd", "refused: line 2: velo must be 0, for disks move in a plane, but is \"1\""),
             ("types.gsd", "refused: line 2: kind must be from 0 to 65535, but is \"70000\""),
             (

@@ -8,10 +8,17 @@ use crate::corpus::{check, dump, xyz};
 fn columns_of_a_plain_xyz_that_nobody_names() {
     let reader = Reader::new().with_radius(0.5).unwrap();
     let named = "kinds 0 H; (1 2) r0.5 | kinds are numbered by name: H 0";
-    for (rest, note) in [("", ""), (" 7", " | ignored columns: 5"), (" 7 8 9", " | ignored columns: 5 to 7")]
-    {
+    for (rest, note) in [("", ""), (" 7", " | ignored: 5"), (" 7 8 9", " | ignored: 5 to 7")] {
         check(&reader, &[(&xyz("a comment", &format!("H 1 2 0{rest}")), &format!("{named}{note}"))]);
     }
+}
+
+/// ASE writes what it computed, and this crate the motion of walls.
+#[test]
+fn keys_without_a_meaning_are_named() {
+    let keys =
+        "Walls=\"0 0.0 0.1 0.5\" Properties=pos:R:2:radius:R:1 energy=-1.5 pbc=\"F F F\" Step=7 energy=-1.5";
+    check(&Reader::new(), &[(&xyz(keys, "1 2 0.5"), "(1 2) r0.5 | ignored: Step, Walls, energy")]);
 }
 
 /// ASE writes momenta and, unless it is asked to, no masses.
@@ -58,7 +65,7 @@ fn columns_may_repeat_what_they_say() {
 /// ASE's `Z` is the number of an element.
 #[test]
 fn an_atomic_number_is_no_coordinate() {
-    let told = " | ignored columns: Z";
+    let told = " | ignored: Z";
     let two = "(1 2) r0.5; (3 2) r0.5";
     let atoms = xyz("Properties=Z:I:1:pos:R:3:radius:R:1", "8 1 2 0 0.5 / 26 3 2 0 0.5");
     let apart = xyz("Properties=x:R:1:y:R:1:z:R:1:radius:R:1", "1 2 1 0.5 / 3 2 1 0.5");
@@ -80,7 +87,7 @@ fn a_table_holds_one_state() {
             ("time,x,y,radius\n2.5,1,2,0.5\n2.5,3,2,0.5\n", "t 2.5; (1 2) r0.5; (3 2) r0.5"),
             // Units may follow the names.
             ("x [sigma],y [sigma],radius [sigma],time [time]\n1,2,0.5,3\n", "t 3; (1 2) r0.5"),
-            ("step,x,y,radius\n7,1,2,0.5\n", "(1 2) r0.5 | ignored columns: step"),
+            ("step,x,y,radius\n7,1,2,0.5\n", "(1 2) r0.5 | ignored: step"),
             ("time,x,y,radius\nnoon,1,2,0.5\n", "refused: line 2: time must be a number, but is \"noon\""),
         ],
     );
@@ -88,7 +95,7 @@ fn a_table_holds_one_state() {
 
 #[test]
 fn names_of_rows_as_r_writes_them() {
-    let told = " | ignored columns: (names of rows)";
+    let told = " | ignored: (names of rows)";
     check(
         &Reader::new(),
         &[

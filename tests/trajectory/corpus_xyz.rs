@@ -55,7 +55,7 @@ fn columns_of_extended_xyz() {
         [
             "Properties=pos:R:2:radius:R:1:forces:R:3:tag:S:1",
             "1 2 0.5 9 9 9 word",
-            "(1 2) r0.5 | ignored columns: forces, tag",
+            "(1 2) r0.5 | ignored: forces, tag",
         ],
         // Numbers as Fortran and C write them.
         ["Properties=pos:R:3:radius:R:1", "1.0D+00 +2. 0 .5d0", "(1 2) r0.5"],
@@ -158,9 +158,9 @@ fn keys_of_extended_xyz() {
         ("Time=3 t=4", "refused: line 2: the key `t` stands in line 2 already"),
         ("Gravity=\"0.5 -1\"", "g [0.5, -1]; (1 2) r0.5"),
         ("gravity=2", "g [0, -2]; (1 2) r0.5"),
-        ("Title=", "(1 2) r0.5"),
-        ("T = 300 K", "(1 2) r0.5"),
-        ("energy=-3 energy=4 note=\"a \\\"word\\\" Time=9\" flag", "(1 2) r0.5"),
+        ("Title=", "(1 2) r0.5 | ignored: Title"),
+        ("T = 300 K", "(1 2) r0.5 | ignored: T"),
+        ("energy=-3 energy=4 note=\"a \\\"word\\\" Time=9\" flag", "(1 2) r0.5 | ignored: energy, note"),
     ];
     let texts: Vec<String> = cases.iter().map(|(keys, _)| one(keys)).collect();
     let cases: Vec<(&str, &str)> =

@@ -2,20 +2,31 @@
 
 import { fit, font, look } from './look.js';
 
-const KEPT = 400, LEFT = 38, RIGHT = 8, TOP = 8, BOTTOM = 32;
+const KEPT = 400, SAVED = 200000, LEFT = 38, RIGHT = 8, TOP = 8, BOTTOM = 32;
 
 export class Order {
-  #canvas; #scene; #samples = [[], []]; #changes = []; #drawn = '';
+  #canvas; #scene; #samples = [[], []]; #all = [[], []]; #changes = []; #drawn = '';
   constructor(canvas) { this.#canvas = canvas; }
 
   get canvas() { return this.#canvas; }
 
-  begin(scene) { this.#scene = scene; this.#samples = [[], []]; this.#changes = []; this.#drawn = ''; }
+  begin(scene) { this.#scene = scene; this.#samples = [[], []]; this.#all = [[], []]; this.#changes = []; this.#drawn = ''; }
 
   // Adds samples of the run, or of the one beside it.
   add(samples, side = 0) {
-    for (let i = 0; i < samples.length; i += 4) this.#samples[side].push(samples.subarray(i, i + 4));
+    for (let i = 0; i < samples.length; i += 4) {
+      const sample = samples.subarray(i, i + 4);
+      this.#samples[side].push(sample);
+      if (this.#all[side].length < SAVED) this.#all[side].push(sample);
+    }
     this.#samples[side] = this.#samples[side].slice(-KEPT);
+  }
+
+  // All samples as a table; run 0 is the one on the left.
+  csv() {
+    const columns = this.#scene.plot.columns;
+    const rows = this.#all.flatMap((samples, run) => samples.map((sample) => [run, ...sample.subarray(0, columns.length - 1)].join()));
+    return `${[columns.join(), ...rows].join('\n')}\n`;
   }
 
   changed(at) { if (this.#changes.at(-1) !== at) this.#changes.push(at); this.#changes = this.#changes.slice(-KEPT); }

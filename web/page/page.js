@@ -3,7 +3,7 @@
 import { Diagram, isLarger, reducedGravity, setOf } from './diagram.js';
 import { look } from './look.js';
 import { Order } from './order.js';
-import { save } from './picture.js';
+import { canRecord, record, save, saveAs } from './picture.js';
 import { ROLLS, sceneOf } from './scenes.js';
 import { Side } from './side.js';
 import { Sliders, fromAddress, positionOf, refused, speedOf, toAddress } from './settings.js';
@@ -56,6 +56,15 @@ function start(next) {
   showBeside(run.at);
 }
 
+// Marks the run among those to begin with.
+function showCurrent() {
+  const essence = ({ nut, beside }, setting) => JSON.stringify([nut, setting, beside]);
+  for (const link of document.querySelectorAll('nav a')) {
+    const first = fromAddress(link.hash);
+    link.setAttribute('aria-current', essence(first, first.plan[0].setting) === essence(run, sliders.values));
+  }
+}
+
 // Starts the run beside, from the plan of this one with another value of one setting, and replays it as far; or takes it away.
 function showBeside(until = Math.floor(side.frame?.oscillations ?? 0)) {
   const { beside } = run;
@@ -65,6 +74,7 @@ function showBeside(until = Math.floor(side.frame?.oscillations ?? 0)) {
   document.body.classList.toggle('two', Boolean(beside));
   other?.end();
   other = null;
+  showCurrent();
   if (!beside) return;
   other = new Side(at('box-beside'), {
     loaded() { other.start({ ...run, plan: run.plan.map(varied), at: until }); other.order('want'); },
@@ -91,6 +101,7 @@ function ask() {
   asked = performance.now();
   side.order('ask', [...sliders.values]);
   showLines();
+  showCurrent();
 }
 
 function changes({ asked, setting }) {
@@ -197,7 +208,17 @@ at('save').onclick = () => {
     about: run.scene.settings.map(({ symbol }, i) => `${symbol} = ${sliders.values[i]}`).join('    ') + (run.beside ? `    beside it: ${run.scene.settings[run.beside.setting].symbol} = ${run.beside.value}` : ''),
     foot: `seed ${run.seed}; state ${frame.hash.text} after ${frame.hash.at} oscillations; granular-edmd`,
     boxes: [side, other].filter(Boolean).map((each) => each.box.canvas), plots,
-  }, `${run.scene.name}-${Math.floor(frame.oscillations)}`);
+  }, named());
+};
+const named = () => `${run.scene.name}-${Math.floor(side.frame?.oscillations ?? 0)}`;
+at('curves').onclick = () => saveAs(`${named()}.csv`, new Blob([plot.csv()], { type: 'text/csv' }));
+at('record').hidden = !canRecord;
+at('record').onclick = async () => {
+  at('record').disabled = true;
+  at('record').textContent = 'Recording …';
+  await record(side.box.canvas, 8, named()).catch((error) => say(`No video: ${error.message}`));
+  at('record').textContent = 'Record 8 seconds';
+  at('record').disabled = false;
 };
 window.addEventListener('hashchange', () => start(fromAddress(location.hash)));
 navigator.serviceWorker?.register('offline.js').catch(() => {}); // Where it is refused, the page needs the network.

@@ -29,12 +29,24 @@ export function compose({ title, about, foot, boxes, plots }) {
   return sheet;
 }
 
-export function save(what, name) {
-  compose(what).toBlob((blob) => {
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(blob);
-    link.download = `${name}.png`;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-  });
+export function saveAs(name, blob) {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+export function save(what, name) { compose(what).toBlob((blob) => saveAs(`${name}.png`, blob)); }
+
+export const canRecord = 'MediaRecorder' in globalThis && 'captureStream' in HTMLCanvasElement.prototype;
+
+// Records what a canvas shows for some seconds.
+export function record(canvas, seconds, name) {
+  const recorder = new MediaRecorder(canvas.captureStream(30)), parts = [], type = recorder.mimeType || 'video/webm';
+  recorder.ondataavailable = ({ data }) => parts.push(data);
+  const ended = new Promise((done) => { recorder.onstop = done; });
+  recorder.start();
+  setTimeout(() => recorder.stop(), 1000 * seconds);
+  return ended.then(() => saveAs(`${name}.${type.includes('mp4') ? 'mp4' : 'webm'}`, new Blob(parts, { type })));
 }

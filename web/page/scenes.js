@@ -15,7 +15,7 @@ export const ROLLS = {
   settings: [friction, inelasticity, { ...gravity, most: 1, ...log(0.001, 0.1) }, { ...amplitude, most: 1, ...log(0.02, 0.5) },
     { ...frequency, least: 1, most: 50, ...log(2, 30) }],
   starts: [0.03, 0, 0.015625, 0.1, 10],
-  plot: { window: 3000, stride: 1000, least: -0.13, most: 0.13, digits: 2, steps: [0.05, 0.1, 0.25] },
+  plot: { columns: ['run', 'oscillations', 'one_roll', 'two_rolls', 'noise'], window: 3000, stride: 1000, least: -0.13, most: 0.13, digits: 2, steps: [0.05, 0.1, 0.25] },
 };
 
 export const NUT = {
@@ -23,7 +23,7 @@ export const NUT = {
   settings: [friction, inelasticity, { ...gravity, most: 20, ...log(0.2, 5) }, { ...amplitude, most: 3, ...log(0.1, 3) },
     { ...frequency, least: 0.2, most: 10, ...log(0.5, 5) }],
   starts: [0.3, 0.05, 1, 1, 2.3],
-  plot: { window: 300, stride: 100, least: 0, most: 20, digits: 0, steps: [5, 10, 20] },
+  plot: { columns: ['run', 'oscillations', 'large_disk_height', 'mean_height_of_others'], window: 300, stride: 100, least: 0, most: 20, digits: 0, steps: [5, 10, 20] },
 };
 
 export const sceneOf = ({ nut }) => (nut[0] === 0 ? ROLLS : NUT);

@@ -141,6 +141,25 @@ try {
   assert.deepEqual(outside, []);
   step('no errors, no requests elsewhere');
 
+  // The choice among the first runs is marked, and what is seen can be saved: the curves as a table, the box as a video.
+  await page.go(`${url}#seed=1&plan=0:0.08,0,0.015625,0.1,10`);
+  await page.until('rolls.frame.oscillations > 5');
+  const current = () => page.evaluate('Array.from(document.querySelectorAll("nav a[aria-current=true]"), (link) => link.textContent)');
+  assert.deepEqual(await current(), ['two rolls']);
+  await set('value-0', 0.07, 'change');
+  assert.deepEqual(await current(), []);
+  await page.evaluate('{ window.saved = []; URL.createObjectURL = (blob) => { saved.push(blob); return "data:,"; }; }');
+  await page.evaluate('document.getElementById("curves").click()');
+  const rows = (await page.evaluate('saved[0].text()')).trim().split('\n');
+  assert.equal(rows[0], 'run,oscillations,one_roll,two_rolls,noise');
+  assert.ok(rows.length > 1 && rows.slice(1).every((row) => /^0,\d+(,[-.e\d]+){3}$/.test(row)), rows.slice(0, 3).join(' '));
+  assert.equal(await page.evaluate('document.getElementById("record").hidden'), false);
+  await page.evaluate('document.getElementById("record").click()');
+  await page.until('saved.length === 2', 30);
+  const [type, size] = await page.evaluate('[saved[1].type, saved[1].size]');
+  assert.ok(/^video/.test(type) && size > 1000, `${type} of ${size} bytes`);
+  step(`${rows.length - 1} rows of curves; a video of ${size} bytes (${type})`);
+
   const folder = join(dirname(program), '../site'), bytes = readdirSync(folder).reduce((sum, name) => sum + statSync(join(folder, name)).size, 0);
   assert.ok(bytes < 500_000 || process.env.OPTIMIZED === '', `${bytes} bytes`);
   step(`${bytes} bytes in all, both diagrams and the library included`);
@@ -151,6 +170,10 @@ try {
       await page.close();
       page = await open(chromium, size);
       await page.go(`${url}#seed=1${rest}`);
+      if (size.mobile) {
+        const bottom = await page.evaluate('document.getElementById("box").getBoundingClientRect().bottom');
+        assert.ok(bottom <= size.height, `the box ends at ${bottom} of ${size.height}`);
+      }
       await page.evaluate(readFileSync(axe, 'utf8'));
       const found = await page.evaluate('axe.run().then(({ violations }) => violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`))');
       assert.deepEqual(found, [], name);

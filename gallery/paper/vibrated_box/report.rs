@@ -25,9 +25,10 @@ pub(crate) fn print(outcome: &Outcome) {
     let energy_change = ("energy change, collision", outcome.energy_change.disks().estimate());
     let means = QUANTITIES.map(|Quantity(_, name, of)| (name, outcome.mean(of)));
     let means: Vec<_> = means.into_iter().chain([energy_change]).collect();
-    // Errors of a series too short to know them are marked, and the mark is explained once.
+    // Errors of a series too short to know them are marked, unless all are.
+    let lacking = means.iter().filter(|(_, mean)| !mean.is_converged()).count();
     for (name, mean) in &means {
-        let mark = if mean.is_converged() { "" } else { " *" };
+        let mark = if mean.is_converged() || lacking == means.len() { "" } else { " *" };
         line(name, &format!("{}{mark}", short(mean)));
     }
     line("noise of a gas at rest", &format!("{:.4}", outcome.noise));
@@ -43,8 +44,12 @@ pub(crate) fn print(outcome: &Outcome) {
     }
     line("run", &format!("{:.2} s", outcome.seconds));
     line("final state", &outcome.hash());
-    if means.iter().any(|(_, mean)| !mean.is_converged()) {
-        gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N");
+    match lacking {
+        0 => {}
+        count if count < means.len() => {
+            gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N")
+        }
+        _ => gallery::say!("errors are lower bounds after a short run; run longer with --oscillations N"),
     }
 }
 

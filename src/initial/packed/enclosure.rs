@@ -28,7 +28,9 @@ impl<B: ?Sized> Clone for Enclosure<'_, B> {
 impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     /// Encloses the interior of the boundary below a height.
     pub(super) fn new(boundary: &'a B, below: f64) -> Result<Self, ParameterError> {
-        Ok(Self { boundary, room: cut(boundary.interior(), below)? })
+        let room = cut(boundary.interior(), below)?;
+        (0..boundary.wall_count()).try_for_each(|wall| stands(boundary, wall, &room))?;
+        Ok(Self { boundary, room })
     }
 
     /// Returns the normal and the place of each side of the rectangle. Where the rectangle is periodic, it
@@ -40,6 +42,20 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
         let ends = ends.into_iter().filter(move |_| !periodic_ends);
         ends.chain(sides.into_iter().filter(move |_| !periodic_sides))
     }
+}
+
+/// Checks that a wall that reacts stands still until it is hit. The interior ends where it stands at the start,
+/// so it would fall among the disks.
+fn stands<B: Boundary + ?Sized>(boundary: &B, wall: usize, room: &Domain) -> Result<(), ParameterError> {
+    let middle = DVec2::new(0.5 * (room.left + room.right), 0.5 * (room.bottom + room.top));
+    if boundary.surface(wall, middle, 0.0).mass == f64::INFINITY {
+        return Ok(());
+    }
+    let place = |time| boundary.wall_motion(wall, time).map_or(DVec2::ZERO, |(displacement, _)| displacement);
+    let way = place(1.0).distance(place(0.0));
+    let name = || format!("way of the wall \"{}\" in a unit of time", boundary.wall_name(wall));
+    let requirement = "0 while disks are packed (add the piston afterwards)";
+    if way == 0.0 { Ok(()) } else { Err(ParameterError::new(name(), requirement, way)) }
 }
 
 impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {

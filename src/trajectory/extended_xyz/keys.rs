@@ -1,5 +1,7 @@
 //! The keys of a frame of extended XYZ.
 
+use std::collections::BTreeSet;
+
 use glam::DVec2;
 
 use crate::Gravity;
@@ -11,6 +13,9 @@ use crate::trajectory::table::Table;
 
 /// Largest number of columns of a disk. A few letters can ask for any number of them.
 const MOST_COLUMNS: usize = 1000;
+
+/// The keys with a meaning.
+const KNOWN: [&str; 8] = ["Properties", "Time", "t", "Gravity", "Domain", "Lattice", "Origin", "pbc"];
 
 /// The keys of a frame with their values, without quotes.
 pub(super) struct Keys<'a> {
@@ -36,13 +41,15 @@ impl<'a> Keys<'a> {
         Ok(Self { pairs, line })
     }
 
-    /// Returns the value of a key that may have several names, in any case. A single letter has its case,
-    /// since a `T` is a temperature.
+    /// Returns the names of keys without a meaning, each of them once.
+    pub(super) fn ignored(&self) -> impl Iterator<Item = String> {
+        let names: BTreeSet<&str> = self.pairs.iter().map(|(name, _)| *name).collect();
+        names.into_iter().filter(|name| !is_one_of(name, &KNOWN)).map(str::to_owned)
+    }
+
+    /// Returns the value of a key that may have several names.
     fn value(&self, names: &[&str]) -> Result<Option<&'a str>, ReadError> {
-        let is =
-            |known: &str, name: &str| known == name || known.len() > 1 && known.eq_ignore_ascii_case(name);
-        let is_named = |name: &str| names.iter().any(|known| is(known, name));
-        let mut found = self.pairs.iter().filter(|(name, _)| is_named(name));
+        let mut found = self.pairs.iter().filter(|(name, _)| is_one_of(name, names));
         let first = found.next();
         match found.find(|(_, value)| first.is_some_and(|(_, first)| first != value)) {
             None => Ok(first.map(|(_, value)| *value)),
@@ -150,6 +157,12 @@ impl<'a> Keys<'a> {
         let is_some = !numbers.is_empty() && numbers.len() < 10;
         is_some.then_some(numbers).ok_or_else(|| ReadError::unexpected(self.line, what, requirement, text))
     }
+}
+
+/// Returns whether a name is one of these, in any case. A single letter has its case, since a `T` is a
+/// temperature.
+fn is_one_of(name: &str, known: &[&str]) -> bool {
+    known.iter().any(|known| *known == name || known.len() > 1 && known.eq_ignore_ascii_case(name))
 }
 
 /// Returns the first word of a text, without its quotes or brackets, and the rest of the text, or `None` if

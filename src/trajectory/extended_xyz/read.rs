@@ -42,5 +42,6 @@ fn table(keys: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
         let name = if widest == first { first.to_string() } else { format!("{first} to {widest}") };
         table.columns.push(Column { name, slot: None });
     }
+    table.columns.extend(keys.ignored().map(|name| Column { name, slot: None }));
     Ok(table)
 }

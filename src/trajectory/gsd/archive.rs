@@ -1,5 +1,6 @@
 //! A file of GSD by any program: its names, its index, and its chunks.
 
+use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom};
 
 use super::{F32, F64};
@@ -63,6 +64,15 @@ impl<R: Read + Seek> Archive<R> {
     /// Returns the number of frames.
     pub(super) fn frames(&self) -> u64 {
         self.entries.last().map_or(0, |last| number(last, 0).saturating_add(1))
+    }
+
+    /// Returns the names of the chunks with rows that the frame or the first frame has.
+    pub(super) fn filled(&self, frame: u64) -> impl Iterator<Item = &str> {
+        let is_filled =
+            move |entry: &&[u8; ENTRY]| [0, frame].contains(&number(*entry, 0)) && number(*entry, 8) > 0;
+        let filled = self.entries.iter().filter(is_filled);
+        let filled: BTreeSet<usize> = filled.map(|entry| id(entry.as_slice())).collect();
+        filled.into_iter().filter_map(|id| self.names.get(id)).map(String::as_str)
     }
 
     /// Reads a chunk of a frame. Returns `None` if the frame does not have the chunk.

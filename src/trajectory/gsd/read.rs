@@ -17,6 +17,31 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
+/// Chunks with a meaning.
+const KNOWN: [&str; 21] = [
+    "configuration/box",
+    "configuration/dimensions",
+    "configuration/step",
+    "log/center",
+    "log/domain",
+    "log/gravity",
+    "log/particles/id",
+    "log/periodic",
+    "log/time",
+    "particles/N",
+    "particles/angmom",
+    "particles/diameter",
+    "particles/image",
+    "particles/mass",
+    "particles/moment_inertia",
+    "particles/orientation",
+    "particles/position",
+    "particles/type_shapes",
+    "particles/typeid",
+    "particles/types",
+    "particles/velocity",
+];
+
 /// Returns whether a file that begins with these bytes is a file of GSD.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
@@ -94,6 +119,16 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(Some(std::array::from_fn(|at| chunk.number(at / chunk.columns, at % chunk.columns))))
     }
 
+    /// Returns the numbers in a chunk that must hold `COUNT` finite ones, or `None` if there is no such chunk.
+    fn finite<const COUNT: usize>(&mut self, name: &str) -> Result<Option<[f64; COUNT]>, ReadError> {
+        match self.numbers(name)? {
+            Some(numbers) if numbers.iter().any(|number| !number.is_finite()) => {
+                Err(self.wrong(&format!("the chunk `{name}` must be finite, but is {numbers:?}")))
+            }
+            numbers => Ok(numbers),
+        }
+    }
+
     fn table(mut self) -> Result<Table, ReadError> {
         let [count] = self.numbers("particles/N")?.unwrap_or_default();
         let count = count as usize;
@@ -117,6 +152,8 @@ impl<R: Read + Seek> View<'_, R> {
             let is_named = names.iter().any(|name| as_whole::<u16>(name).is_none());
             table.kind_names = if is_named { names } else { Vec::new() };
         }
+        let ignored = self.archive.filled(self.frame).filter(|name| !KNOWN.contains(name));
+        table.columns.extend(ignored.map(|name| Column { name: name.to_owned(), slot: None }));
         table.rounding = rounding(&position, center);
         table.notes = self.notes;
         Ok(table)
@@ -169,6 +206,9 @@ impl<R: Read + Seek> View<'_, R> {
                 }));
             }
             columns.push(Values::new("inertia_factor", 1, move |row, _| factor(row, moments[row])));
+        } else if self.rows("particles/angmom", count, 4)?.is_some() {
+            let note = "angular momenta are ignored, for the file has no moments of inertia";
+            self.notes.push(note.to_owned());
         }
         columns.push(Values::new("diameter", 1, move |row, _| diameters[row]));
         Ok(columns)
@@ -176,7 +216,7 @@ impl<R: Read + Seek> View<'_, R> {
 
     /// Returns the point from which positions count.
     fn center(&mut self) -> Result<DVec2, ReadError> {
-        Ok(self.numbers("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
+        Ok(self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
     }
 
     /// Sets the box, the time and gravity.
@@ -202,8 +242,8 @@ impl<R: Read + Seek> View<'_, R> {
             let domain = if sides == 0.0 { domain } else { domain.with_periodic_sides() };
             table.domain = Some(if ends == 0.0 { domain } else { domain.with_periodic_ends() });
         }
-        table.time = self.numbers("log/time")?.map(|[time]| time);
-        table.gravity = self.numbers("log/gravity")?.map(|gravity| DVec2::from_array(gravity).into());
+        table.time = self.finite("log/time")?.map(|[time]| time);
+        table.gravity = self.finite("log/gravity")?.map(|gravity| DVec2::from_array(gravity).into());
         Ok(())
     }
 

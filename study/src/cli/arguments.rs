@@ -14,7 +14,7 @@ const MOST_THREADS: i64 = 4096;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 not finished and other processes work on it,
-/// 4 no tables yet, 5 slower than before, 6 the runs differ, 7 done but some values were not finished, 8 not
+/// 4 no tables yet, 6 the runs differ, 7 done but some values were not finished, 8 not
 /// finished and no process works on it, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(name = "granular-edmd", version)]
@@ -32,8 +32,11 @@ pub(super) enum Command {
     },
     /// Explains a key of a plan or a column of the tables, or all of them: meaning, unit, range and default.
     Explain {
-        /// Name of the key, for example `friction` or `protocol.settle`.
+        /// Name of the key, for example `friction`, `protocol.settle` or `protocol`.
         key: Option<String>,
+        /// Prints a JSON schema of plans instead, by which editors complete and check them.
+        #[arg(long, conflicts_with = "key")]
+        schema: bool,
     },
     /// Checks a plan, and prints how many ramps and values it has.
     Check {
@@ -69,8 +72,8 @@ pub(super) enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Writes the disks after each cycle of the first value of a ramp, for OVITO, LAMMPS or ParaView, by the
-    /// ending of the file.
+    /// Writes the disks after each cycle of a value, for OVITO, LAMMPS or ParaView, by the ending of the
+    /// file.
     Trajectory(super::trajectory::Wishes),
     /// Writes the disks of a file of any format to a file of another format.
     ///
@@ -103,17 +106,12 @@ pub(super) enum Command {
     Bench {
         /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
         plan: Option<PathBuf>,
-        /// Prints JSON, for `--against`.
-        #[arg(long)]
+        /// Prints the core hours as JSON.
+        #[arg(long, requires = "plan")]
         json: bool,
         /// Measures for a second only, by shorter intervals, whose times are a few percent longer.
         #[arg(long)]
         quick: bool,
-        /// File with the JSON of an earlier table, to which the present one is compared. A state is called
-        /// slower or faster if its quartiles lie more than 5 % beyond the earlier ones. Other events mean
-        /// that a change of the code altered the trajectories.
-        #[arg(long, conflicts_with_all = ["plan", "json"])]
-        against: Option<PathBuf>,
     },
 }
 

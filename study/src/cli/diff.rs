@@ -93,7 +93,7 @@ fn say_found<E: Experiment>(found: &Differences, runs: [&Run<E>; 2], tolerance: 
     match &found.partners {
         None => say(&format!("until {until}, all disks meet the same partners"))?,
         Some(other) => {
-            let of = |run: usize| row(&other.collisions[run], runs[run].boundary(), false);
+            let of = |run: usize| row(&other.collisions[run], runs[run].boundary());
             let [one, two] = [of(0), of(1)];
             say(&format!("disk {} meets other partners:\n{HEADINGS}\n{one}\n{two}", other.id))?;
         }

@@ -1,15 +1,14 @@
 //! The files of disks that commands write, in formats that follow from the endings of names.
 
 use std::f64::consts::PI;
-use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use granular_edmd::Disk;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump, Recorder, State};
 
-use super::{Failure, PlanError, StudyError};
+use super::{Failure, PlanError, write_new};
 
 /// A format of files of disks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,8 +86,7 @@ impl Ending {
             return Ok(());
         }
         let bytes = self.text(path, state).transpose()?.unwrap_or_default();
-        let written = fs::File::create_new(path).and_then(|mut file| file.write_all(&bytes));
-        Ok(written.map_err(StudyError::io("write", path))?)
+        write_new(path, &bytes)
     }
 
     /// Returns the names of the data in the state that the format cannot hold.

@@ -1,9 +1,10 @@
-//! The meanings of the keys of a plan, for `explain` and for the comments of a new plan.
+//! The meanings of the keys of plans, for the command `explain`, its schema, and the comments of a new plan.
 
+use crate::meanings::{OF_TABLES, find, of_error};
 use crate::{Column, Experiment};
 
 /// The keys that every plan has, whatever its experiment, by section.
-pub(super) const OF_PLANS: [(&str, &str); 13] = [
+const OF_PLANS: [(&str, &str); 24] = [
     (
         "seed",
         "Seed of all random numbers, a whole number below 2^63: the same plan gives the same bytes. Required.",
@@ -16,6 +17,8 @@ pub(super) const OF_PLANS: [(&str, &str); 13] = [
         "end_states",
         "`true` keeps the state at the end of each value, so that a later plan with more samples goes on from it. `false` if not given.",
     ),
+    ("experiment", "The system: each of its parameters can be ramped or swept. Required."),
+    ("protocol", "What is measured at each value, and when. Required."),
     (
         "protocol.settle",
         "Cycles that are run and not measured before each value, at least 0. A cycle is a period of the base, or a unit of time without one. Required.",
@@ -36,44 +39,42 @@ pub(super) const OF_PLANS: [(&str, &str); 13] = [
         "protocol.most_collisions",
         "Number of collisions after which a value is ended, the same on every machine. No limit if not given.",
     ),
+    ("ramp", "A hysteresis experiment: one run, whose parameter changes step by step. None if not given."),
     (
         "ramp.parameter",
-        "Parameter that changes step by step, each value from the last state of the one before.",
+        "Parameter that changes step by step, each value from the last state of the one before. Required.",
     ),
-    ("ramp.values", "Values of the ramp, in order."),
+    ("ramp.values", "Values of the ramp, which increase: a list, or a rule. Required."),
     ("ramp.course", "`up`, `down`, or `up_and_down`, which shows hysteresis. `up` if not given."),
     (
-        "sweep.parameter",
-        "Parameter that differs between ramps, which are independent of each other and may run side by side.",
+        "ramp.refine",
+        "Width to which each change of the state between two values is bisected, absolute or relative. None if not given.",
     ),
-    ("sweep.values", "Values of the sweep. Several sweeps make all combinations."),
-];
-
-/// The columns that the tables of every study have.
-const OF_TABLES: [(&str, &str); 9] = [
-    ("ramp", "Index of the ramp, counted from 0. The repeats of a point are ramps that follow one another."),
-    ("value", "Index of the value in its ramp, counted from 0."),
-    ("leg", "Direction from which the ramp comes to the value: up or down. Empty without a ramp."),
-    ("repeat", "Index of the repeat of the point, counted from 0."),
-    ("point", "Index of the point: all repeats of the same parameters together."),
-    ("made_by", "Fingerprint of the program that made the value."),
-    ("outcome", "`completed`, or `stopped`, `stalled`, `limited` or `failed`."),
-    ("time", "Time of the sample."),
+    ("ramp.refine.absolute", "Width in the unit of the parameter, above 0."),
+    ("ramp.refine.relative", "Width as a fraction of the value, above 0; all values must then be positive."),
+    ("sweep", "Independent runs. None if not given."),
     (
-        "not_converged",
-        "Names of the columns whose error is only a lower bound, since they have too few independent samples.",
+        "sweep.parameter",
+        "Parameter that differs between ramps, which are independent of each other and may run side by side. Required.",
     ),
+    (
+        "sweep.values",
+        "Values of the sweep: a list in any order, or a rule. Several sweeps make all combinations. Required.",
+    ),
+    ("values.from", "First value of a rule. Required."),
+    ("values.to", "Last value of a rule. Required."),
+    ("values.step", "Difference of neighbors, for equal steps. A rule has either this or `log`."),
+    ("values.log", "Number of values, for equal ratios. A rule has either this or `step`."),
 ];
 
-/// Returns the meaning of a key of a plan, a parameter or a column.
-pub(super) fn meaning<E: Experiment>(key: &str) -> Option<&'static str> {
-    all::<E>().find(|(known, _)| *known == key).map(|(_, meaning)| meaning)
-}
-
-/// Returns the parameters that have a meaning: the other names are columns.
-pub(super) fn parameters<E: Experiment>() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let columns: Vec<String> = E::columns().iter().map(|column| column.name().to_owned()).collect();
-    E::meanings().iter().copied().filter(move |(name, _)| !columns.iter().any(|column| column == name))
+/// Returns the meaning of a key of a plan by its whole name, such as `protocol.settle` or
+/// `experiment.friction`.
+pub(super) fn of_key<E: Experiment>(key: &str) -> Option<&'static str> {
+    match key.strip_prefix("experiment.") {
+        Some(parameter) => find(E::meanings(), parameter),
+        // A rule of values means the same in a ramp and in a sweep.
+        None => find(&OF_PLANS, key).or_else(|| find(&OF_PLANS, key.split_once('.')?.1)),
+    }
 }
 
 /// Explains a key, or all of them: meaning, unit, range and default.
@@ -84,12 +85,17 @@ pub(super) fn explained<E: Experiment>(key: Option<&str>) -> Result<String, Stri
     };
     // `experiment.friction` and `friction` are the same key of a plan, and the end of a name is enough.
     let name = key.strip_prefix("experiment.").unwrap_or(key);
-    let is_meant =
-        |known: &str| known.strip_suffix(name).is_some_and(|group| group.is_empty() || group.ends_with('.'));
-    let meant: Vec<String> = all::<E>()
-        .filter(|(known, _)| is_meant(known))
-        .map(|(name, meaning)| line::<E>(name, meaning))
-        .collect();
+    let is_meant = |known: &str| {
+        let [part, group] = [known.strip_suffix(name), known.strip_prefix(name)];
+        part.is_some_and(|group| group.is_empty() || group.ends_with('.'))
+            || group.is_some_and(|part| part.starts_with('.'))
+    };
+    let meant = all::<E>().filter(|(known, _)| is_meant(known));
+    let mut meant: Vec<String> = meant.map(|(name, meaning)| line::<E>(name, meaning)).collect();
+    if meant.is_empty() {
+        let other = of_key::<E>(key).map(str::to_owned).or_else(|| of_error::<E>(key));
+        meant.extend(other.map(|meaning| line::<E>(key, &meaning)));
+    }
     if !meant.is_empty() {
         return Ok(meant.join("\n"));
     }

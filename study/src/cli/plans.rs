@@ -1,15 +1,12 @@
 //! The commands that need no study: a new plan, the check of a plan, the meanings of its keys, and
 //! completions.
 
-use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 use clap::{CommandFactory, ValueEnum};
 
 use super::arguments::Arguments;
-use super::{End, Failure, LISTED, keys, read, refused, say, template};
-use crate::errors::StudyError;
+use super::{End, Failure, LISTED, keys, read, refused, say, schema, template, write_new};
 use crate::{Experiment, Plan, PlanError, Ramp};
 
 /// Largest number of values of a ramp that `check` prints in full.
@@ -20,17 +17,16 @@ pub(super) fn new<E: Experiment>(
     file: Option<&Path>,
 ) -> Result<End, Failure> {
     let text = template::commented(&example()?)?;
-    let Some(path) = file else {
-        say(text.trim_end())?;
-        return Ok(End::Done);
-    };
-    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(StudyError::io("write", path))?;
+    file.map_or_else(|| say(text.trim_end()), |path| write_new(path, text.as_bytes()))?;
     Ok(End::Done)
 }
 
-pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
-    say(&keys::explained::<E>(key).map_err(PlanError::Toml)?)?;
+pub(super) fn explain<E: Experiment>(key: Option<&str>, schema: bool) -> Result<End, Failure> {
+    say(&if schema {
+        serde_json::to_string_pretty(&schema::schema::<E>())?
+    } else {
+        keys::explained::<E>(key).map_err(PlanError::Toml)?
+    })?;
     Ok(End::Done)
 }
 

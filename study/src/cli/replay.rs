@@ -38,14 +38,11 @@ pub(super) struct Wishes {
     last: Option<usize>,
     /// Number of a collision, to write the state before it instead: as disks if the file ends in .xyz,
     /// .lammpstrj, .csv, .data or .vtp, and otherwise as a checkpoint for `--start`.
-    #[arg(long, conflicts_with_all = ["from", "disk", "last", "json"])]
+    #[arg(long, conflicts_with_all = ["from", "disk", "last"])]
     before: Option<u64>,
     /// File to write; standard output if not given. An existing file is not overwritten.
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Writes a JSON object for each collision instead of CSV.
-    #[arg(long)]
-    json: bool,
 }
 
 /// Runs a value again, and writes the requested collisions or state. An incomplete file is removed.
@@ -101,7 +98,7 @@ fn rows<E: Experiment>(
     let last = wishes.last.unwrap_or(if wishes.from.is_some() { usize::MAX } else { FEW });
     let is_own = |it: &Replayed| wishes.disk.is_none_or(|id| it.id == id || it.partner_id == Some(id));
     let (mut steps, mut kept, mut is_over) = (Steps::new(source.run), VecDeque::new(), false);
-    let mut text = if wishes.json { String::new() } else { HEADINGS.to_owned() + "\n" };
+    let mut text = HEADINGS.to_owned() + "\n";
     while !is_over {
         for _ in 0..BATCH {
             // The collisions up to an error are written, too.
@@ -121,7 +118,7 @@ fn rows<E: Experiment>(
         }
         show(steps.run().time());
         if is_over || last == usize::MAX {
-            let rows = kept.drain(..).map(|it| row(&it, steps.run().boundary(), wishes.json) + "\n");
+            let rows = kept.drain(..).map(|it| row(&it, steps.run().boundary()) + "\n");
             text.extend(rows);
             is_over |= !write(text.as_bytes())?;
             text.clear();

@@ -1,4 +1,5 @@
-//! The runs of `replay` and `diff`: a value of a plan or of a study, from its start or from a file.
+//! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a
+//! file.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -97,11 +98,7 @@ impl<E: Experiment> Source<E> {
 }
 
 /// Starts from a file: a checkpoint, or disks.
-pub(super) fn begun<E: Experiment>(
-    experiment: &E,
-    path: &Path,
-    seed: u64,
-) -> Result<Run<E>, ExperimentError> {
+fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>, ExperimentError> {
     let (rule, boundary) = (experiment.rule()?, experiment.boundary()?);
     let state = match Checkpoint::read(path) {
         Err(error) if is_no_checkpoint(&error) => Reader::new().read(path)?,

@@ -2,17 +2,10 @@
 
 use std::collections::HashSet;
 
-use super::keys;
+use super::keys::of_key;
+use super::shape::Shape;
 use crate::parameters;
 use crate::{Column, Experiment, Plan, PlanError};
-
-/// Explanations of the sections of a plan.
-const NOTES: [(&str, &str); 4] = [
-    ("[experiment]", "The system: each of its parameters can be ramped or swept."),
-    ("[protocol]", "What is measured at each value, and when."),
-    ("[ramp]", "A hysteresis experiment: one run, whose parameter changes step by step."),
-    ("[[sweep]]", "Independent runs."),
-];
 
 /// Examples of optional sections, shown for plans that lack them.
 const EXAMPLES: [(&str, &str); 3] = [
@@ -31,10 +24,9 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
             section = header.trim_matches(['[', ']']);
         }
         if section == "experiment" && line.is_empty() {
-            lines.extend(without_values::<E>(&bare));
+            lines.extend(without_values(plan)?);
         }
-        let note = NOTES.iter().find(|(start, _)| line == *start).map(|(_, note)| *note);
-        lines.extend(note.or_else(|| meaning::<E>(section, line)).map(|note| format!("# {note}")));
+        lines.extend(meaning::<E>(section, line).map(|meaning| format!("# {meaning}")));
         lines.push(line.to_owned());
     }
     let absent = EXAMPLES.iter().filter(|(start, _)| !bare.lines().any(|line| begins(line, start)));
@@ -49,21 +41,27 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     Ok(lines.join("\n"))
 }
 
-/// Returns the meaning of the key on a line.
+/// Returns the meaning of the key on a line, or of the section that begins there.
 fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
-    let key = line.split_once(" = ")?.0;
-    match section.strip_prefix("experiment") {
-        Some(group) => keys::meaning::<E>(format!("{group}.{key}").trim_start_matches('.')),
-        None if section.is_empty() => keys::meaning::<E>(key),
-        None => keys::meaning::<E>(&format!("{section}.{key}")),
-    }
+    let key = match line.split_once(" = ") {
+        Some((key, _)) => format!("{section}.{key}"),
+        None if line.starts_with('[') => section.to_owned(),
+        None => return None,
+    };
+    of_key::<E>(key.trim_start_matches('.'))
 }
 
 /// Returns the parameters that have no value in the plan, as comments.
-fn without_values<E: Experiment>(bare: &str) -> impl Iterator<Item = String> {
-    let is_given = |name: &str| bare.lines().any(|line| line.split(' ').next() == Some(name));
-    let absent = keys::parameters::<E>().filter(move |(name, _)| !name.contains('.') && !is_given(name));
-    absent.map(|(name, meaning)| format!("# {meaning}\n# {name} ="))
+fn without_values<E: Experiment>(plan: &Plan<E>) -> Result<Vec<String>, PlanError> {
+    let given = parameters::tree(&plan.experiment)?;
+    let parts = Shape::of::<E>().parts.into_iter();
+    let absent = parts.map(|(name, _)| name).filter(|name| !given.contains_key(*name));
+    Ok(absent
+        .map(|name| {
+            let meaning = of_key::<E>(&format!("experiment.{name}"));
+            meaning.map_or_else(String::new, |meaning| format!("# {meaning}\n")) + &format!("# {name} =")
+        })
+        .collect())
 }
 
 fn begins(line: &str, start: &str) -> bool {

@@ -14,6 +14,7 @@ use crate::experiment::record::{Contents, Cycles, Measured, Origin, Outcome, Rec
 use crate::opening::Study;
 use crate::plan::refinement::Step;
 use crate::seed::derived_seed;
+use crate::whole::damaged;
 use crate::{Experiment, Interval, Plan, Protocol, Run, SavedDriving, Start};
 
 /// A value to be run.
@@ -79,8 +80,9 @@ impl<'a, E: Experiment> Value<'a, E> {
             let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
             let steps = self.plan.protocol().steps() - missing;
             let work = Work { start, steps, is_prepared: false, is_under_way: false, counters, measured };
-            if let Ok(active) = self.go_on((self.origin.clone(), work, state, driving))? {
-                return Ok(active);
+            match self.go_on((self.origin.clone(), work, state, driving), self.folder) {
+                Err(StudyError::Damaged { .. }) => {}
+                made => return made,
             }
         }
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
@@ -126,26 +128,21 @@ impl<'a, E: Experiment> Value<'a, E> {
         Record { experiment: self.experiment.clone(), contents }
     }
 
-    /// Continues the value where it was saved, or returns the reason why it cannot.
+    /// Continues the value where it was saved.
     ///
     /// # Errors
-    /// If the companion cannot be made.
-    pub(super) fn go_on(&'a self, partial: Partial<E>) -> Result<Result<Active<'a, E>, String>, StudyError> {
-        let (saved, mut driving) = (partial.3.clone(), self.driving()?);
-        let is_loaded = match (&mut driving, saved) {
-            (Some(driving), Some(bytes)) => driving.load(&bytes).is_ok(),
-            (None, None) => true,
-            _ => false,
+    /// If the saved data, which are in this file, are not of this value, or the companion cannot be made.
+    pub(super) fn go_on(&'a self, partial: Partial<E>, path: &Path) -> Result<Active<'a, E>, StudyError> {
+        let mut driving = self.driving()?;
+        let is_loaded = match (&mut driving, &partial.3) {
+            (Some(driving), Some(bytes)) => driving.load(bytes).is_ok(),
+            (driving, bytes) => driving.is_none() && bytes.is_none(),
         };
-        if !is_loaded {
-            return Ok(Err("its driving is another".to_owned()));
-        }
-        let (work, run) = match self.state_of(partial) {
-            Ok(found) => found,
-            Err(reason) => return Ok(Err(reason)),
-        };
+        let loaded = check(is_loaded, "its driving is another").map_err(str::to_owned);
+        let state = loaded.and_then(|()| self.state_of(partial));
+        let (work, run) = state.map_err(|reason| damaged(path, reason))?;
         let riders = self.riders(run.time(), driving, true)?;
-        Ok(Ok(Active { value: self, work, run, riders }))
+        Ok(Active { value: self, work, run, riders })
     }
 
     #[expect(clippy::type_complexity, reason = "the parts of a value that goes on")]

@@ -9,7 +9,6 @@ use super::active::{Active, Early, Partial, Value};
 use super::earlier::SameRamps;
 use super::session::{LOOK, Session};
 use crate::experiment::record::{Contents, Record};
-use crate::json::Object;
 use crate::plan::refinement::{Seen, Step};
 use crate::store::{Claimed, Entries, Head, Marks};
 use crate::whole::{self, damaged};
@@ -176,7 +175,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let read = whole::read_sealed::<Partial<E>>(&path).and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
             study.check_origin(&partial.0, self.ramp, index, &path)?;
-            value.go_on(partial)?.map(Some).map_err(|reason| damaged(&path, reason))
+            value.go_on(partial, &path).map(Some)
         });
         self.session.if_sound(read)
     }
@@ -251,17 +250,38 @@ impl<E: Experiment> Walk<'_, '_, E> {
     }
 }
 
-/// Returns the readable line of a record, with the time that the value took, unless the value was taken over.
-fn line<E: Experiment>(Made { record, warnings, .. }: &Made<E>, time: Option<Duration>) -> String {
+/// The line of a record for people.
+#[derive(serde::Serialize)]
+struct Line<'a> {
+    ramp: usize,
+    value: usize,
+    outcome: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<&'a str>,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    warnings: &'a str,
+    collisions: u64,
+    /// True, in place of the seconds, if the value comes from an earlier study.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    taken_over: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seconds: Option<f64>,
+    unix_time: u64,
+}
+
+fn line<E: Experiment>(Made { record, warnings, is_taken }: &Made<E>, time: Option<Duration>) -> String {
     let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-    let line = Object::default().with("ramp", record.ramp_index()).with("value", record.value_index());
-    let line = line.text("outcome", record.outcome().name());
-    let line = record.outcome().reason().into_iter().fold(line, |line, reason| line.text("reason", reason));
-    let line = if warnings.is_empty() { line } else { line.text("warnings", &warnings.join("; ")) };
-    let line = line.with("collisions", record.counters().disk_collisions);
-    let line = match time {
-        None => line.with("taken_over", true),
-        Some(time) => line.with("seconds", format_args!("{:.3}", time.as_secs_f64())),
+    let line = Line {
+        ramp: record.ramp_index(),
+        value: record.value_index(),
+        outcome: record.outcome().name(),
+        reason: record.outcome().reason(),
+        warnings: &warnings.join("; "),
+        collisions: record.counters().disk_collisions,
+        taken_over: *is_taken,
+        seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),
+        unix_time,
     };
-    line.with("unix_time", unix_time).line()
+    // Numbers and texts are always JSON.
+    serde_json::to_string(&line).unwrap_or_default()
 }

@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use serde_json::json;
+
 use super::earlier::Earlier;
 use super::queue::Queue;
-use crate::json::Object;
 use crate::store::{Entry, Marks};
 use crate::{Control, Experiment, Progress, Study, StudyError, Summary};
 
@@ -95,8 +96,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         match read {
             Err(StudyError::Damaged { path, reason }) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
-                let line = Object::default().text("damaged", &name).text("reason", &reason);
-                self.study.store.note(&line.line())?;
+                self.study.store.note(&json!({ "damaged": name, "reason": reason }).to_string())?;
                 self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
                 Ok(None)
             }

@@ -1,7 +1,6 @@
 //! The log of one process, with a second file of readable lines, which is locked.
 
 use std::fs::TryLockError;
-use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -12,6 +11,7 @@ use super::index::Head;
 use super::log::Log;
 use super::{SEAL, logs, unreadable};
 use crate::StudyError;
+use crate::seed::anywhere;
 
 /// Seconds of work that a loss of power may cost.
 const AT_RISK: f32 = 0.1;
@@ -34,11 +34,7 @@ impl Writer {
         let mut known = logs(folder)?;
         known.sort();
         let count = known.len();
-        // The standard library seeds its hash tables from the system: a random number that needs no
-        // dependency.
-        let start =
-            RandomState::new().build_hasher().finish().checked_rem(count as u64).unwrap_or(0) as usize;
-        known.rotate_left(start);
+        known.rotate_left(anywhere(count));
         let names =
             known.into_iter().chain((count..).map(|number| folder.join(format!("{number:04}.records"))));
         for path in names {

@@ -1,6 +1,6 @@
 //! The meanings of the parameters of the box and of the columns of its tables.
 
-pub(super) const MEANINGS: [(&str, &str); 38] = [
+pub(super) const MEANINGS: [(&str, &str); 44] = [
     ("disks", "Number of disks, from 1 to 2^24. Their diameter and their mass are the units. Required."),
     ("width", "Width of the box, in diameters. Required."),
     ("height", "Height of the lid, in diameters. Without a value, the box is open."),
@@ -40,19 +40,29 @@ pub(super) const MEANINGS: [(&str, &str); 38] = [
         "sides",
         "`hard` (the rule of the disks), `elastic` (smooth and elastic) or `periodic`. Hard if not given.",
     ),
+    ("base", "Source of the motion: one of bi_parabolic, sinusoidal or thermal. Required."),
+    ("base.bi_parabolic", "The paper's base, whose motion is made of parabolas."),
+    ("base.bi_parabolic.amplitude", "Amplitude of the base, in diameters. Required."),
     (
-        "base.bi_parabolic.amplitude",
-        "Amplitude of the paper's base, whose motion is made of parabolas, in diameters. A box needs one kind of base: bi_parabolic, sinusoidal or thermal.",
+        "base.bi_parabolic.angular_frequency",
+        "Angular frequency of the base: a period is 2 pi divided by it. Required.",
     ),
-    ("base.bi_parabolic.angular_frequency", "Angular frequency of the base: a period is 2 pi divided by it."),
-    ("base.sinusoidal.amplitude", "Amplitude of a base that moves as a sine, in diameters."),
-    ("base.sinusoidal.angular_frequency", "Angular frequency of the base: a period is 2 pi divided by it."),
-    ("base.thermal.temperature", "Temperature of a base at rest that emits disks as a heat bath does."),
+    ("base.sinusoidal", "A base that moves as a sine."),
+    ("base.sinusoidal.amplitude", "Amplitude of the base, in diameters. Required."),
+    (
+        "base.sinusoidal.angular_frequency",
+        "Angular frequency of the base: a period is 2 pi divided by it. Required.",
+    ),
+    ("base.thermal", "A base at rest that emits disks as a heat bath does."),
+    ("base.thermal.temperature", "Temperature of the base. Required."),
     (
         "base.thermal.slip",
         "`true` if the thermal base leaves tangential and angular velocity as they are. `false` if not given.",
     ),
-    ("state", "Convective regime: no roll, one roll, two rolls, coexistence, collapsed, or conductive."),
+    (
+        "state",
+        "Convective regime: no roll, one roll, two rolls, coexistence of one roll and two, or collapsed.",
+    ),
     (
         "one_roll",
         "First order parameter: above 0 for one clockwise roll, below 0 for a counterclockwise one.",
@@ -78,4 +88,6 @@ pub(super) const MEANINGS: [(&str, &str); 38] = [
     ),
     ("max_overlap", "Deepest overlap that rounding has made."),
     ("warnings", "Number of warnings of the run; the log has their words."),
+    ("layer_height", "Height of the middle of a layer that is one diameter high."),
+    ("packing_fraction", "Part of the layer that disks cover, averaged over the samples."),
 ];

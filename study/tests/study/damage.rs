@@ -96,12 +96,8 @@ fn a_torn_provenance_is_refused_wherever_it_is_torn() -> Result<(), AnyError> {
     let (scratch, _) = done(&small_plan(), "torn");
     let path = scratch.0.join("provenance.json");
     let text = fs::read_to_string(&path)?;
-    // The hash of the plan comes last among the fields that are checked.
-    let checked = text.find("\"accepted\"").ok_or("no field of earlier makers")?;
-    for length in 1..checked {
-        if !text.is_char_boundary(length)
-            || text[length..checked].trim_matches([' ', ',', '\n', '"']).is_empty()
-        {
+    for length in 0..text.trim_end().len() {
+        if !text.is_char_boundary(length) {
             continue;
         }
         fs::write(&path, &text[..length])?;

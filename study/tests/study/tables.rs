@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use granular_edmd::statistics::Estimate;
-use granular_edmd_study::vibrated_box::{Sample, VibratedBox};
-use granular_edmd_study::{Control, Study};
+use granular_edmd_study::vibrated_box::{Base, Sample, VibratedBox};
+use granular_edmd_study::{Axis, Control, Course, Plan, Protocol, Ramp, Study, Width};
 
 use crate::logs;
 use crate::processes;
@@ -38,6 +38,30 @@ fn tables_have_a_row_for_each_thing() {
     assert_eq!(values[7].iter().next_back(), Some(all));
     assert_eq!(rows("samples.csv").1.len(), 60);
     assert_eq!(rows("profiles.csv").1.len(), 300);
+}
+
+/// Each column of each table has a meaning, also one of a parameter that varies under a short name.
+#[test]
+fn columns_are_told_with_their_meanings() -> Result<(), AnyError> {
+    let base = Base::Sinusoidal { amplitude: 0.1, angular_frequency: 10.0 };
+    let experiment = VibratedBox::new(20, 10.0, base).with_height(20.0).with_gravity(0.02);
+    let ramp = Ramp::new("amplitude", [0.1, 0.2], Course::Up)?.with_refinement(Width::Absolute(0.05))?;
+    let plan = Plan::new(experiment, Protocol::new(2, 2, 2)?, 1)?.with_ramp(ramp)?;
+    let plan = plan.with_axis(Axis::new("friction", [0.1])?)?.with_repeats(2)?;
+    let (scratch, _) = done(&plan, "meanings");
+    let rows = table(&scratch.0, "columns.csv")?;
+    for row in &rows {
+        assert!(row["meaning"].ends_with('.'), "{row:?}");
+    }
+    let meaning = |table: &str, column: &str| {
+        let row = rows.iter().find(|row| row["table"] == table && row["column"] == column);
+        row.map(|row| row["meaning"].clone()).unwrap_or_default()
+    };
+    assert_eq!(meaning("values", "amplitude"), "Amplitude of the base, in diameters.");
+    assert_eq!(meaning("points", "one_roll_error"), "Standard error of the mean of one_roll.");
+    assert!(meaning("transitions", "amplitude_near").starts_with("Value of amplitude on the near side"));
+    assert!(meaning("values", "seed").starts_with("Seed of the ramp"));
+    Ok(())
 }
 
 #[test]

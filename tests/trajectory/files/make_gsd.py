@@ -57,5 +57,8 @@ raw("doubled_ids",[{**base,"log/particles/id":([5,2,5],"u8")}])
 raw("moving_out",[{**base,"particles/velocity":([[1,0,0],[0,0,1],[0,0,0]],"f4")}])
 raw("types",[{**base,"particles/typeid":([0,70000,0],"u4")}])
 raw("names",[{**base,"particles/types":([[65,0],[66,0]],"i1")}])
+raw("unused",[{**base,"particles/angmom":([[0,0,0,1]]*3,"f4"),"particles/charge":([1,0,0],"f4"),"log/energy":([2.5],"f8")}])
+for name,value in [("time",[np.nan]),("gravity",[[0,np.inf]]),("center",[[np.nan,3]]),("domain",[0,np.nan,0,6])]:
+    raw("bad_"+name,[{**base,"log/"+name:(value,"f8")}])
 with gsd.fl.open(out+"/other_schema.gsd","w",application="x",schema="other",schema_version=[1,0]) as t:
     t.write_chunk("a",np.zeros(3)); t.end_frame()

@@ -1,0 +1,244 @@
+//! The shape of a type in a file, found by letting the type read one.
+
+use serde::de::value::{Error, MapDeserializer, SeqDeserializer};
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, VariantAccess,
+    Visitor,
+};
+
+/// Largest number of readings, far above the number of parts of which only one is seen in a reading.
+const READINGS: usize = 1000;
+
+/// Largest depth. A type that contains itself has no end.
+const DEPTH: usize = 8;
+
+/// The keys that a type accepts, with the kinds of their values.
+#[derive(Debug)]
+pub(super) struct Shape {
+    pub(super) kind: Kind,
+    /// The fields of a table, the variants of a choice, or the one item of a list.
+    pub(super) parts: Vec<(&'static str, Self)>,
+}
+
+/// The kind of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The type has not read it.
+    Unknown,
+    /// The type looks at the value before it decides.
+    Any,
+    /// A variant without contents.
+    Word,
+    Flag,
+    Integer,
+    Number,
+    Text,
+    List,
+    Table,
+    /// One of several variants.
+    Choice,
+}
+
+impl Shape {
+    const UNKNOWN: Self = Self { kind: Kind::Unknown, parts: Vec::new() };
+
+    /// Returns the shape of a type.
+    pub(super) fn of<T: DeserializeOwned>() -> Self {
+        let mut shape = Self::UNKNOWN;
+        for _ in 0..READINGS {
+            if shape.is_known() {
+                break;
+            }
+            // What is read is of no interest, and often refused.
+            let _ = T::deserialize(Reader { shape: &mut shape, depth: 0 });
+        }
+        shape
+    }
+
+    fn is_known(&self) -> bool {
+        self.kind != Kind::Unknown && self.parts.iter().all(|(_, part)| part.is_known())
+    }
+}
+
+/// A file that has all that the type asks for, and notes it. Parts that are known are left out.
+struct Reader<'s> {
+    shape: &'s mut Shape,
+    depth: usize,
+}
+
+impl Reader<'_> {
+    /// Sets the kind and the parts, unless an earlier reading has found them.
+    fn begin(&mut self, kind: Kind, parts: &[&'static str]) {
+        let (kind, parts) = if self.depth < DEPTH { (kind, parts) } else { (Kind::Any, [].as_slice()) };
+        if self.shape.kind == Kind::Unknown {
+            *self.shape = Shape { kind, parts: parts.iter().map(|name| (*name, Shape::UNKNOWN)).collect() };
+        }
+    }
+
+    /// Returns the parts that are not known yet.
+    fn unknown(self) -> impl Iterator<Item = (&'static str, Self)> {
+        let depth = self.depth + 1;
+        let parts = self.shape.parts.iter_mut().filter(|(_, part)| !part.is_known());
+        parts.map(move |(name, shape)| (*name, Reader { shape, depth }))
+    }
+}
+
+/// Implements the methods for values without parts.
+macro_rules! values {
+    ($($kind:ident => $visit:ident($value:expr): $($method:ident)+;)+) => {$($(
+        fn $method<V: Visitor<'de>>(mut self, visitor: V) -> Result<V::Value, Error> {
+            self.begin(Kind::$kind, &[]);
+            visitor.$visit($value)
+        }
+    )+)+};
+}
+
+impl<'de> Deserializer<'de> for Reader<'_> {
+    type Error = Error;
+
+    values! {
+        Flag => visit_bool(false): deserialize_bool;
+        Integer => visit_u64(1): deserialize_i8 deserialize_i16 deserialize_i32 deserialize_i64
+            deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64;
+        Number => visit_f64(1.0): deserialize_f32 deserialize_f64;
+        Text => visit_str(""): deserialize_str deserialize_string;
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(mut self, _: V) -> Result<V::Value, Error> {
+        self.begin(Kind::Any, &[]);
+        Err(Error::custom("the type decides by the value"))
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(mut self, visitor: V) -> Result<V::Value, Error> {
+        self.begin(Kind::List, &[""]);
+        visitor.visit_seq(SeqDeserializer::new(self.unknown().map(|(_, item)| item)))
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        mut self,
+        _: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        self.begin(Kind::Table, fields);
+        visitor.visit_map(MapDeserializer::new(self.unknown()))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        mut self,
+        _: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        self.begin(Kind::Choice, variants);
+        visitor.visit_enum(Variant(self.unknown().next()))
+    }
+
+    serde::forward_to_deserialize_any! {
+        i128 u128 char bytes byte_buf unit unit_struct tuple tuple_struct map identifier ignored_any
+    }
+}
+
+impl IntoDeserializer<'_, Error> for Reader<'_> {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// A variant with its contents; `None` at the largest depth.
+struct Variant<'s>(Option<(&'static str, Reader<'s>)>);
+
+impl<'de, 's> EnumAccess<'de> for Variant<'s> {
+    type Error = Error;
+    type Variant = Reader<'s>;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Reader<'s>), Error> {
+        let (name, contents) = self.0.ok_or_else(|| Error::custom("the type is too deep"))?;
+        Ok((seed.deserialize(name.into_deserializer())?, contents))
+    }
+}
+
+impl<'de> VariantAccess<'de> for Reader<'_> {
+    type Error = Error;
+
+    fn unit_variant(mut self) -> Result<(), Error> {
+        self.begin(Kind::Word, &[]);
+        Ok(())
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
+        seed.deserialize(self)
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_any(visitor)
+    }
+
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        self.deserialize_struct("", fields, visitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Deserialize)]
+    #[expect(dead_code, reason = "its shape alone is of interest")]
+    struct Odd {
+        below: Option<Box<Self>>,
+        value: toml::Value,
+        none: NoNumber,
+        way: Way,
+        last: bool,
+    }
+
+    #[derive(Deserialize)]
+    #[expect(dead_code, reason = "its shape alone is of interest")]
+    enum Way {
+        Straight,
+        To(f64),
+        Round { turns: Vec<u32> },
+        Both(u8, u8),
+    }
+
+    #[derive(Deserialize)]
+    #[serde(try_from = "u8")]
+    struct NoNumber;
+
+    impl TryFrom<u8> for NoNumber {
+        type Error = &'static str;
+
+        fn try_from(_: u8) -> Result<Self, &'static str> {
+            Err("no number is right")
+        }
+    }
+
+    /// A type may contain itself, look at the value before it decides, and refuse whatever it reads.
+    #[test]
+    fn odd_types_have_a_shape() {
+        let kinds = |shape: &Shape| shape.parts.iter().map(|(_, part)| part.kind).collect::<Vec<_>>();
+        let shape = Shape::of::<Odd>();
+        assert_eq!(kinds(&shape), [Kind::Table, Kind::Any, Kind::Integer, Kind::Choice, Kind::Flag]);
+        assert_eq!(kinds(&shape.parts[3].1), [Kind::Word, Kind::Number, Kind::Table, Kind::Any]);
+    }
+}
