@@ -1,7 +1,50 @@
 //! Overlaps among disks.
 
+use std::collections::HashMap;
+
+use glam::DVec2;
+
 use crate::Disk;
-use crate::boundary::{Domain, Squares};
+use crate::boundary::Domain;
+
+/// Disks of similar size, in squares a little wider than the largest of them.
+///
+/// With squares for one size only, a single giant would make every disk a neighbor of every other.
+struct Class {
+    side: f64,
+    /// The numbers of a square are whole floating-point numbers, which do not overflow, as their bits.
+    squares: HashMap<[u64; 2], Vec<usize>>,
+}
+
+impl Class {
+    /// Creates the class whose largest disk has this radius. The excess over a diameter covers rounding.
+    fn new(radius: f64) -> Self {
+        Self { side: 2.001 * radius, squares: HashMap::new() }
+    }
+
+    /// Returns whether the class has room for a disk of this radius. The disks of the class are at least as
+    /// large.
+    fn takes(&self, radius: f64) -> bool {
+        8.0 * radius > self.side
+    }
+
+    fn square(&self, place: DVec2) -> DVec2 {
+        (place / self.side).floor()
+    }
+
+    /// Returns the disks in the square of a position and in the eight squares around it.
+    fn near(&self, place: DVec2) -> impl Iterator<Item = usize> {
+        let middle = self.square(place);
+        let squares =
+            (0..9).map(move |n| key(middle + DVec2::new(f64::from(n % 3 - 1), f64::from(n / 3 - 1))));
+        squares.filter_map(|key| self.squares.get(&key)).flatten().copied()
+    }
+}
+
+/// Returns the numbers of a square as a key. The sum makes one zero of both.
+fn key(square: DVec2) -> [u64; 2] {
+    [(square.x + 0.0).to_bits(), (square.y + 0.0).to_bits()]
+}
 
 /// The overlaps found so far.
 #[derive(Debug, Clone, Copy)]
@@ -22,35 +65,46 @@ const MOST: usize = 8;
 
 /// Returns the deepest overlap beyond this share of the sum of radii, if there is one.
 ///
-/// Each disk looks among those before it. As long as these overlap little, a square holds only a few of them.
+/// The disks come in the order of their sizes, the largest first, and each looks among those that came
+/// before. As long as these overlap little, a square holds only a few of them.
 pub(super) fn deepest(disks: &[Disk], domain: Option<&Domain>, least: f64) -> Option<Overlap> {
-    const PLANE: Domain = Domain::new(f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
-    let domain = domain.unwrap_or(&PLANE);
-    let mut squares = Squares::new(domain, disks.iter().map(Disk::radius));
+    let shifts: Vec<DVec2> = domain.map_or_else(|| vec![DVec2::ZERO], |domain| domain.images().collect());
+    let mut order: Vec<usize> = (0..disks.len()).collect();
+    order.sort_by(|&a, &b| disks[b].radius().total_cmp(&disks[a].radius()));
+    let mut classes: Vec<Class> = Vec::new();
     let mut found: Option<Overlap> = None;
-    for (index, disk) in disks.iter().enumerate() {
-        let mut near: Vec<usize> = squares.near(disk.position(), disk.radius()).collect();
-        near.sort_unstable();
-        near.dedup();
-        for other in near {
-            let there = disks[other].position();
-            let distances = domain.images().map(|shift| (disk.position() + shift).distance(there));
-            let contact = disk.radius() + disks[other].radius();
-            let depth = contact - distances.fold(f64::INFINITY, f64::min);
-            if depth <= least * contact {
+    for index in order {
+        let disk = &disks[index];
+        for (class, shift) in classes.iter().flat_map(|class| shifts.iter().map(move |shift| (class, shift)))
+        {
+            let place = disk.position() + shift;
+            if *shift != DVec2::ZERO && !domain.is_some_and(|domain| domain.contains(place, class.side)) {
                 continue;
             }
-            let share = depth / contact;
-            let count = found.map_or(1, |found| found.count + 1);
-            let is_counted = count <= MOST * disks.len();
-            let here = Overlap { pair: [index, other], depth, share, count, is_counted };
-            let deepest = found.filter(|found| found.share >= share).unwrap_or(here);
-            found = Some(Overlap { count, is_counted, ..deepest });
-            if !is_counted {
-                return found;
+            for other in class.near(place).filter(|&other| other != index) {
+                let contact = disk.radius() + disks[other].radius();
+                let depth = contact - place.distance(disks[other].position());
+                if depth <= least * contact {
+                    continue;
+                }
+                let share = depth / contact;
+                let count = found.map_or(1, |found| found.count + 1);
+                let is_counted = count <= MOST * disks.len();
+                let here = Overlap { pair: [index, other], depth, share, count, is_counted };
+                let deepest = found.filter(|found| found.share >= share).unwrap_or(here);
+                found = Some(Overlap { count, is_counted, ..deepest });
+                if !is_counted {
+                    return found;
+                }
             }
         }
-        squares.add(disk.position(), disk.radius(), index);
+        if !classes.last().is_some_and(|class| class.takes(disk.radius())) {
+            classes.push(Class::new(disk.radius()));
+        }
+        if let Some(class) = classes.last_mut() {
+            let key = key(class.square(disk.position()));
+            class.squares.entry(key).or_default().push(index);
+        }
     }
     found
 }
