@@ -9,11 +9,11 @@
 //!
 //! | shape | how |
 //! |---|---|
-//! | hourglass, funnel, any polygon with the disks inside | [`Part::polygon`], [`Part::polygon_from_file`] |
+//! | hourglass, funnel, any polygon with the disks inside | [`Part::polygon`] |
 //! | ramp, hopper side, any polygon with the disks outside | [`Part::block`] |
 //! | gate, baffle, any thin wall | [`Part::polyline`] |
 //! | drum; round obstacle | [`Part::drum`]; [`Part::peg`] |
-//! | segments, half-lines, arcs, circles and points in any mix | [`Part::new`] of [`Brick`]s |
+//! | segments, arcs, circles and points in any mix | [`Part::new`] of [`Brick`]s |
 //! | conveyor | [`Part::with_surface_speed`] |
 //! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
@@ -60,6 +60,7 @@ pub(crate) use squares::Squares;
 pub use surface::Thermal;
 pub use surface::{Response, Surface};
 pub use touch::Touch;
+pub(crate) use vector::direction;
 #[doc(alias("silo", "hopper", "hourglass"))]
 pub use vessel::Vessel;
 pub use wall::{Wall, WallError};

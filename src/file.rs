@@ -1,5 +1,5 @@
-//! Files that are complete or absent, logs that grow by complete pieces, and locks. Checkpoints, trajectories
-//! and studies consist of these, and other packages can use them for their stores.
+//! Files that are complete or absent, and locks. Checkpoints and studies consist of these, and other packages
+//! can use them for their stores.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {
@@ -22,8 +22,6 @@
 mod growing;
 mod locked;
 #[cfg(feature = "serde")]
-mod log;
-#[cfg(feature = "serde")]
 mod seal;
 #[cfg(feature = "serde")]
 mod whole;
@@ -31,8 +29,6 @@ mod whole;
 pub(crate) use growing::{Growing, Medium};
 pub use locked::Locked;
 #[cfg(feature = "serde")]
-pub use log::{HEAD, Log, Piece, Pieces, read_piece};
-#[cfg(feature = "serde")]
 pub use seal::{Damage, Seal};
 #[cfg(feature = "serde")]
-pub use whole::{Draft, is_temporary, unique_name, write_unsynced, write_whole};
+pub use whole::{Draft, is_temporary, unique_name, write_whole};

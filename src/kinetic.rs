@@ -34,7 +34,6 @@
 
 mod bisection;
 mod closed_form;
-mod collision_average;
 mod direct_simulation;
 mod effective_inelasticity;
 mod iso_line;
@@ -44,7 +43,6 @@ mod monte_carlo;
 mod stick_slip;
 
 pub use closed_form::{mean_energy_change, sticking_fraction};
-pub use collision_average::CollisionAverage;
 pub use direct_simulation::DirectSimulation;
 pub use effective_inelasticity::{effective_inelasticity, frictionless_energy_change};
 pub use iso_line::{IsoLine, Piece};

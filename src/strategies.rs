@@ -1,5 +1,4 @@
-//! Random inputs for property tests of custom rules, walls and boundaries; the module needs the feature
-//! `proptest`.
+//! Random contacts and disks for property tests of custom rules; the module needs the feature `proptest`.
 //!
 //! Each function returns a [`Strategy`] that is hostile on purpose: ordinary values, the edges of their
 //! ranges, and values over many decades, in mixtures that a run of the simulation might take days to meet.
@@ -38,16 +37,13 @@
 //! ```
 
 use std::f64::consts::TAU;
-use std::fmt::Debug;
-use std::sync::Arc;
 
 use glam::DVec2;
 use proptest::prelude::*;
 
-use crate::boundary::{Container, Part, Vessel, Wall};
+use crate::boundary;
 use crate::collision::laws::{Partner, meeting};
 use crate::collision::{Contact, Elastic, collide};
-use crate::wall::{BiParabolic, Delayed, Sawtooth, Scaled, Sinusoidal, Summed, Triangular, WallMotion};
 use crate::{Disk, Kind};
 
 /// Returns positive numbers, spread evenly over the decades from 10 to the power `low` to 10 to the power
@@ -84,12 +80,8 @@ pub fn speed() -> impl Strategy<Value = f64> {
 /// proptest!(|(normal in granular_edmd::strategies::direction())| prop_assert!(normal.is_normalized()));
 /// ```
 pub fn direction() -> impl Strategy<Value = DVec2> {
-    let any_angle = (0.0..TAU).prop_map(|angle| {
-        let (sine, cosine) = libm::sincos(angle);
-        DVec2::new(cosine, sine)
-    });
     prop_oneof![
-        4 => any_angle,
+        4 => (0.0..TAU).prop_map(boundary::direction),
         1 => prop_oneof![Just(DVec2::X), Just(DVec2::Y), Just(-DVec2::X), Just(-DVec2::Y)],
     ]
 }
@@ -231,122 +223,4 @@ pub fn touching_pair() -> impl Strategy<Value = (Disk, Disk)> {
 /// ```
 pub fn disk_closing_on_wall() -> impl Strategy<Value = (Disk, DVec2, DVec2)> {
     touching_pair().prop_map(|(disk, wall)| (disk, disk.position().normalize(), wall.velocity()))
-}
-
-/// A motion that tests can print.
-trait Shown: WallMotion + Debug + Send + Sync {}
-
-impl<M: WallMotion + Debug + Send + Sync> Shown for M {}
-
-/// Returns motions of walls, alone, scaled, delayed and added, with displacements below 0.6 in magnitude.
-///
-/// ```
-/// use granular_edmd::{strategies, wall::laws};
-/// use proptest::prelude::*;
-///
-/// let few = ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() };
-/// proptest!(few, |(motion in strategies::motion())| {
-///     prop_assert_eq!(laws::check(&motion, -1.0, 2.0), Ok(()));
-/// });
-/// ```
-pub fn motion() -> impl Strategy<Value = impl WallMotion + Debug + Clone + Send + Sync + 'static> {
-    fn of<M: Shown + 'static>(motion: Result<M, impl Debug>) -> Option<Arc<dyn Shown>> {
-        motion.ok().map(|motion| Arc::new(motion) as Arc<dyn Shown>)
-    }
-    let numbers = || (0.01..0.2, decades(-0.5, 1.5));
-    (numbers(), numbers(), 0.0..2.0, 0..7_u8).prop_filter_map(
-        "a motion",
-        |((amplitude, frequency), (other, faster), start, choice)| {
-            let sine = Sinusoidal::new(amplitude, frequency).ok()?;
-            match choice {
-                0 => of(BiParabolic::new(amplitude, frequency)),
-                1 => of(Triangular::new(amplitude, frequency)),
-                2 => of(Sawtooth::new(amplitude, frequency)),
-                3 => of(Delayed::new(sine, start)),
-                4 => of(Scaled::new(sine, start - 1.0)),
-                5 => of(Summed::new(sine, Sinusoidal::new(other, faster).ok()?)),
-                _ => of(Ok::<_, ()>(sine)),
-            }
-        },
-    )
-}
-
-/// Returns containers of 6 to 16 by 6 to 16, closed, open or with periodic sides, some with a floor or a lid
-/// that moves as [`motion`] says.
-///
-/// ```
-/// use granular_edmd::{boundary::laws, strategies};
-/// use proptest::prelude::*;
-///
-/// let few = ProptestConfig { cases: 3, failure_persistence: None, ..ProptestConfig::default() };
-/// proptest!(few, |(mut container in strategies::container())| {
-///     prop_assert_eq!(laws::check(&mut container, 0.5, 1.0, 1), Ok(()));
-/// });
-/// ```
-pub fn container() -> impl Strategy<Value = Container> {
-    (6.0..16.0, 6.0..16.0, 0..5_u8, any::<bool>(), motion()).prop_filter_map(
-        "a container",
-        |(width, height, choice, is_periodic, motion)| {
-            let container = match choice {
-                0 => Container::open(width),
-                _ => Container::closed(width, height),
-            };
-            let container = match choice {
-                1 | 2 => container.ok()?.with_motion(Wall::Floor, motion).ok()?,
-                3 => container.ok()?.with_motion(Wall::Lid, motion).ok()?,
-                _ => container.ok()?,
-            };
-            if is_periodic { container.with_periodic_sides().ok() } else { Some(container) }
-        },
-    )
-}
-
-/// Returns vessels: a [`container`] with a peg, or a bar that turns, in its middle.
-///
-/// ```
-/// use granular_edmd::boundary::Boundary;
-/// use proptest::prelude::*;
-/// proptest!(|(vessel in granular_edmd::strategies::vessel())| prop_assert!(vessel.wall_count() >= 2));
-/// ```
-pub fn vessel() -> impl Strategy<Value = Vessel> {
-    (container(), 0.3..1.5, -2.0..2.0, any::<bool>()).prop_filter_map(
-        "a vessel",
-        |(container, size, spin, is_peg)| {
-            let middle = DVec2::new(3.0, 3.0);
-            let part = if is_peg {
-                Part::peg(middle, size).ok()?
-            } else {
-                let bar = [middle - DVec2::new(size, 0.0), middle + DVec2::new(size, 0.0)];
-                Part::polyline(bar).ok()?.with_rotation(middle, spin).ok()?
-            };
-            Vessel::new(container).with("part", part).ok()
-        },
-    )
-}
-
-/// Returns a strategy for lists of up to `most` disks that do not overlap, of several kinds, with radii from
-/// 0.05 to 0.5 and masses over six decades, in rows from the origin on.
-///
-/// ```
-/// use proptest::prelude::*;
-/// proptest!(|(disks in granular_edmd::strategies::mixture(9))| {
-///     prop_assert!(disks.len() <= 9 && disks.iter().all(|disk| disk.position().x < 3.0));
-/// });
-/// ```
-pub fn mixture(most: usize) -> impl Strategy<Value = Vec<Disk>> {
-    let columns = ((most as f64).sqrt() as usize).max(1);
-    let disk = (0.05..0.5, decades(-3.0, 3.0), (-3.0..3.0, -3.0..3.0), 0..4_u16);
-    prop::collection::vec(disk, 0..=most).prop_filter_map("disks", move |all| {
-        let place = |number: usize| {
-            let corner = DVec2::new((number % columns) as f64, (number / columns) as f64);
-            corner + DVec2::splat(0.5)
-        };
-        let numbered = all.into_iter().enumerate();
-        let disks = numbered.map(|(number, (radius, mass, velocity, kind))| {
-            let disk =
-                Disk::new(place(number), radius)?.with_mass(mass)?.with_velocity(DVec2::from(velocity))?;
-            Ok::<_, crate::ParameterError>(disk.with_kind(Kind::new(kind)))
-        });
-        disks.collect::<Result<_, _>>().ok()
-    })
 }

@@ -1,5 +1,5 @@
-//! Tests that the event loop allocates nothing, and that readers need no more memory than a few times their
-//! file, with an allocator that counts.
+//! Tests that the event loop allocates nothing, that disks which come and go leave no memory behind, and that
+//! readers need no more memory than a few times their file, with an allocator that counts.
 //!
 //! Only a change of the size of the cells allocates, when the state has become denser or more dilute. Dense
 //! and dilute runs that have settled have no such change.
@@ -12,9 +12,11 @@ use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-use granular_edmd::boundary::Domain;
+use granular_edmd::boundary::{Domain, Part, Vessel};
+use granular_edmd::collision::LeastRebound;
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
+use granular_edmd::simulation::Inlet;
 use granular_edmd::trajectory::{Gsd, Reader, Recorder};
 
 struct Counting;
@@ -75,6 +77,41 @@ fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
         assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "friction {friction}");
         assert!(simulation.counters().disk_collisions > collisions + 1000, "there was something to do");
     }
+    Ok(())
+}
+
+/// Returns a silo whose grains, of three sizes, come back above when they have left.
+fn silo() -> Result<Simulation<LeastRebound<Frictional>, Vessel>, Box<dyn std::error::Error>> {
+    let line = |from: f64, to: f64, y: f64| Part::polyline([DVec2::new(from, y), DVec2::new(to, y)]);
+    let vessel = Vessel::new(Container::open(12.0)?)
+        .with("left half", line(-1.0, 4.0, 4.0)?)?
+        .with("right half", line(8.0, 13.0, 4.0)?)?
+        .with("exit", line(-1.0, 13.0, 1.0)?.absorbing_centers())?;
+    let grain = |k: u32| {
+        let place = DVec2::new(0.5 + f64::from(k % 12), 5.0 + f64::from(k / 12));
+        let moving = DVec2::new(0.1 * libm::sin(f64::from(k)), 0.0);
+        Disk::new(place, [0.3, 0.4, 0.45][k as usize % 3])?.with_velocity(moving)
+    };
+    let grains = (0..96).map(grain).collect::<Result<Vec<_>, _>>()?;
+    let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.4)?, 0.2)?;
+    let mut silo = Simulation::builder(rule, vessel).gravity(1.0).disks(grains).build()?;
+    let places = [DVec2::new(1.0, 16.0), DVec2::new(11.0, 22.0)];
+    let times = SampleTimes::every(0.25)?;
+    silo.add_inlet(Inlet::refill(places, DVec2::new(0.0, -2.0), times, 5)?)?;
+    Ok(silo)
+}
+
+#[test]
+fn disks_that_come_and_go_leave_no_memory_behind() -> Result<(), Box<dyn std::error::Error>> {
+    let _turn = TURN.lock()?;
+    let before = LIVE.load(Ordering::Relaxed);
+    let (mut silo, mut memory) = (silo()?, Vec::with_capacity(1000));
+    while silo.counters().removals < 5000 {
+        silo.run_until(silo.time() + 50.0, &mut ())?;
+        memory.push(LIVE.load(Ordering::Relaxed) - before);
+    }
+    let (first, most) = (memory[memory.len() / 4], memory.iter().copied().max().unwrap_or_default());
+    assert!(memory.len() > 8 && most <= 2 * first, "the memory is bounded: {first} {most}");
     Ok(())
 }
 

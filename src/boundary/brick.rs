@@ -23,7 +23,7 @@ use segment::Segment;
 /// rounding could leave a hole between two bricks that meet.
 const MARGIN: f64 = 1e-12;
 
-/// A piece of a wall: a segment, a half-line, an arc, a circle or a point.
+/// A piece of a wall: a segment, an arc, a circle or a point.
 ///
 /// A brick has a direction. Disks are free on its left side; on the other side is the wall. A segment leads
 /// from its first point to its second; arcs and circles lead counterclockwise, so disks are free inside them.
@@ -32,7 +32,7 @@ const MARGIN: f64 = 1e-12;
 ///
 /// | brick | center of a touching disk of radius $`R`$ | the time is a root of a |
 /// |---|---|---|
-/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | beside it, at $`R`$ | parabola |
+/// | [`segment`](Self::segment) | beside it, at $`R`$ | parabola |
 /// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at $`r - R`$ from the center | quartic |
 /// | the same, from outside | at $`r + R`$ from the center | quartic |
 /// | [`point`](Self::point) | at $`R`$ from the point | quartic |
@@ -147,47 +147,33 @@ impl Brick {
 
     /// Returns the start and the end, if they exist, each with the direction of the brick there. The free
     /// side of a one-sided brick is on the left of that direction.
-    pub(super) fn ends(&self) -> [Option<(DVec2, DVec2)>; 2] {
-        let forward = match self.shape {
-            Shape::Segment(segment) => {
-                let direction = segment.direction;
-                [Some((segment.from, direction)), segment.to().map(|to| (to, direction))]
-            }
-            Shape::Arc(arc) => arc.ends().map_or([None; 2], |ends| ends.map(Some)),
+    pub(super) fn ends(&self) -> Option<[(DVec2, DVec2); 2]> {
+        let [start, end] = match self.shape {
+            Shape::Segment(segment) => [segment.from, segment.to].map(|end| (end, segment.direction)),
+            Shape::Arc(arc) => arc.ends()?,
         };
-        match self.free {
-            Free::Right => {
-                let [start, end] = forward.map(|end| end.map(|(place, direction)| (place, -direction)));
-                [end, start]
-            }
-            Free::Left | Free::Both => forward,
-        }
+        let turned = |(place, direction): (DVec2, DVec2)| (place, -direction);
+        Some(if self.free == Free::Right { [turned(end), turned(start)] } else { [start, end] })
     }
 
-    /// Returns a line along the brick: its ends, or points on an arc. A half-line is cut off after this
-    /// length.
-    pub(super) fn outline(&self, length: f64) -> Vec<DVec2> {
+    /// Returns a line along the brick: its ends, or points on an arc.
+    pub(super) fn outline(&self) -> Vec<DVec2> {
         /// Angle between two points of an arc.
         const STEP: f64 = std::f64::consts::PI / 60.0;
         match self.shape {
-            Shape::Segment(segment) => {
-                let end = segment.from + length * segment.direction;
-                vec![segment.from, segment.to().unwrap_or(end)]
-            }
+            Shape::Segment(segment) => vec![segment.from, segment.to],
             Shape::Arc(arc) => arc.points(STEP),
         }
     }
 
-    /// Returns the curves on which the center of a touching disk of this radius lies. A half-line is cut off
-    /// after this length.
-    pub(super) fn curves(&self, radius: f64, length: f64) -> impl Iterator<Item = Curve> + use<> {
+    /// Returns the curves on which the center of a touching disk of this radius lies.
+    pub(super) fn curves(&self, radius: f64) -> impl Iterator<Item = Curve> + use<> {
         let shape = self.shape;
         let sides = [radius, -radius].into_iter().take(if radius > 0.0 { 2 } else { 1 });
         sides.filter_map(move |away| match shape {
             Shape::Segment(segment) => {
-                let end = segment.to().unwrap_or(segment.from + length * segment.direction);
                 let aside = away * segment.direction.perp();
-                Some(Curve::Line(segment.from + aside, end + aside))
+                Some(Curve::Line(segment.from + aside, segment.to + aside))
             }
             Shape::Arc(arc) => {
                 (arc.radius + away > 0.0).then_some(Curve::Circle(arc.center, arc.radius + away))
@@ -198,7 +184,7 @@ impl Brick {
     /// Returns the points that fix the position of the brick.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {
-            Shape::Segment(segment) => [segment.from, segment.to().unwrap_or(segment.from)],
+            Shape::Segment(segment) => [segment.from, segment.to],
             Shape::Arc(arc) => [arc.center, arc.center + arc.radius],
         };
         places.into_iter()
@@ -220,7 +206,7 @@ impl Brick {
         }
     }
 
-    /// Returns a rectangle around the brick. Its edges may be infinite.
+    /// Returns a rectangle around the brick.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
         match self.shape {
             Shape::Segment(segment) => segment.bounds(),
@@ -245,8 +231,8 @@ impl Brick {
         let brick = match self.shape {
             Shape::Segment(segment) => {
                 let direction = segment.direction;
-                let brick = Fingerprint::of("Segment").number(direction.x).number(direction.y);
-                brick.text(if segment.to().is_some() { "finite" } else { "endless" })
+                // The text is that of earlier versions, in which there were other segments.
+                Fingerprint::of("Segment").number(direction.x).number(direction.y).text("finite")
             }
             Shape::Arc(arc) => arc
                 .ends()

@@ -1,23 +1,19 @@
 //! The rectangular container.
 
+mod answers;
 mod room;
 mod shaken;
-
-use std::borrow::Cow;
 
 use glam::DVec2;
 
 use super::conduct::Conduct;
 use super::plane::Plane;
 use super::vector::finite_point;
-use super::{
-    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Thermal, Touch, Wall,
-    WallError,
-};
+use super::{Thermal, Wall, WallError};
 use crate::collision::CollisionRule;
-use crate::quantity::{accept, positive};
+use crate::quantity::positive;
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
-use crate::{Fingerprint, Flight, Kind, ParameterError};
+use crate::{Kind, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin, such as the paper's box.
 ///
@@ -245,138 +241,6 @@ impl Container {
 
     fn plane_mut(&mut self, wall: Wall) -> Result<&mut Plane, WallError> {
         self.planes.iter_mut().find(|plane| plane.wall == wall).ok_or(WallError::Missing { wall })
-    }
-
-    /// Returns how far a wall can move outward.
-    fn retreat(&self, wall: Wall) -> f64 {
-        self.index(wall).map_or(0.0, |index| -self.planes[index].motion.reach().0.min(0.0))
-    }
-
-    /// Returns how far a wall can move inward.
-    fn advance(&self, wall: Wall) -> f64 {
-        self.index(wall).map_or(0.0, |index| self.planes[index].advance())
-    }
-}
-
-impl Container {
-    /// Makes a rectangle periodic where the container has no walls.
-    fn with_sides(&self, domain: Domain) -> Domain {
-        let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };
-        if self.index(Wall::Floor).is_none() { domain.with_periodic_ends() } else { domain }
-    }
-}
-
-impl Boundary for Container {
-    fn domain(&self) -> Domain {
-        self.with_sides(Domain::new(
-            self.corner.x - self.retreat(Wall::Left),
-            self.corner.x + self.width + self.retreat(Wall::Right),
-            self.corner.y - self.retreat(Wall::Floor),
-            self.corner.y + self.height + self.retreat(Wall::Lid),
-        ))
-    }
-
-    fn interior(&self) -> Domain {
-        self.with_sides(Domain::new(
-            self.corner.x + self.advance(Wall::Left),
-            self.corner.x + self.width - self.advance(Wall::Right),
-            self.corner.y + self.advance(Wall::Floor),
-            self.corner.y + self.height - self.advance(Wall::Lid),
-        ))
-    }
-
-    fn wall_count(&self) -> usize {
-        self.planes.len()
-    }
-
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        let plane = self.planes.get(wall);
-        plane.map_or_else(|| Cow::Owned(format!("wall {wall}")), |plane| plane.wall.name().into())
-    }
-
-    fn set_time_origin(&mut self, origin: f64) {
-        for plane in &mut self.planes {
-            plane.set_time_origin(origin);
-        }
-    }
-
-    fn react(&mut self, impact: &Impact) -> Reaction {
-        let is_moved = self.planes[impact.wall()].take(impact.impulse(), impact.time());
-        if is_moved { Reaction::Moved } else { Reaction::None }
-    }
-
-    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        self.planes[wall].may_meet(region, radius, until)
-    }
-
-    fn state(&self) -> Vec<f64> {
-        let strokes = self.planes.iter().filter_map(|plane| plane.motion.stroke());
-        strokes.flat_map(Stroke::numbers).collect()
-    }
-
-    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
-        let (numbers, rest) = state.as_chunks::<3>();
-        let pistons = self.planes.iter_mut().filter(|plane| plane.motion.stroke().is_some());
-        let pistons: Vec<_> = pistons.collect();
-        let is_whole = rest.is_empty() && numbers.len() == pistons.len();
-        accept(is_whole, "state of the walls", "three numbers for each piston", state.len() as f64)?;
-        for (plane, &numbers) in pistons.into_iter().zip(numbers) {
-            if let Some(stroke) = plane.motion.stroke() {
-                plane.motion = Motion::of(stroke.with_numbers(numbers)?);
-            }
-        }
-        Ok(())
-    }
-
-    fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        self.planes.iter().any(|plane| plane.may_touch(region, radius))
-    }
-
-    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
-        let mut first = FirstTouch::NONE;
-        for (wall, plane) in self.planes.iter().enumerate() {
-            let found = plane.first_touch(flight, until.min(first.time()));
-            first = first.or(found.map(|time| Touch::new(time, wall)));
-        }
-        first
-    }
-
-    fn surface(&self, wall: usize, _position: DVec2, time: f64) -> Surface<'_> {
-        self.planes[wall].surface(time)
-    }
-
-    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.planes.get(wall).map(|plane| plane.place(time))
-    }
-
-    fn edges(&self, time: f64) -> Domain {
-        let Region { min, max } = self.room(0.0, time);
-        self.with_sides(Domain::new(min.x, max.x, min.y, max.y))
-    }
-
-    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
-        self.planes.get(wall)?.moved(time)
-    }
-
-    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
-        // Most walls are far away, so their positions need not be computed.
-        let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
-        let near =
-            self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
-        Overlap::deepest(near.map(|(wall, plane)| Overlap::new(wall, plane.depth(position, radius, time))))
-    }
-
-    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
-        Some(region.within(&self.room(radius, time)).area())
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        let sizes = Fingerprint::of("Container").number(self.width).number(self.height);
-        let DVec2 { x, y } = self.corner;
-        let sizes = if self.corner == DVec2::ZERO { sizes } else { sizes.number(x).number(y) };
-        self.planes.iter().try_fold(sizes, |container, plane| {
-            Some(container.text(plane.wall.name()).part(plane.fingerprint()?))
-        })
     }
 }
 

@@ -1,7 +1,5 @@
 //! Errors of vessels.
 
-use std::path::PathBuf;
-
 use thiserror::Error;
 
 use crate::error::Rounded;
@@ -52,22 +50,6 @@ pub enum VesselError {
     /// The motion jumps back, and disks can be behind the part.
     #[error("the motion jumps back at times, and would jump into disks behind the part")]
     Jump,
-    /// A line of a text is not a point.
-    #[error("line {number} must be two numbers, but is \"{line}\"")]
-    Line {
-        /// Number of the line, from 1 on.
-        number: usize,
-        /// The line.
-        line: String,
-    },
-    /// A file cannot be read, or its points do not form a polygon.
-    #[error("cannot take a polygon from {}: {reason}", .path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
-        reason: String,
-    },
     /// The vessel has no part of this name.
     #[error("the vessel has no part \"{name}\"; {}", listed(.parts))]
     Unknown {
@@ -82,13 +64,7 @@ pub enum VesselError {
         /// The name.
         name: String,
     },
-    /// No rectangle holds all parts, because one of them extends to infinity.
-    #[error("the part \"{name}\" has no end: give the vessel a container")]
-    Endless {
-        /// The name.
-        name: String,
-    },
-    /// A part extends over more periods of the container than a vessel can repeat it, or to infinity.
+    /// A part extends over more periods of the container than a vessel can repeat it.
     #[error(
         "the part \"{name}\" extends over {} periods of the container, and {most} are possible: let it end earlier",
         Rounded(*.periods)
@@ -96,7 +72,7 @@ pub enum VesselError {
     TooManyPeriods {
         /// The name.
         name: String,
-        /// Number of periods; infinite for a part without an end.
+        /// Number of periods.
         periods: f64,
         /// Largest number.
         most: f64,

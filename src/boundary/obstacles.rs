@@ -133,7 +133,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     }
 
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
-        let circle = |obstacle: &Disk| Brick::round(obstacle.position(), obstacle.radius()).outline(0.0);
+        let circle = |obstacle: &Disk| Brick::round(obstacle.position(), obstacle.radius()).outline();
         self.boundary.wall_lines(time).into_iter().chain(self.obstacles.iter().map(circle)).collect()
     }
 
@@ -192,7 +192,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn react(&mut self, impact: &Impact) -> Reaction {
         // An obstacle never moves, and the boundary knows no wall of its index.
-        if impact.wall() < self.boundary.wall_count() { self.boundary.react(impact) } else { Reaction::None }
+        if impact.wall < self.boundary.wall_count() { self.boundary.react(impact) } else { Reaction::None }
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {

@@ -216,12 +216,12 @@ impl Part {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
 
-    /// Returns a rectangle around the part in its original position. Its edges may be infinite.
+    /// Returns a rectangle around the part in its original position.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
         enclosing(self.all_bricks().map(Brick::bounds))
     }
 
-    /// Returns a rectangle that holds the part at all times. Its edges may be infinite.
+    /// Returns a rectangle that holds the part at all times.
     pub(super) fn swept_bounds(&self) -> (DVec2, DVec2) {
         enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
     }

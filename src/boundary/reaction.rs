@@ -8,15 +8,21 @@ use glam::DVec2;
 /// use granular_edmd::boundary::Impact;
 /// use granular_edmd::glam::DVec2;
 /// let impact = Impact::new(3, DVec2::new(0.0, 2.0), DVec2::new(4.0, 9.0), 0.5);
-/// assert_eq!((impact.wall(), impact.impulse().y, impact.couple()), (3, 2.0, 0.0));
+/// assert_eq!((impact.wall, impact.impulse.y, impact.couple), (3, 2.0, 0.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Impact {
-    wall: usize,
-    impulse: DVec2,
-    couple: f64,
-    point: DVec2,
-    time: f64,
+    /// Index of the wall.
+    pub wall: usize,
+    /// Impulse on the wall.
+    pub impulse: DVec2,
+    /// Couple on the wall, counterclockwise.
+    pub couple: f64,
+    /// Point at which the disk touches the wall.
+    pub point: DVec2,
+    /// Time, as an offset from the boundary's origin.
+    pub time: f64,
 }
 
 impl Impact {
@@ -31,36 +37,6 @@ impl Impact {
     #[inline]
     pub const fn with_couple(self, couple: f64) -> Self {
         Self { couple, ..self }
-    }
-
-    /// Returns the index of the wall.
-    #[inline]
-    pub const fn wall(&self) -> usize {
-        self.wall
-    }
-
-    /// Returns the impulse on the wall.
-    #[inline]
-    pub const fn impulse(&self) -> DVec2 {
-        self.impulse
-    }
-
-    /// Returns the couple on the wall, counterclockwise.
-    #[inline]
-    pub const fn couple(&self) -> f64 {
-        self.couple
-    }
-
-    /// Returns the point at which the disk touches the wall.
-    #[inline]
-    pub const fn point(&self) -> DVec2 {
-        self.point
-    }
-
-    /// Returns the time, as an offset from the boundary's origin.
-    #[inline]
-    pub const fn time(&self) -> f64 {
-        self.time
     }
 }
 

@@ -6,7 +6,7 @@ use crate::ParameterError;
 use crate::quantity::positive;
 
 /// Returns the unit vector at this angle from the `x` axis.
-pub(super) fn direction(angle: f64) -> DVec2 {
+pub(crate) fn direction(angle: f64) -> DVec2 {
     let (sine, cosine) = libm::sincos(angle);
     DVec2::new(cosine, sine)
 }

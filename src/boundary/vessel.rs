@@ -99,15 +99,14 @@ struct Placed {
     phase: Phase,
     /// Lower left and upper right corner of a rectangle that holds the part at all times.
     bounds: (DVec2, DVec2),
-    /// Largest finite coordinate of that rectangle, in magnitude.
+    /// Largest coordinate of that rectangle, in magnitude.
     size: f64,
 }
 
 impl Placed {
     fn new(name: String, part: Part) -> Self {
         let (low, high) = part.swept_bounds();
-        let coordinates = [low.x, low.y, high.x, high.y].map(f64::abs).into_iter();
-        let size = coordinates.filter(|edge| edge.is_finite()).fold(0.0, f64::max);
+        let size = low.abs().max(high.abs()).max_element();
         Self { name, part, first: 0, phase: Phase::default(), bounds: (low, high), size }
     }
 }
@@ -141,7 +140,7 @@ impl Vessel {
     /// The container is a rectangle around the parts, which no disk touches.
     ///
     /// # Errors
-    /// The same as for [`put`](Self::put), and if a part extends to infinity.
+    /// The same as for [`put`](Self::put).
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};
@@ -160,11 +159,8 @@ impl Vessel {
         const ROOM: f64 = 1.0 / 16.0;
         let parts: Vec<(String, Part)> = parts.into_iter().map(|(name, part)| (name.into(), part)).collect();
         let (mut low, mut high) = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
-        for (name, part) in &parts {
+        for (_, part) in &parts {
             let (from, to) = part.swept_bounds();
-            if !(from.is_finite() && to.is_finite()) {
-                return Err(VesselError::Endless { name: name.clone() });
-            }
             (low, high) = (low.min(from), high.max(to));
         }
         let size = if parts.is_empty() { DVec2::ONE } else { high - low };

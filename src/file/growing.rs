@@ -1,6 +1,5 @@
 //! Files that grow by complete pieces.
 
-use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -12,17 +11,6 @@ pub(crate) trait Medium {
     fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()>;
     /// Cuts the medium to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
-}
-
-impl Medium for File {
-    fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
-        self.seek(SeekFrom::Start(place))?;
-        self.write_all(bytes)
-    }
-
-    fn cut(&mut self, length: u64) -> io::Result<()> {
-        self.set_len(length)
-    }
 }
 
 impl Medium for Locked {

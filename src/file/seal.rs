@@ -37,7 +37,7 @@ impl Seal {
     }
 
     /// Returns the first bytes of a file of the format: its first bytes and its version.
-    pub(super) fn start(self) -> [u8; 12] {
+    fn start(self) -> [u8; 12] {
         let mut start = [0; 12];
         start[..8].copy_from_slice(&self.magic);
         start[8..].copy_from_slice(&self.version.to_le_bytes());

@@ -20,15 +20,9 @@ const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 /// # Errors
 /// If the system cannot write it.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    Draft::with(path, bytes)?.finish()
-}
-
-/// Writes a file as [`write_whole`] does, except that a loss of power may lose or damage the file.
-///
-/// # Errors
-/// If the system cannot write it.
-pub fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    Draft::with(path, bytes)?.place()
+    let mut draft = Draft::of(path)?;
+    draft.write_all(bytes)?;
+    draft.finish()
 }
 
 /// A file that is written piece by piece, and gets its name when it is complete. A draft that is dropped
@@ -64,12 +58,6 @@ impl Draft {
         self.file.write_all(bytes)
     }
 
-    fn with(path: &Path, bytes: &[u8]) -> io::Result<Self> {
-        let mut draft = Self::of(path)?;
-        draft.write_all(bytes)?;
-        Ok(draft)
-    }
-
     /// Renames the finished file to its final name, so that it survives a loss of power.
     ///
     /// # Errors
@@ -77,17 +65,10 @@ impl Draft {
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         self.file.get_ref().sync_all()?;
-        let path = self.path.clone();
-        self.place()?;
-        sync_folder(&path);
-        Ok(())
-    }
-
-    fn place(mut self) -> io::Result<()> {
-        self.file.flush()?;
         fs::rename(&self.temporary, &self.path)?;
         // After the renaming, there is no temporary file to remove.
         self.temporary.clear();
+        sync_folder(&self.path);
         Ok(())
     }
 }
@@ -133,39 +114,5 @@ fn sync_folder(path: &Path) {
     if cfg!(unix) {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::HashSet;
-
-    use super::*;
-
-    #[test]
-    fn names_are_unique_and_recognized() {
-        let names: HashSet<String> = (0..1000).map(|_| unique_name()).collect();
-        assert_eq!(names.len(), 1000);
-        assert!(names.iter().all(|name| is_temporary(OsStr::new(name))));
-    }
-
-    #[test]
-    fn names_of_others_are_not_ours() {
-        let ours = "granular-edmd-12-0-0123456789abcdef.tmp";
-        assert!(is_temporary(OsStr::new(ours)));
-        let others = [
-            "data.tmp",
-            "0001.record.4711.tmp",
-            "granular-edmd-.tmp",
-            "granular-edmd-12-0-0123456789abcdef.tmp.bak",
-            "granular-edmd-12-0-0123456789abcdef",
-            "granular-edmd-12-0-0123456789abcde.tmp",
-            "granular-edmd-12-0-0123456789abcdeg.tmp",
-            "granular-edmd-12--0123456789abcdef.tmp",
-            "granular-edmd-x-0-0123456789abcdef.tmp",
-            "granular-edmd-1-2-0-0123456789abcdef.tmp",
-            "my granular-edmd-12-0-0123456789abcdef.tmp",
-        ];
-        assert!(others.iter().all(|name| !is_temporary(OsStr::new(name))));
     }
 }

@@ -3,9 +3,9 @@
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{CollisionAverage, Maxwellian};
+use super::Maxwellian;
 use crate::ParameterError;
-use crate::collision::{CollisionRule, Regime};
+use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::random::{normal, uniform};
 use crate::statistics::{Estimate, RunningMean};
@@ -91,12 +91,6 @@ impl MonteCarlo {
     where
         R: CollisionRule + Sync + ?Sized,
     {
-        self.average(rule, gas).energy_change()
-    }
-
-    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction of
-    /// collisions that stick.
-    pub fn average<R: CollisionRule + Sync + ?Sized>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage {
         let chunks = self.samples.div_ceil(CHUNK).max(1);
         // Random number generators that never overlap, one per chunk.
         let mut next = Xoshiro256PlusPlus::seed_from_u64(self.seed);
@@ -112,7 +106,7 @@ impl MonteCarlo {
             for chunk in map(round, |generator| Sums::of_chunk(rule, gas, generator)) {
                 total.add(&chunk);
             }
-            let error = total.average().energy_change().standard_error();
+            let error = total.average().standard_error();
             if self.standard_error.is_some_and(|wanted| error <= wanted) {
                 break;
             }
@@ -140,7 +134,6 @@ struct Sums {
     chunks: u64,
     energy: f64,
     variance: f64,
-    sticking: f64,
 }
 
 impl Sums {
@@ -150,18 +143,16 @@ impl Sums {
     {
         let mut sums = Self { chunks: 1, ..Self::default() };
         for stratum in 0..STRATA {
-            let (mut energy, mut sticking) = (RunningMean::default(), 0.0);
+            let mut energy = RunningMean::default();
             for _ in 0..SAMPLES {
                 let sample = Sample::draw(stratum, &mut generator);
                 let contact = gas.contact(sample.closing, sample.slip);
                 let impulse = rule.impulse(&contact);
                 energy.push(sample.weight * impulse.energy_change(&contact));
-                sticking += if impulse.regime() == Regime::Sticking { sample.weight } else { 0.0 };
             }
             let strata = f64::from(STRATA);
             sums.energy += energy.mean() / strata;
             sums.variance += energy.variance() / f64::from(SAMPLES) / (strata * strata);
-            sums.sticking += sticking / CHUNK as f64;
         }
         sums
     }
@@ -170,14 +161,12 @@ impl Sums {
         self.chunks += other.chunks;
         self.energy += other.energy;
         self.variance += other.variance;
-        self.sticking += other.sticking;
     }
 
-    fn average(&self) -> CollisionAverage {
+    fn average(&self) -> Estimate {
         let chunks = self.chunks as f64;
         let (mean, error) = (self.energy / chunks, self.variance.sqrt() / chunks);
-        let energy_change = Estimate::independent(mean, error, self.chunks * CHUNK);
-        CollisionAverage::new(energy_change, self.sticking / chunks)
+        Estimate::independent(mean, error, self.chunks * CHUNK)
     }
 }
 

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::{Heading, Observable, Snapshot, Tabular};
 use crate::Disk;
+use crate::boundary::direction;
 
 /// The position of the center of mass, or NaN without disks.
 ///
@@ -71,11 +72,6 @@ fn circular_mean(
     } else {
         f64::NAN
     }
-}
-
-fn direction(angle: f64) -> DVec2 {
-    let (sine, cosine) = libm::sincos(angle);
-    DVec2::new(cosine, sine)
 }
 
 impl Tabular for CenterOfMass {

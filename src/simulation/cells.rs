@@ -214,22 +214,6 @@ impl Cells {
         &self.grid
     }
 
-    /// Returns three counts for the smallest class: its cells, its occupied cells, and its disks.
-    pub(super) fn occupation(&self) -> [usize; 3] {
-        let small = (0..self.places.len()).filter(|&disk| !self.is_large(disk));
-        let mut taken: Vec<usize> = small.map(|disk| self.grid.index(self.places[disk])).collect();
-        let disks = taken.len();
-        taken.sort_unstable();
-        taken.dedup();
-        [self.grid.places().count(), taken.len(), disks]
-    }
-
-    /// Returns the bytes in memory of the cells, without their edges.
-    pub(super) fn bytes(&self) -> usize {
-        let layers = self.layers.as_ref().map_or(0, |layers| layers.bytes());
-        size_of_val(self.places.as_slice()) + self.contents.bytes() + layers
-    }
-
     /// Writes a disk of any class into its cell, or removes it from the cell.
     fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {

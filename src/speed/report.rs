@@ -7,7 +7,7 @@ use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
-use crate::simulation::{Counters, Footprint};
+use crate::simulation::Counters;
 
 /// A meter that is started before a run and read after it. The run itself takes no longer.
 ///
@@ -54,8 +54,6 @@ impl Meter {
             events_per_second: counters.events() as f64 / seconds,
             events_per_collision: counters.events() as f64 / counters.disk_collisions as f64,
             counters,
-            observer_share: None,
-            footprint: run.footprint(),
             circumstances: Circumstances::present(),
         }
     }
@@ -84,34 +82,8 @@ pub struct RunReport {
     pub events_per_collision: f64,
     /// Events by kind.
     pub counters: Counters,
-    /// Share of the time spent in observers, if known; see [`Self::with_bare`].
-    pub observer_share: Option<f64>,
-    /// Memory, cells, scheduler and instructions at the end.
-    pub footprint: Footprint,
     /// Machine and build.
     pub circumstances: Circumstances,
-}
-
-impl RunReport {
-    /// Returns the same report with the observers' share of the time, from the report of the same run without
-    /// observers.
-    ///
-    /// ```
-    /// use granular_edmd::observable::EnergyChange;
-    /// use granular_edmd::speed::{self, Meter};
-    ///
-    /// let mut simulation = speed::gas(0.3)?;
-    /// let mut bare = simulation.clone();
-    /// let (end, meter) = (simulation.time() + 5.0, Meter::start(&bare));
-    /// bare.run_until(end, &mut ())?;
-    /// let (bare, meter) = (meter.report(&bare), Meter::start(&simulation));
-    /// simulation.run_until(end, &mut EnergyChange::default())?;
-    /// println!("{}", meter.report(&simulation).with_bare(&bare));
-    /// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
-    /// ```
-    pub fn with_bare(self, bare: &Self) -> Self {
-        Self { observer_share: Some(1.0 - bare.seconds / self.seconds), ..self }
-    }
 }
 
 impl fmt::Display for RunReport {
@@ -131,10 +103,6 @@ impl fmt::Display for RunReport {
             per_collision(counters.repredictions),
             per_collision(counters.horizons),
         )?;
-        if let Some(share) = self.observer_share {
-            writeln!(formatter, "{:.1} % of the time for observers", 100.0 * share)?;
-        }
-        writeln!(formatter, "{}", self.footprint)?;
         write!(formatter, "{circumstances}")
     }
 }

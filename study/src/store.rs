@@ -5,6 +5,7 @@
 
 mod claims;
 mod index;
+mod log;
 mod writer;
 
 use std::collections::HashSet;
@@ -13,11 +14,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use granular_edmd::file::{Log, Seal, read_piece};
+use granular_edmd::file::Seal;
 use serde::de::DeserializeOwned;
 
 pub(super) use claims::{Claimed, Claims, blocks};
 pub(super) use index::{Entries, Entry, Head, Marks};
+use log::{Log, read_piece};
 use writer::Writer;
 
 use super::StudyError;

@@ -110,7 +110,7 @@ fn specimens() -> Vec<Specimen> {
     let (center, place) = (DVec2::new(0.5, -0.3), DVec2::new(-2.0, 0.4));
     let bricks = [
         ("segment", Brick::segment(place, DVec2::new(2.0, 1.0)).unwrap().two_sided()),
-        ("half-line", Brick::half_line(place, DVec2::new(2.0, 1.0)).unwrap().two_sided()),
+        ("long segment", Brick::segment(place, DVec2::new(2e6, 1e6)).unwrap().two_sided()),
         ("circle from outside", Brick::circle(center, 1.5).unwrap().reversed()),
         ("circle from inside", Brick::circle(center, 8.0).unwrap()),
         ("arc", Brick::arc(center, 2.0, 0.3 * PI, 1.1 * PI).unwrap().two_sided()),

@@ -155,7 +155,9 @@ proptest! {
         frame in -3..3_isize,
     ) {
         if keeps {
-            changes.iter_mut().for_each(|(_, removed, inserted)| *removed = inserted.len());
+            for (_, removed, inserted) in &mut changes {
+                *removed = inserted.len();
+            }
         }
         for (name, bytes) in files() {
             let bytes = changed(&bytes, &changes);

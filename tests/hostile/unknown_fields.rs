@@ -46,7 +46,6 @@ fn parameters_with_a_field_too_many_are_refused() {
 fn boundaries_with_a_field_too_many_are_refused() {
     let bricks = [
         Brick::segment(DVec2::ZERO, DVec2::ONE).unwrap(),
-        Brick::half_line(DVec2::ZERO, DVec2::ONE).unwrap().two_sided(),
         Brick::circle(DVec2::ZERO, 2.0).unwrap().reversed(),
         Brick::arc(DVec2::ZERO, 2.0, 0.3, 1.9).unwrap(),
         Brick::point(DVec2::ONE).unwrap(),

@@ -7,7 +7,7 @@ mod rows;
 
 use granular_edmd::boundary::{Boundary, Probe};
 use granular_edmd::glam::DVec2;
-use granular_edmd::{Disk, Simulation, collision::Elastic};
+use granular_edmd::{Disk, Simulation, collision::Elastic, initial};
 
 /// Returns disks of these radii at the origin.
 fn disks(radii: impl IntoIterator<Item = f64>) -> Vec<Disk> {
@@ -33,4 +33,15 @@ fn assert_same_disks(placed: &[Disk], given: &[Disk]) {
     for (placed, given) in placed.iter().zip(given) {
         assert_eq!(placed.with_position(DVec2::ZERO), given.with_position(DVec2::ZERO));
     }
+}
+
+/// A change of these bits changes trajectories. It must be announced under "Results" in the changelog.
+#[test]
+fn normal_velocities_keep_their_bits() {
+    let velocity = initial::with_maxwellian_velocities(disks([0.5]), 1.0, 1).unwrap()[0].velocity();
+    assert_eq!(
+        velocity.to_array().map(f64::to_bits),
+        [13_801_300_935_356_037_760, 13_810_881_050_129_480_691],
+        "{velocity}"
+    );
 }

@@ -103,7 +103,7 @@ fn pistons_that_move_are_added_afterwards() {
         let container = Container::closed(16.0, 40.0).unwrap().with_piston(Wall::Lid, piston).unwrap();
         initial::packed_at_random(&container, disks(vec![0.5; 100]), 40.0, 1)
     };
-    assert_eq!(packed(piston.clone()).unwrap().len(), 100);
+    assert_eq!(packed(piston).unwrap().len(), 100);
     let error = packed(piston.with_force(40.0).unwrap()).unwrap_err().to_string();
     let expected = "way of the wall \"lid\" in a unit of time must be 0 while disks are packed (add the piston \
                     afterwards), but is 10";

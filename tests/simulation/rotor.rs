@@ -41,7 +41,7 @@ impl Boundary for Rotor {
         (depth > 0.0).then_some(Overlap::new(0, depth))
     }
     fn react(&mut self, impact: &Impact) -> Reaction {
-        self.spin += (impact.point().perp_dot(impact.impulse()) + impact.couple()) / INERTIA;
+        self.spin += (impact.point.perp_dot(impact.impulse) + impact.couple) / INERTIA;
         Reaction::Moved
     }
     fn state(&self) -> Vec<f64> {

@@ -29,16 +29,8 @@ fn a_report_counts_what_the_run_did_since_its_meter_started() {
     assert_eq!(report.nanoseconds_per_collision, nanoseconds);
     assert!((report.collisions_per_second * nanoseconds - 1e9).abs() < 1.0);
     assert!((report.events_per_collision - done.events() as f64 / done.disk_collisions as f64).abs() < 1e-12);
-    let taken = &report.footprint;
-    // All disks are in cells; a cell holds one at least.
-    assert_eq!(taken.disks_in_cells, 200);
-    assert!((50..=200).contains(&taken.occupied_cells) && taken.cells >= taken.occupied_cells);
-    assert!((96.0..400.0).contains(&taken.bytes_per_disk), "{}", taken.bytes_per_disk);
-    let mut bare = report.clone();
-    bare.seconds *= 0.75;
-    let text = report.with_bare(&bare).to_string();
-    for part in ["200 disks, 10.000000 units", "25.0 % of the time for observers", "TournamentTree, by size"]
-    {
+    let text = report.to_string();
+    for part in ["200 disks, 10.000000 units", "million collisions a second", "horizons"] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }
@@ -72,7 +64,6 @@ fn a_report_is_json() {
     assert_eq!(json["disks"], 200);
     assert_eq!(json["counters"]["disk_collisions"], 1000);
     assert_eq!(json["circumstances"]["version"], env!("CARGO_PKG_VERSION"));
-    assert!(json["observer_share"].is_null());
 }
 
 #[test]

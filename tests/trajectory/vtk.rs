@@ -2,11 +2,11 @@
 
 use std::fs;
 
-use granular_edmd::boundary::{Container, Part, Vessel, Wall};
+use granular_edmd::boundary::{Container, Domain, Part, Vessel, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::SampleTimes;
-use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, Vtk};
+use granular_edmd::observable::{SampleTimes, Snapshot};
+use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State, Vtk};
 use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion as _};
 use granular_edmd::{Disk, Simulation};
 
@@ -161,4 +161,35 @@ fn frames_tell_where_the_walls_are() {
     assert!(bytes.ends_with(&last));
     let edges = |number: u32| fs::read_to_string(scratch.path(&format!("run/box_{number:06}.vtp"))).unwrap();
     assert!(edges(3) != edges(4));
+}
+
+/// Returns the bytes of a text in base64, as RFC 4648 has it.
+fn decoded(text: &str) -> Vec<u8> {
+    let letters: String = ('A'..='Z').chain('a'..='z').chain('0'..='9').chain(['+', '/']).collect();
+    assert_eq!(text.len() % 4, 0);
+    let (digits, padding) = text.split_at(text.find('=').unwrap_or(text.len()));
+    assert!(padding.len() < 3);
+    let bits = digits.chars().flat_map(|letter| {
+        let digit = letters.find(letter).unwrap();
+        (0..6).rev().map(move |bit| digit >> bit & 1)
+    });
+    let bits: Vec<usize> = bits.collect();
+    bits.chunks_exact(8).map(|byte| byte.iter().fold(0, |sum, bit| 2 * sum + *bit as u8)).collect()
+}
+
+/// The arrays of 0 to 6 disks have all lengths of the last group of letters.
+#[test]
+fn arrays_are_in_base64_behind_their_length() {
+    for count in 0..7_u64 {
+        let id = |number: u64| number.wrapping_mul(0x1f_ffff_fedc_ba98) % (1 << 53) + 1;
+        let disk = |number| Disk::new(DVec2::ZERO, 1.0).unwrap().with_id(id(number)).unwrap();
+        let disks: Vec<Disk> = (0..count).map(disk).collect();
+        let mut file = Vec::new();
+        let domain = Domain::new(0.0, 1.0, 0.0, 1.0);
+        State::of(&Snapshot::new(0.0, &disks, domain, 0.0)).write_vtk(&mut file).unwrap();
+        let text = String::from_utf8(file).unwrap();
+        let (_, array) = text.split_once("Name=\"id\" NumberOfComponents=\"1\" format=\"binary\">").unwrap();
+        let expected = [8 * count].into_iter().chain((0..count).map(id)).flat_map(u64::to_le_bytes);
+        assert!(decoded(array.split_once('<').unwrap().0).into_iter().eq(expected), "{count}");
+    }
 }

@@ -6,7 +6,7 @@ use super::arc::{Arc, Sector};
 use super::segment::Segment;
 use super::{Brick, Free, Nearest, Shape};
 use crate::boundary::VesselError;
-use crate::boundary::vector::{direction, finite_point, unit};
+use crate::boundary::vector::{direction, finite_point};
 use crate::quantity::{accept, finite, positive};
 
 impl Brick {
@@ -20,16 +20,6 @@ impl Brick {
         let (from, to) = (finite_point(from)?, finite_point(to)?);
         positive("length of a segment", from.distance(to))?;
         Ok(Self::left_of(Shape::Segment(Segment::between(from, to))))
-    }
-
-    /// Creates a half-line that begins at a point and has a direction.
-    ///
-    /// The vector `direction` can have any length except 0. Disks are free on the left of the half-line.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite, or the direction has no length.
-    pub fn half_line(from: DVec2, direction: DVec2) -> Result<Self, VesselError> {
-        Ok(Self::left_of(Shape::Segment(Segment::endless(finite_point(from)?, unit(direction)?))))
     }
 
     /// Creates a circle with the disks inside.
@@ -137,8 +127,7 @@ impl Brick {
         }
         if let Shape::Segment(segment) = shape {
             // Far from the origin, rounding may make both ends equal.
-            let length = segment.to().map_or(1.0, |to| to.distance(segment.from));
-            positive("length of a segment", length)?;
+            positive("length of a segment", segment.to.distance(segment.from))?;
         }
         Ok(Self { shape, ..self })
     }

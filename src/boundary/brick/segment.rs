@@ -1,4 +1,4 @@
-//! Straight bricks: segments and half-lines.
+//! Straight bricks.
 
 use glam::DVec2;
 
@@ -10,11 +10,9 @@ use crate::boundary::Region;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
     pub(super) from: DVec2,
-    /// End; not used if the length is infinite.
-    to: DVec2,
+    pub(super) to: DVec2,
     /// Unit vector.
     pub(super) direction: DVec2,
-    /// Length; infinite for a half-line.
     length: f64,
 }
 
@@ -24,22 +22,10 @@ impl Segment {
         Self { from, to, direction: (to - from) / length, length }
     }
 
-    pub(super) fn endless(from: DVec2, direction: DVec2) -> Self {
-        Self { from, to: from, direction, length: f64::INFINITY }
-    }
-
-    /// Returns the end, or `None` if the segment is endless.
-    pub(super) fn to(&self) -> Option<DVec2> {
-        self.length.is_finite().then_some(self.to)
-    }
-
     /// Returns the same segment after a rotation about the origin by the angle of this unit vector, and a
     /// shift.
     pub(super) fn moved(&self, turn: DVec2, shift: DVec2) -> Self {
-        match self.to() {
-            Some(to) => Self::between(turn.rotate(self.from) + shift, turn.rotate(to) + shift),
-            None => Self::endless(turn.rotate(self.from) + shift, turn.rotate(self.direction)),
-        }
+        Self::between(turn.rotate(self.from) + shift, turn.rotate(self.to) + shift)
     }
 
     pub(super) fn side(&self, place: DVec2) -> Side {
@@ -108,16 +94,11 @@ impl Segment {
 
     /// Returns the rectangle around the brick.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
-        let far = |component: f64| if component == 0.0 { 0.0 } else { component * f64::INFINITY };
-        let to =
-            self.to().unwrap_or_else(|| self.from + DVec2::new(far(self.direction.x), far(self.direction.y)));
-        (self.from.min(to), self.from.max(to))
+        (self.from.min(self.to), self.from.max(self.to))
     }
 
     /// Returns the smallest and the largest distance of the segment's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
-        let farthest =
-            self.to().map_or(f64::INFINITY, |to| place.distance(to).max(place.distance(self.from)));
-        (self.sight(place).distance, farthest)
+        (self.sight(place).distance, place.distance(self.to).max(place.distance(self.from)))
     }
 }

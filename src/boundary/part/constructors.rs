@@ -1,6 +1,4 @@
-//! Constructors of parts, from numbers and from files.
-
-use std::path::Path;
+//! Constructors of parts.
 
 use glam::DVec2;
 
@@ -35,6 +33,17 @@ impl Part {
     /// # Errors
     /// If there are fewer than three points, a coordinate is not finite, neighboring points are equal, the
     /// polygon has no area, or two of its sides cross.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::Part;
+    /// use granular_edmd::glam::DVec2;
+    /// // Points from a table of two columns, as a drawing program or a script writes them.
+    /// let rows = "0 0\n4 0\n0 3".lines().map(|line| line.split_whitespace().map(str::parse));
+    /// let rows = rows.map(Iterator::collect).collect::<Result<Vec<Vec<f64>>, _>>()?;
+    /// let triangle = Part::polygon(rows.iter().map(|row| DVec2::from_slice(row)))?;
+    /// assert_eq!(triangle.bricks().len(), 3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
         Self::new(polygon::sides(points.into_iter().collect(), true)?)
     }
@@ -85,39 +94,6 @@ impl Part {
     /// If a coordinate is not finite, or the radius is not finite and positive.
     pub fn peg(center: DVec2, radius: f64) -> Result<Self, VesselError> {
         Self::new([Brick::circle(center, radius)?.reversed()])
-    }
-
-    /// Reads points from text: two numbers in each line, with whitespace or a comma between them.
-    ///
-    /// Empty lines and lines that begin with `#` are skipped.
-    ///
-    /// # Errors
-    /// If a line is not two numbers. The error names the line.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::Part;
-    /// let triangle = Part::polygon(Part::points_from_text("# x y\n0 0\n4, 0\n\n0 3")?)?;
-    /// assert_eq!(triangle.bricks().len(), 3);
-    /// let error = Part::points_from_text("0 0\n4").unwrap_err();
-    /// assert_eq!(error.to_string(), "line 2 must be two numbers, but is \"4\"");
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
-    /// ```
-    pub fn points_from_text(text: &str) -> Result<Vec<DVec2>, VesselError> {
-        polygon::points(text)
-    }
-
-    /// Reads a closed polygon with the disks inside from a file of points, as
-    /// [`points_from_text`](Self::points_from_text) reads them.
-    ///
-    /// # Errors
-    /// If the file cannot be read, a line is not two numbers, or the points do not form a
-    /// [`polygon`](Self::polygon). The error names the file.
-    pub fn polygon_from_file(path: impl AsRef<Path>) -> Result<Self, VesselError> {
-        let path = path.as_ref();
-        let failed = |reason: String| VesselError::File { path: path.to_owned(), reason };
-        let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
-        let polygon = Self::points_from_text(&text).and_then(Self::polygon);
-        polygon.map_err(|error| failed(error.to_string()))
     }
 }
 

@@ -36,9 +36,8 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     let mut joints: HashMap<[u64; 2], Joint> = HashMap::new();
     let mut places = Vec::new();
     for brick in bricks {
-        let [start, end] = brick.ends();
-        for (end, is_start) in [(start, true), (end, false)] {
-            let Some((place, direction)) = end else { continue };
+        let Some([start, end]) = brick.ends() else { continue };
+        for ((place, direction), is_start) in [(start, true), (end, false)] {
             // Ends that are close but not equal get a point each, and these points close the gap.
             let key = key(place);
             if !joints.contains_key(&key) {
@@ -65,15 +64,9 @@ pub(super) fn are_closed(bricks: &[Brick]) -> bool {
     let mut more_starts: HashMap<[u64; 2], i32> = HashMap::new();
     let walls = || bricks.iter().filter(|brick| !brick.is_point());
     for brick in walls() {
-        let [start, end] = brick.ends();
-        if start.is_some() != end.is_some() {
-            return walls().all(Brick::is_two_sided);
-        }
-        for (end, sign) in [(start, 1), (end, -1)] {
-            if let Some((place, _)) = end {
-                *more_starts.entry(key(place)).or_default() += sign;
-            }
-        }
+        let Some([(start, _), (end, _)]) = brick.ends() else { continue };
+        *more_starts.entry(key(start)).or_default() += 1;
+        *more_starts.entry(key(end)).or_default() -= 1;
     }
     let are_lines_closed =
         walls().all(|brick| !brick.is_two_sided()) && more_starts.values().all(|&n| n == 0);

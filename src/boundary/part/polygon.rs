@@ -98,18 +98,3 @@ fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> boo
     lies_on
         || ([a, b, c, d].iter().all(|&side| side != 0.0) && (a > 0.0) != (b > 0.0) && (c > 0.0) != (d > 0.0))
 }
-
-/// Reads points from text.
-pub(super) fn points(text: &str) -> Result<Vec<DVec2>, VesselError> {
-    let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line.trim()));
-    lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).map(point).collect()
-}
-
-fn point((number, line): (usize, &str)) -> Result<DVec2, VesselError> {
-    let words = line.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
-    let numbers: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[x, y]) => Ok(DVec2::new(x, y)),
-        _ => Err(VesselError::Line { number, line: line.chars().take(60).collect() }),
-    }
-}

@@ -265,7 +265,7 @@ impl Travel {
         from <= farthest + reach && to >= nearest - reach
     }
 
-    /// Returns a rectangle that holds a brick of the part at all times. Its edges may be infinite.
+    /// Returns a rectangle that holds a brick of the part at all times.
     pub(in crate::boundary) fn bounds(&self, brick: &Brick) -> (DVec2, DVec2) {
         let (low, high) = self.frame().map_or_else(
             || brick.bounds(),

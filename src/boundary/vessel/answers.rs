@@ -96,11 +96,7 @@ impl Boundary for Vessel {
 
     fn react(&mut self, impact: &Impact) -> Reaction {
         // Parts have no mass.
-        if impact.wall() < self.container.wall_count() {
-            self.container.react(impact)
-        } else {
-            Reaction::None
-        }
+        if impact.wall < self.container.wall_count() { self.container.react(impact) } else { Reaction::None }
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {

@@ -161,8 +161,5 @@ impl Index {
 fn rectangle(domain: &Domain, bounds: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
     let (low, high) = enclosing(bounds);
     let low = low.max(DVec2::new(domain.left, domain.bottom)).min(DVec2::new(domain.right, domain.top));
-    let high = high.min(DVec2::new(domain.right, domain.top)).max(low);
-    // In a domain without a lid, a brick that extends to infinity would make the height infinite.
-    let height = if high.y.is_finite() { high.y - low.y } else { domain.width() };
-    (low, DVec2::new(high.x, low.y + height))
+    (low, high.min(DVec2::new(domain.right, domain.top)).max(low))
 }

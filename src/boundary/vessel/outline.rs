@@ -4,7 +4,6 @@ use glam::DVec2;
 
 use super::Vessel;
 use crate::boundary::brick::Brick;
-use crate::boundary::{Boundary, Domain};
 
 impl Vessel {
     /// Returns the bricks of all parts at an absolute time, as lines for a picture.
@@ -12,8 +11,7 @@ impl Vessel {
     /// Each item is the name of the part and a line of points along the brick. The points of an arc are at
     /// most three degrees apart.
     ///
-    /// Walls of the container and single points are left out. Half-lines are cut off at ten times the size of
-    /// the container.
+    /// Walls of the container and single points are left out.
     ///
     /// ```
     /// use granular_edmd::boundary::{Part, Vessel};
@@ -30,15 +28,11 @@ impl Vessel {
     /// # Ok::<(), granular_edmd::boundary::VesselError>(())
     /// ```
     pub fn outline(&self, time: f64) -> impl Iterator<Item = (&str, Vec<DVec2>)> {
-        let Domain { left, right, bottom, top, .. } = self.domain();
-        let height = if top.is_finite() { top - bottom } else { right - left };
-        let length = 10.0 * (right - left).max(height);
         self.parts.iter().flat_map(move |placed| {
             let pose = placed.part.travel().pose(placed.part.phase(time));
             let bricks = placed.part.bricks().iter().filter(|brick| !brick.is_point());
-            let line = move |brick: &Brick| {
-                brick.outline(length).into_iter().map(|place| pose.outward(place)).collect()
-            };
+            let line =
+                move |brick: &Brick| brick.outline().into_iter().map(|place| pose.outward(place)).collect();
             bricks.map(move |brick| (placed.name.as_str(), line(brick)))
         })
     }

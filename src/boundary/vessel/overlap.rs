@@ -109,10 +109,10 @@ impl Vessel {
     /// else all cells.
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
         let (low, high) = placed.part.bounds();
-        let is_bounded = low.is_finite() && high.is_finite() && self.domain().periods() == DVec2::ZERO;
+        let is_walled = self.domain().periods() == DVec2::ZERO;
         // This point is far enough from the part to stay outside after rounding, whatever the part's size.
         let outside = low - (high - low) - DVec2::ONE;
-        let is_free_outside = is_bounded && placed.part.signed_distance(outside) > 0.0;
+        let is_free_outside = is_walled && placed.part.signed_distance(outside) > 0.0;
         if is_free_outside { self.index.cells(low, high).collect() } else { (0..self.index.len()).collect() }
     }
 }

@@ -1,7 +1,5 @@
 //! The free area in a vessel.
 
-use glam::DVec2;
-
 use super::Vessel;
 use crate::boundary::area::{Curve, Field, LOOKS, meet};
 use crate::boundary::{Boundary, Probe, Region};
@@ -36,11 +34,9 @@ impl Vessel {
             let pose = placed.part.travel().pose(placed.phase.after(time));
             let (low, high) = placed.bounds;
             let reach = Region::new(low - radius, high + radius);
-            let size = [region.min, region.max].map(DVec2::length).into_iter().filter(|end| end.is_finite());
-            let length = size.fold(placed.size, f64::max) * 8.0;
             for image in self.domain().images_of(low, high) {
                 if meet(region, &Region::new(reach.min + image, reach.max + image)) {
-                    let bricks = placed.part.all_bricks().flat_map(|brick| brick.curves(radius, length));
+                    let bricks = placed.part.all_bricks().flat_map(|brick| brick.curves(radius));
                     curves.extend(bricks.map(|curve| curve.moved(|place| pose.outward(place) + image)));
                 }
             }

@@ -25,11 +25,6 @@ impl Contents {
         Self { blocks: vec![Block::EMPTY; cells], crowds: Crowds::with_room(cells) }
     }
 
-    /// Returns the bytes in memory.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.blocks.as_slice()) + self.crowds.bytes()
-    }
-
     pub(super) fn mark_wall(&mut self, cell: usize) {
         self.blocks[cell].mark_wall();
     }

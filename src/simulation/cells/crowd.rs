@@ -41,11 +41,6 @@ impl Crowds {
         Self { parts: Vec::with_capacity(FEW + cells / CELLS), free: NONE }
     }
 
-    /// Returns the bytes in memory.
-    pub(super) fn bytes(&self) -> usize {
-        self.parts.capacity() * size_of::<Part>()
-    }
-
     /// Begins a crowd with this disk. Returns the number of the crowd.
     pub(super) fn begin(&mut self, disk: u32) -> u32 {
         self.put_before(NONE, disk)

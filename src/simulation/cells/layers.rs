@@ -86,12 +86,6 @@ pub(super) fn layouts(
 }
 
 impl Layers {
-    /// Returns the bytes in memory of the layers, without their edges and reaches.
-    pub(super) fn bytes(&self) -> usize {
-        let larger: usize = self.larger.iter().map(|layer| layer.contents.bytes()).sum();
-        self.classes.len() + larger + self.visitors.iter().map(Contents::bytes).sum::<usize>()
-    }
-
     /// Creates the layers of these layouts, without disks.
     pub(super) fn empty(
         domain: &Domain,

@@ -138,12 +138,6 @@ impl Bodies {
         self.properties.models()
     }
 
-    /// Returns the bytes in memory of motions and forecasts.
-    pub(in crate::simulation) fn bytes(&self) -> usize {
-        let Self { particles, spins, images, .. } = self;
-        size_of_val(particles.as_slice()) + size_of_val(spins.as_slice()) + size_of_val(images.as_slice())
-    }
-
     pub(in crate::simulation) fn len(&self) -> usize {
         self.particles.len()
     }

@@ -1,6 +1,6 @@
 //! The index of a store: the headers of all pieces, by ramp and value.
 
-use granular_edmd::file::{HEAD, Piece};
+use super::log::{HEAD, Piece};
 
 /// The header of a record in a log.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,12 +76,12 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
-    pub(super) const fn new(Piece { head, start, length, .. }: Piece, log: u32) -> Self {
+    pub(super) const fn new(Piece { head, start, length }: Piece, log: u32) -> Self {
         Self { head, start, length, log }
     }
 
     pub(super) const fn piece(&self) -> Piece {
-        Piece::new(self.head, self.start, self.length)
+        Piece { head: self.head, start: self.start, length: self.length }
     }
 
     pub(crate) fn head(&self) -> Head {

@@ -4,10 +4,11 @@ use std::fs::TryLockError;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use granular_edmd::file::{Locked, Log};
+use granular_edmd::file::Locked;
 
 use super::claims::open;
 use super::index::Head;
+use super::log::Log;
 use super::{SEAL, logs, unreadable};
 use crate::StudyError;
 use crate::seed::anywhere;

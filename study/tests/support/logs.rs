@@ -6,7 +6,13 @@ use std::fs::{self, File};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::file::{Log, Piece, Seal, read_piece};
+use granular_edmd::file::Seal;
+
+use log::{Log, Piece, read_piece};
+
+// The store's own reader and writer, which are not public.
+#[path = "../../src/store/log.rs"]
+mod log;
 
 pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
 
@@ -39,7 +45,9 @@ fn pieces(log: &Path) -> Vec<Found> {
         let place = [number(&piece.head[..4]), number(&piece.head[4..8])];
         Found { log: log.to_owned(), piece, place, edition: number(&piece.head[8..12]) as u16 }
     };
-    Log::read(log, SEAL, 0).unwrap().pieces.into_iter().map(found).collect()
+    let mut all = Vec::new();
+    Log::each(log, SEAL, 0, |piece| all.push(found(piece))).unwrap();
+    all
 }
 
 /// Returns the last edition of each record.

@@ -312,8 +312,8 @@ fn reactions(boundaries: &mut Boundaries) {
             "oblique blow",
             "the floor takes a blow along its surface, too",
             |honest, impact| {
-                let impulse = impact.impulse() + DVec2::new(0.0, 1e-3 * impact.impulse().x);
-                honest.react(&Impact::new(impact.wall(), impulse, impact.point(), impact.time()))
+                let impulse = impact.impulse + DVec2::new(0.0, 1e-3 * impact.impulse.x);
+                honest.react(&Impact::new(impact.wall, impulse, impact.point, impact.time))
             },
             sprung,
         ),
@@ -321,8 +321,8 @@ fn reactions(boundaries: &mut Boundaries) {
             "late blow",
             "the floor takes each blow 1e-6 later",
             |honest, impact| {
-                let time = impact.time() + 1e-6;
-                honest.react(&Impact::new(impact.wall(), impact.impulse(), impact.point(), time))
+                let time = impact.time + 1e-6;
+                honest.react(&Impact::new(impact.wall, impact.impulse, impact.point, time))
             },
             sprung,
         ),
@@ -332,8 +332,7 @@ fn reactions(boundaries: &mut Boundaries) {
             |honest, impact| {
                 let point = DVec2::new(0.0, -6.0);
                 honest.react(
-                    &Impact::new(impact.wall(), impact.impulse(), point, impact.time())
-                        .with_couple(impact.couple()),
+                    &Impact::new(impact.wall, impact.impulse, point, impact.time).with_couple(impact.couple),
                 )
             },
             rotor,
@@ -342,10 +341,9 @@ fn reactions(boundaries: &mut Boundaries) {
             "weak couple",
             "the drum forgets couples below a thousandth",
             |honest, impact| {
-                let couple = if impact.couple().abs() < 1e-3 { 0.0 } else { impact.couple() };
+                let couple = if impact.couple.abs() < 1e-3 { 0.0 } else { impact.couple };
                 honest.react(
-                    &Impact::new(impact.wall(), impact.impulse(), impact.point(), impact.time())
-                        .with_couple(couple),
+                    &Impact::new(impact.wall, impact.impulse, impact.point, impact.time).with_couple(couple),
                 )
             },
             rotor,

@@ -204,12 +204,12 @@ impl Boundary for Sprung {
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {
-        if impact.wall() != self.index() {
+        if impact.wall != self.index() {
             return Reaction::None;
         }
-        let mut state = self.swing.state(impact.time());
-        state.velocity += impact.impulse().y / MASS;
-        self.swing = Swing::through(impact.time(), state);
+        let mut state = self.swing.state(impact.time);
+        state.velocity += impact.impulse.y / MASS;
+        self.swing = Swing::through(impact.time, state);
         Reaction::Moved
     }
 
@@ -279,7 +279,7 @@ impl Boundary for Rotor {
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {
-        self.spin += (impact.point().perp_dot(impact.impulse()) + impact.couple()) / INERTIA;
+        self.spin += (impact.point.perp_dot(impact.impulse) + impact.couple) / INERTIA;
         Reaction::Moved
     }
 

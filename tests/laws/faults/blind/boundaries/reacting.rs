@@ -17,8 +17,8 @@ fn rotor() -> Altered {
 
 /// Returns the same blow with an impulse and a couple that are larger by a factor each.
 fn scaled(impact: &Impact, impulse: f64, couple: f64) -> Impact {
-    let same = Impact::new(impact.wall(), impulse * impact.impulse(), impact.point(), impact.time());
-    same.with_couple(couple * impact.couple())
+    let same = Impact::new(impact.wall, impulse * impact.impulse, impact.point, impact.time);
+    same.with_couple(couple * impact.couple)
 }
 
 pub(super) fn plant(boundaries: &mut Boundaries) {
@@ -53,7 +53,7 @@ fn blows(boundaries: &mut Boundaries) {
         (
             "the floor forgets weak blows",
             |honest, impact| {
-                if impact.impulse().length() < 0.5 { Reaction::None } else { honest.react(impact) }
+                if impact.impulse.length() < 0.5 { Reaction::None } else { honest.react(impact) }
             },
             sprung,
         ),
@@ -67,7 +67,7 @@ fn blows(boundaries: &mut Boundaries) {
         ),
         (
             "the floor takes each blow as if at the origin of time",
-            |honest, impact| honest.react(&Impact::new(impact.wall(), impact.impulse(), impact.point(), 0.0)),
+            |honest, impact| honest.react(&Impact::new(impact.wall, impact.impulse, impact.point, 0.0)),
             sprung,
         ),
         ("the drum forgets the couple", |honest, impact| honest.react(&scaled(impact, 1.0, 0.0)), rotor),

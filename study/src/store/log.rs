@@ -1,16 +1,16 @@
 //! Logs: files that grow by complete pieces, each with a header, a checksum and contents.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use super::{Damage, Growing, Seal};
+use granular_edmd::file::{Damage, Seal};
 
 /// First bytes of every piece, by which the next piece is found after damage.
 const MARK: [u8; 4] = *b"\xabPC\n";
 
 /// Number of bytes in the header of a piece.
-pub const HEAD: usize = 16;
+pub(crate) const HEAD: usize = 16;
 
 /// Bytes before the contents: mark, header, length, a checksum of these three, and a checksum of the
 /// contents.
@@ -24,80 +24,41 @@ const START: u64 = 12;
 /// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or an
 /// incomplete piece at the end, which the next piece overwrites. Nothing locks the file: whoever appends must
 /// be alone.
-///
-/// ```
-/// use granular_edmd::file::{Log, Seal, read_piece};
-///
-/// const SEAL: Seal = Seal::new(*b"MY STORE", 1);
-/// # let path = std::env::temp_dir().join(format!("granular-edmd-log-{}", std::process::id()));
-/// let mut log = Log::open(&path, SEAL)?;
-/// // The head is for an index: the value 7 of 12, for example.
-/// log.push(*b"value 7 of 12   ", b"contents")?;
-///
-/// let found = Log::read(&path, SEAL, 0)?;
-/// assert_eq!(found.pieces[0].head, *b"value 7 of 12   ");
-/// let mut file = std::fs::File::open(&path)?;
-/// assert_eq!(read_piece(&mut file, &found.pieces[0])?, Ok(b"contents".to_vec()));
-/// # std::fs::remove_file(&path)?;
-/// # Ok::<(), std::io::Error>(())
-/// ```
 #[derive(Debug)]
-pub struct Log {
-    file: Growing<File>,
+pub(crate) struct Log {
+    file: File,
+    /// End of the last complete piece.
+    end: u64,
+    /// True if nothing can follow the last complete piece.
+    is_cut: bool,
 }
 
 /// The header of a piece, and the position of its contents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Piece {
+pub(crate) struct Piece {
     /// The header, for an index.
-    pub head: [u8; HEAD],
+    pub(crate) head: [u8; HEAD],
     /// Position of the contents in the file.
-    pub start: u64,
+    pub(crate) start: u64,
     /// Number of bytes of the contents.
-    pub length: u32,
-}
-
-impl Piece {
-    /// Creates a piece from its header and the position of its contents.
-    pub const fn new(head: [u8; HEAD], start: u64, length: u32) -> Self {
-        Self { head, start, length }
-    }
-}
-
-/// The pieces of a log, from a given position on.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub struct Pieces {
-    /// The complete pieces, in their order. Their checksums are not compared.
-    pub pieces: Vec<Piece>,
-    /// End of the last complete piece, where the next reading begins.
-    pub end: u64,
-    /// True if bytes that are not a piece precede a piece.
-    pub is_damaged: bool,
+    pub(crate) length: u32,
 }
 
 impl Log {
     /// Opens a log to append to it, and creates the log if it does not exist.
-    ///
-    /// # Errors
-    /// If the file cannot be opened, or is of another format or version ([`io::ErrorKind::InvalidData`]).
-    pub fn open(path: &Path, seal: Seal) -> io::Result<Self> {
+    pub(crate) fn open(path: &Path, seal: Seal) -> io::Result<Self> {
         let end = if path.exists() { Self::each(path, seal, 0, drop)?.0 } else { 0 };
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
-        let mut file = Growing::new(path, file, end, Vec::new());
+        let mut log = Self { file, end, is_cut: false };
         if end < START {
-            file.length = 0;
-            file.push(&seal.start(), &[])?;
+            log.end = 0;
+            log.append(&start(seal))?;
         }
-        Ok(Self { file })
+        Ok(log)
     }
 
     /// Appends a piece, completely or not at all.
-    ///
-    /// # Errors
-    /// If the system cannot write it, or the contents have 4 GiB or more.
-    pub fn push(&mut self, head: [u8; HEAD], contents: &[u8]) -> io::Result<()> {
+    pub(crate) fn push(&mut self, head: [u8; HEAD], contents: &[u8]) -> io::Result<()> {
         let length = u32::try_from(contents.len()).map_err(io::Error::other)?;
         let mut bytes = Vec::with_capacity(BEFORE + contents.len());
         bytes.extend_from_slice(&MARK);
@@ -106,33 +67,38 @@ impl Log {
         bytes.extend_from_slice(&check(&bytes));
         bytes.extend_from_slice(&blake3::hash(contents).as_bytes()[..16]);
         bytes.extend_from_slice(contents);
-        self.file.push(&bytes, &[])
+        self.append(&bytes)
+    }
+
+    /// Writes after the last complete piece. If that fails, the bytes are cut off again, at the latest before
+    /// the next ones.
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if !self.is_cut {
+            self.file.set_len(self.end)?;
+        }
+        self.file.seek(SeekFrom::Start(self.end))?;
+        let written = self.file.write_all(bytes);
+        self.is_cut = written.is_ok() || self.file.set_len(self.end).is_ok();
+        written.inspect(|()| self.end += bytes.len() as u64)
     }
 
     /// Waits until the system has stored everything.
-    ///
-    /// # Errors
-    /// If it cannot.
-    pub fn sync(&self) -> io::Result<()> {
-        self.file.medium.sync_data()
+    pub(crate) fn sync(&self) -> io::Result<()> {
+        self.file.sync_data()
     }
 
-    /// Finds the pieces of a log from a position on: 0, or the [end](Pieces::end) of an earlier reading.
+    /// Passes the complete pieces of a log from a position on, 0 or the end of an earlier reading, one by one
+    /// to a closure; their checksums are not compared. Returns the end of the last piece, and whether bytes
+    /// that are not a piece precede a piece.
     ///
     /// # Errors
     /// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
-    pub fn read(path: &Path, seal: Seal, from: u64) -> io::Result<Pieces> {
-        let mut pieces = Vec::new();
-        let (end, is_damaged) = Self::each(path, seal, from, |piece| pieces.push(piece))?;
-        Ok(Pieces { pieces, end, is_damaged })
-    }
-
-    /// Passes the pieces of a log from a position on, one by one, to a closure, as [`read`](Self::read) finds
-    /// them. Returns the end of the last piece, and whether bytes that are not a piece precede a piece.
-    ///
-    /// # Errors
-    /// The same as for [`read`](Self::read).
-    pub fn each(path: &Path, seal: Seal, from: u64, mut show: impl FnMut(Piece)) -> io::Result<(u64, bool)> {
+    pub(crate) fn each(
+        path: &Path,
+        seal: Seal,
+        from: u64,
+        mut show: impl FnMut(Piece),
+    ) -> io::Result<(u64, bool)> {
         let mut file = File::open(path)?;
         let length = file.seek(SeekFrom::End(0))?;
         if from >= length {
@@ -154,10 +120,7 @@ impl Log {
 }
 
 /// Reads the contents of a piece, or returns an error if they are damaged.
-///
-/// # Errors
-/// If the file cannot be read.
-pub fn read_piece(file: &mut File, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage>> {
+pub(crate) fn read_piece(file: &mut File, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage>> {
     let mut bytes = vec![0; 16 + piece.length as usize];
     file.seek(SeekFrom::Start(piece.start - 16))?;
     match file.read_exact(&mut bytes) {
@@ -172,10 +135,11 @@ pub fn read_piece(file: &mut File, piece: &Piece) -> io::Result<Result<Vec<u8>, 
 fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
     let mut start = Vec::new();
     input.take(START).read_to_end(&mut start)?;
-    if seal.start() == *start {
+    let expected = self::start(seal);
+    if expected == start {
         return Ok(true);
     }
-    if seal.start().starts_with(&start) {
+    if expected.starts_with(&start) {
         return Ok(false);
     }
     let told = "it is of another format, or of another version of it";
@@ -223,6 +187,11 @@ fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
     (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size })
 }
 
+/// Returns the bytes before the first piece.
+fn start(seal: Seal) -> Vec<u8> {
+    seal.seal(&[])[..START as usize].to_vec()
+}
+
 fn check(bytes: &[u8]) -> [u8; 8] {
     blake3::hash(bytes).as_bytes().as_chunks().0[0]
 }
@@ -235,10 +204,15 @@ mod tests {
 
     const SEAL: Seal = Seal::new(*b"TEST LOG", 1);
 
+    fn found_in(path: &Path) -> Vec<Piece> {
+        let mut found = Vec::new();
+        Log::each(path, SEAL, 0, |piece| found.push(piece)).unwrap();
+        found
+    }
+
     fn pieces(path: &Path) -> Vec<Vec<u8>> {
         let mut file = File::open(path).unwrap();
-        let found = Log::read(path, SEAL, 0).unwrap().pieces;
-        found.iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
+        found_in(path).iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
     }
 
     /// However a log is cut, its complete pieces stay, and the next piece follows them. Whatever byte is
@@ -252,7 +226,7 @@ mod tests {
         for (index, piece) in written.iter().enumerate() {
             log.push([index as u8; HEAD], piece).unwrap();
         }
-        let (bytes, ends) = (fs::read(&path).unwrap(), Log::read(&path, SEAL, 0).unwrap().pieces);
+        let (bytes, ends) = (fs::read(&path).unwrap(), found_in(&path));
         for length in 0..=bytes.len() {
             fs::write(&path, &bytes[..length]).unwrap();
             let whole = ends.iter().filter(|end| end.start + u64::from(end.length) <= length as u64).count();
