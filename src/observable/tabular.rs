@@ -90,7 +90,8 @@ pub trait Tabular: Observable {
     fn add_numbers(&self, value: &Self::Value, row: &mut Vec<f64>);
 }
 
-/// An observable of one number, with its name and unit; made by [`MeasuredBy::named`](super::MeasuredBy::named).
+/// An observable of one number, with its name and unit; made by
+/// [`MeasuredBy::named`](super::MeasuredBy::named).
 #[derive(Debug, Clone)]
 pub struct Named<Q> {
     observable: Q,
