@@ -47,7 +47,7 @@ pub(crate) fn print(outcome: &Outcome) {
     match lacking {
         0 => {}
         count if count < means.len() => {
-            gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N")
+            gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N");
         }
         _ => gallery::say!("errors are lower bounds after a short run; run longer with --oscillations N"),
     }
