@@ -126,7 +126,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    time origin: along the normal, it is the speed at which the wall moves by `overlap`, to $`10^{-8}`$ of
 ///    the speeds; two disks that touch the same point of a wall find the same velocity there. The radius is
 ///    the surface's radius of curvature at the touch: infinite if it is straight, negative if it is hollow,
-///    never zero. At a tip or a corner it may be any other.
+///    never zero. At a tip or a corner it may be any other. The angular velocity is that of the surface.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the positive depth to which the
 ///    disk reaches into a wall, and names the wall in which it is deepest, or one that is as deep. It agrees
 ///    with `first_touch` for disks of each kind: at a touch, a disk that is larger by $`10^{-9}`$ of the size

@@ -233,10 +233,15 @@ impl Part {
         nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
     }
 
-    /// Returns the surface of the part with this normal, where the part moves at this velocity.
-    pub(super) fn surface(&self, normal: DVec2, velocity: DVec2) -> Surface<'_> {
+    /// Returns the surface of the part with this normal and radius, where the part moves at this velocity. A
+    /// belt turns where it is curved, like a drum.
+    pub(super) fn surface(&self, normal: DVec2, radius: f64, velocity: DVec2) -> Surface<'_> {
         let along = -normal.perp() * self.surface_speed;
-        Surface::new(normal, velocity + along).with_response(self.conduct.response()).with_kind(self.kind)
+        Surface::new(normal, velocity + along)
+            .with_radius(radius)
+            .with_response(self.conduct.response())
+            .with_kind(self.kind)
+            .with_angular_velocity(self.travel.angular_velocity() - self.surface_speed / radius)
     }
 
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {

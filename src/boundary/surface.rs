@@ -38,6 +38,8 @@ pub struct Surface<'a> {
     /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
     /// radius R with the moment of inertia I.
     pub tangential_mass: f64,
+    /// Angular velocity of a guided wall, counterclockwise.
+    pub angular_velocity: f64,
 }
 
 impl<'a> Surface<'a> {
@@ -53,6 +55,7 @@ impl<'a> Surface<'a> {
             radius: f64::INFINITY,
             mass: f64::INFINITY,
             tangential_mass: f64::INFINITY,
+            angular_velocity: 0.0,
         }
     }
 
@@ -96,10 +99,29 @@ impl<'a> Surface<'a> {
     }
 
     /// Returns the same surface with this mass against forces along the surface.
+    ///
+    /// A curved wall with such a mass m turns about the center of its surface: its moment of inertia is
+    /// $`mR^2`$, and its angular velocity follows from the velocity of the surface.
     #[must_use]
     #[inline]
     pub const fn with_tangential_mass(self, tangential_mass: f64) -> Self {
         Self { tangential_mass, ..self }
+    }
+
+    /// Returns the same surface of a wall that turns at this angular velocity, counterclockwise.
+    ///
+    /// Rolling friction acts on the spin of the disk relative to it. The velocity of the surface is set apart.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::Surface;
+    /// use granular_edmd::glam::DVec2;
+    /// let drum = Surface::new(DVec2::Y, DVec2::new(3.6, 0.0)).with_radius(-9.0).with_angular_velocity(0.4);
+    /// assert_eq!((drum.velocity.x, drum.angular_velocity), (3.6, 0.4));
+    /// ```
+    #[must_use]
+    #[inline]
+    pub const fn with_angular_velocity(self, angular_velocity: f64) -> Self {
+        Self { angular_velocity, ..self }
     }
 }
 

@@ -24,10 +24,13 @@ pub(crate) struct Material {
 
 impl Material {
     /// Returns the properties of a wall with these masses against impulses along its normal and along its
-    /// surface. Infinite masses keep the motion of the wall unchanged.
-    pub(crate) const fn of_wall(kind: Kind, radius: f64, [normal, tangential]: [f64; 2]) -> Self {
+    /// surface. Infinite masses keep the motion of the wall unchanged. A curved wall with a mass along its
+    /// surface turns about the center of the surface.
+    pub(crate) fn of_wall(kind: Kind, radius: f64, [normal, tangential]: [f64; 2]) -> Self {
         let (inverse_mass, tangential_compliance) = (1.0 / normal, 1.0 / tangential);
-        let (spin_response, inverse_inertia) = (0.0, 0.0);
+        // In this order, an infinite radius gives zeros and never infinity times zero.
+        let spin_response = tangential_compliance / radius;
+        let inverse_inertia = spin_response / radius;
         Self { arm: 0.0, radius, inverse_mass, tangential_compliance, spin_response, inverse_inertia, kind }
     }
 

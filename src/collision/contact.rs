@@ -22,8 +22,8 @@ use crate::Kind;
 /// give the same physics for the partners in either order, and for the mirror image of the contact:
 /// [`laws::check`](super::laws::check) tests both.
 ///
-/// A wall is a partner of infinite mass. A straight wall has an infinite radius, a hollow one a negative
-/// radius.
+/// A wall is a partner of infinite mass, unless it reacts. A straight wall has an infinite radius, a hollow
+/// one a negative radius.
 ///
 /// ```
 /// use granular_edmd::collision::Contact;
@@ -139,7 +139,7 @@ impl Contact {
         self.radii
     }
 
-    /// Returns the relative spin ω = ω₁ − ω₂; a wall does not turn.
+    /// Returns the relative spin ω = ω₁ − ω₂. A wall has the spin of its part, which is 0 unless it turns.
     #[inline]
     pub const fn relative_spin(&self) -> f64 {
         self.relative_spin

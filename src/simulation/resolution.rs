@@ -113,9 +113,9 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let (mass, inertia) = (1.0 / material.inverse_mass, bodies.moment_of_inertia(disk));
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
     let since = offset - bodies.spins[disk].last_collision;
-    let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
-    let (partner, wall) =
-        (&partner, &Material::of_wall(surface.kind, surface.radius, [surface.mass, surface.tangential_mass]));
+    let partner = &Body { velocity: surface.velocity, angular_velocity: spin_of(surface) };
+    let masses = [surface.mass, surface.tangential_mass];
+    let wall = &Material::of_wall(surface.kind, surface.radius, masses);
     let against = |rule: &dyn CollisionRule| {
         collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
@@ -125,7 +125,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         Response::Thermal(_) | Response::Absorbing => {
             let leaving = match surface.response {
                 Response::Thermal(thermal) => emitted(&thermal, &arriving, surface, mass, inertia, generator),
-                _ => *partner,
+                _ => Body { angular_velocity: 0.0, ..*partner },
             };
             let kick = (leaving.velocity - arriving.velocity) * mass;
             let impulse = Impulse::new(kick.dot(surface.normal), kick.dot(surface.normal.perp()));
@@ -151,13 +151,33 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         distance: bodies.radius(disk),
         contact,
         impulse,
-        velocities: [leaving.velocity, surface.velocity],
+        velocities: [leaving.velocity, velocity_after(surface, &impulse)],
         energy_change: kinetic_energy(&leaving, mass, inertia) - kinetic_energy(&arriving, mass, inertia),
     };
     let mut kick = Kick::between(&arriving, &leaving);
     // The wall was met in the container's frame, and disks keep their velocities in the free-fall frame.
     kick.after.velocity = bodies.particles[disk].trajectory.velocity + kick.change.velocity;
     (collision, kick)
+}
+
+/// Returns the angular velocity of a wall. A curved wall with a mass along its surface turns about the center
+/// of the surface.
+fn spin_of(surface: &Surface<'_>) -> f64 {
+    let turns_freely = surface.tangential_mass.is_finite() && surface.radius.is_finite();
+    if turns_freely {
+        surface.velocity.dot(surface.normal.perp()) / surface.radius
+    } else {
+        surface.angular_velocity
+    }
+}
+
+/// Returns the velocity of a wall's surface after an impulse, which changes only a wall with a mass.
+fn velocity_after(surface: &Surface<'_>, impulse: &Impulse) -> DVec2 {
+    if surface.mass == f64::INFINITY && surface.tangential_mass == f64::INFINITY {
+        return surface.velocity;
+    }
+    let along = surface.normal.perp() * (impulse.tangential() / surface.tangential_mass);
+    surface.velocity - surface.normal * (impulse.normal() / surface.mass) - along
 }
 
 /// Returns whether two disks part so fast after a collision that rounding cannot make them approach. Nearly
@@ -168,17 +188,19 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Returns whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
+/// Returns whether a surface's normal is a unit vector, its velocities are ones that a disk may have, its
 /// radius is neither zero nor NaN, and its masses are positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;
     let has_mass = surface.mass > 0.0 && surface.tangential_mass > 0.0;
+    let turns = surface.angular_velocity.abs() <= LARGEST;
     (surface.normal.length() - 1.0).abs() <= UNIT
         && velocity.x <= LARGEST
         && velocity.y <= LARGEST
         && is_curved
         && has_mass
+        && turns
 }
 
 /// Returns the error of a collision whose outcome is not a possible motion.

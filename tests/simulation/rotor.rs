@@ -1,11 +1,14 @@
 //! A free drum with a moment of inertia, which the disks turn: a custom boundary that reacts.
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch, laws,
+    Boundary, Brick, Domain, FirstTouch, Impact, Overlap, Part, Probe, Reaction, Region, Surface, Touch,
+    Vessel, laws,
 };
-use granular_edmd::collision::Rough;
+use granular_edmd::collision::{CollisionRule, Elastic, RollingFriction, Rough};
 use granular_edmd::glam::DVec2;
-use granular_edmd::{Disk, Flight, ParameterError, Simulation, initial};
+use granular_edmd::observable::{Collision, on_collision};
+use granular_edmd::simulation::Limits;
+use granular_edmd::{Disk, Flight, Kind, ParameterError, Simulation, initial};
 
 const RADIUS: f64 = 6.0;
 const INERTIA: f64 = 400.0;
@@ -57,7 +60,7 @@ impl Boundary for Rotor {
 }
 
 /// Returns the angular momentum about the axle, and the kinetic energy, of disks and drum together.
-fn balance(run: &Simulation<Rough, Rotor>) -> [f64; 2] {
+fn balance<R: CollisionRule>(run: &Simulation<R, Rotor>) -> [f64; 2] {
     let spin = run.boundary().spin;
     let turning = |disk: &Disk| {
         let orbit = disk.mass() * disk.position().perp_dot(disk.velocity());
@@ -91,5 +94,57 @@ fn disks_turn_a_free_drum() -> Result<(), Box<dyn std::error::Error>> {
     println!("spin up to {fastest}; errors of angular momentum and energy {errors:?}");
     assert!(fastest > 0.05, "{fastest}");
     assert!(errors.iter().all(|error| error.abs() < 1e-10), "{errors:?}");
+    Ok(())
+}
+
+/// Rolling friction acts on the spin relative to the drum, whose inertia resists it, too: the angular momentum
+/// of all is kept, and no collision gains energy.
+#[test]
+fn rolling_friction_slows_disks_and_drum() -> Result<(), Box<dyn std::error::Error>> {
+    let drum = Rotor { rim: Brick::circle(DVec2::ZERO, RADIUS)?, spin: 0.4 };
+    let disks = initial::random(&drum, 20, 0.5, 2.0 * RADIUS, 1)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+    let rule = RollingFriction::new(Rough::from_restitution(1.0, 1.0)?, 0.05)?;
+    let mut run = Simulation::builder(rule, drum).disks(disks).build()?;
+    let [momentum, mut energy] = balance(&run);
+    let mut spins = 0.0_f64;
+    for _ in 0..5000 {
+        let mut seen = on_collision(|collision: &Collision| {
+            let contact = collision.contact;
+            if contact.kinds()[1] == Kind::WALL {
+                let turning = collision.partner_position().perp_dot(collision.velocities[1]);
+                let drum = turning / (RADIUS * RADIUS);
+                assert!((contact.spin_inertia() - 1.0 / (1.0 / 0.125 + 1.0 / INERTIA)).abs() < 1e-12);
+                assert!((contact.spin_response() - (4.0 + RADIUS / INERTIA)).abs() < 1e-12);
+                spins = spins.max(drum.abs());
+            }
+        });
+        run.run(&Limits::until(f64::MAX).with_most_collisions(1), &mut seen)?;
+        let [now, left] = balance(&run);
+        assert!((now / momentum - 1.0).abs() < 1e-11, "{now} was {momentum}");
+        assert!(left <= energy * (1.0 + 1e-14), "{left} was {energy}");
+        energy = left;
+    }
+    assert!(spins > 0.3);
+    Ok(())
+}
+
+/// A disk that turns with a guided drum does not roll on it; nor on a belt that runs as fast.
+#[test]
+fn a_disk_that_turns_with_its_wall_does_not_roll() -> Result<(), Box<dyn std::error::Error>> {
+    let spin = 0.5;
+    let round = Part::drum(DVec2::ZERO, RADIUS)?;
+    for part in [round.clone().with_rotation(DVec2::ZERO, spin)?, round.with_surface_speed(spin * RADIUS)?] {
+        let vessel = Vessel::around([("drum", part)])?;
+        let disk = Disk::new(DVec2::new(4.0, 0.0), 0.5)?.with_angular_velocity(spin)?;
+        let disk = disk.with_velocity(DVec2::new(1.0, 0.0))?;
+        let rule = RollingFriction::new(Elastic, 0.3)?;
+        let mut run = Simulation::builder(rule, vessel).disks([disk]).build()?;
+        let mut rolled = f64::NAN;
+        let mut seen = on_collision(|collision: &Collision| rolled = collision.contact.relative_spin());
+        run.run_until(2.0, &mut seen)?;
+        assert!(rolled.abs() < 1e-12, "{rolled}");
+        assert_eq!(run.disks()[0].angular_velocity(), spin);
+    }
     Ok(())
 }

@@ -189,6 +189,11 @@ impl Travel {
         Pose { turn, shift: *about - turn.rotate(*about) + shift }
     }
 
+    /// Returns the angular velocity of the part.
+    pub(in crate::boundary) fn angular_velocity(&self) -> f64 {
+        self.turning.map_or(0.0, |turning| turning.angular_velocity)
+    }
+
     /// Returns the velocity of the part at a point, at a phase.
     pub(in crate::boundary) fn velocity(&self, place: DVec2, phase: Phase) -> DVec2 {
         let along = self.along.as_ref();

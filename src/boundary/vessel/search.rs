@@ -177,8 +177,8 @@ impl Vessel {
         };
         let normal = pose.direction_outward(nearest.normal);
         let contact = position - image - nearest.distance * normal;
-        let surface = placed.part.surface(normal, travel.velocity(contact, placed.phase.after(time)));
-        surface.with_radius(wall.brick.radius_at(pose.inward(position - image)))
+        let radius = wall.brick.radius_at(pose.inward(position - image));
+        placed.part.surface(normal, radius, travel.velocity(contact, placed.phase.after(time)))
     }
 }
 
