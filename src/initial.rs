@@ -14,7 +14,7 @@
 //! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks
 //! into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
-//! The functions place no disk into a wall: at time 0,
+//! The functions place no disk in a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in
 //! a boundary of any shape, even if it leaves only some of its interior free.
 

@@ -42,9 +42,9 @@
 //!
 //! The [`guide`] leads from a question to a figure, with a chapter for each step.
 //!
-//! Many runs, over the values of parameters, on all cores and in many processes, are a study: the package
-//! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, also by the
-//! command `granular-edmd`.
+//! A study is many runs over the values of parameters, on all cores and in many processes. The package
+//! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, and so does
+//! its command `granular-edmd`.
 //!
 //! # Map
 //! | module | contents |

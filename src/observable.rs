@@ -83,7 +83,7 @@
 //!
 //! # Tables
 //! Every measure is a [`Table`]: [`write_csv`](Table::write_csv) writes its results with names, units and
-//! errors. A [`Series`] is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
+//! errors. A [`Series`] is a table if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Errors
 //! These errors do not assume that samples are independent. They come from blocks of consecutive samples or

@@ -24,7 +24,7 @@ use area::check_areas;
 use flight::check_flights;
 use trial::{PART, Trial};
 
-/// Number of disks that the check lets fly.
+/// Number of disks that fly in the check.
 const DISKS: usize = 400;
 
 /// Number of flights of each disk, from touch to touch.
@@ -44,8 +44,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// about this speed.
 ///
 /// Each of four hundred disks of several kinds flies from a free place, with or without gravity, at various
-/// times and speeds. A wall that it touches turns it back, for up to four flights in a row, and after some
-/// touches it also grazes that wall. The check requires of each flight:
+/// times and speeds. Each wall that it touches reflects it, for up to four flights in a row. After some
+/// touches, it also grazes the wall. The check requires of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is

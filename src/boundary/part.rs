@@ -112,7 +112,7 @@ impl Part {
         self.with_conduct(Conduct::AbsorbingCenters)
     }
 
-    /// Returns the same part with this kind, as rules find it in the contact.
+    /// Returns the same part with this kind, which rules read from the contact.
     #[must_use]
     pub fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }

@@ -56,8 +56,8 @@ impl Squares {
         }
     }
 
-    /// Returns all disks that may overlap a disk of this radius, and some others. A disk may come several
-    /// times, but one that was entered with radius 0 comes only once.
+    /// Returns all disks that may overlap a disk of this radius, and some others. A disk may appear several
+    /// times, but one that was entered with radius 0 appears only once.
     pub(crate) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }

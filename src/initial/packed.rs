@@ -30,9 +30,8 @@ const APART: f64 = 1e-9;
 /// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
 ///
 /// The disks are packed in the interior of the boundary, in which walls must not move. Give a container a
-/// piston that falls or is pushed after the disks are packed. To pack disks around
-/// one that has its place already, put that one into the boundary as
-/// [`Obstacles`](crate::boundary::Obstacles).
+/// piston that falls or is pushed after the disks are packed. To pack disks around a disk that is already
+/// placed, put that disk into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 ///
 /// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
 /// all disks grow at the same rate all the time.

@@ -16,7 +16,7 @@ const STRATA: u32 = 64;
 const SAMPLES: u32 = 64;
 /// Number of collisions in one chunk, the unit of parallel work.
 const CHUNK: u64 = STRATA as u64 * SAMPLES as u64;
-/// Number of chunks before the error is checked for the first time, enough to know the error itself well.
+/// Number of chunks before the error is checked for the first time, enough for a reliable error.
 const FIRST_ROUND: u64 = 16;
 
 /// A Monte Carlo average of the energy change per collision, for any rule.

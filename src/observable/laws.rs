@@ -1,6 +1,6 @@
 //! Checks of an observer's contract, for custom observers.
 //!
-//! An observer can never change a trajectory, since the engine shows it copies. But the observer is
+//! An observer can never change a trajectory, since the engine shows it copies, but the observer is
 //! responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
 
 use glam::DVec2;

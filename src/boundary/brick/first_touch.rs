@@ -109,7 +109,7 @@ impl Brick {
         Some(from + opens + touch)
     }
 
-    /// Returns the largest growth with which the search still finds the first touch of a disk.
+    /// Returns by how much a disk may grow at most, so that the search still finds its first touch.
     pub(in crate::boundary) fn most_growth(&self, radius: f64) -> f64 {
         match self.shape {
             Shape::Segment(_) => f64::INFINITY,

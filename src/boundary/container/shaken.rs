@@ -51,7 +51,7 @@ impl Container {
     ///
     /// Side walls move along their normals; floor and lid slide.
     ///
-    /// Motions along the vertical stay, so the floor or the box can move vertically, too.
+    /// Vertical motions that were set before are kept, so the floor or the box can move vertically, too.
     ///
     /// # Errors
     /// If the motion gives numbers that are not finite, as for [`with_motion`](Self::with_motion), or jumps,

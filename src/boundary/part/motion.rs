@@ -13,7 +13,7 @@ impl Part {
     /// Returns the same part with a motion along a direction. Replaces an earlier motion along a direction.
     ///
     /// The vector `direction` can have any length except 0. A part that also [turns](Self::with_rotation)
-    /// moves along the same direction at all times, and takes the point about which it turns along.
+    /// moves along the same direction at all times, and the point about which it turns moves with it.
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
@@ -34,7 +34,7 @@ impl Part {
     /// earlier rotation.
     ///
     /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
-    /// and the displacement $`z`$, the place $`r`$ of the part as built is at the time $`t`$ in
+    /// and the displacement $`z`$, the point that was built at $`r`$ is, at the time $`t`$, at
     ///
     /// ```math
     /// c + z(t)\,e + R(\omega t)\,(r - c),\qquad\text{at the velocity}\quad

@@ -85,8 +85,8 @@ impl Vessel {
 
     /// Returns the cells that hold no brick of a part and are behind it.
     ///
-    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is, so a cell
-    /// is examined only if its left and lower neighbors do not decide.
+    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is. A cell is
+    /// therefore examined only if its left and lower neighbors do not decide.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick =
