@@ -125,7 +125,7 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) looks at.
+    /// phases that [`check_finite`](crate::wall::check_finite) examines.
     pub fn with_motion(
         mut self,
         wall: Wall,

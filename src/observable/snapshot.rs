@@ -190,7 +190,7 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the share of a region that matter can fill, or `None` if the share is not known. A snapshot
-    /// without walls knows of nothing that is not free.
+    /// without walls counts every region as free.
     pub(crate) fn free_share(&self, region: &Region) -> Option<f64> {
         /// Smallest share that counts as completely free, up to rounding.
         const WHOLE: f64 = 1.0 - 1e-12;

@@ -86,7 +86,7 @@ impl<'a> Limits<'a> {
     /// Progress is judged over windows of 200 000 events, and 20 more for each disk; a search for a wall that
     /// ends at its horizon counts as 256 events. A run with less progress is
     /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have some
-    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk goes or falls some tens
+    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk moves or falls some tens
     /// of diameters.
     ///
     /// # Errors
@@ -152,7 +152,7 @@ impl<'a> Watch<'a> {
 
     /// Returns the number of events until the next check of the limits.
     ///
-    /// No more events than collisions left: the run then ends exactly at the last one.
+    /// The result is at most the number of collisions left, so the run ends exactly at the last collision.
     pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {
         let is_timed = self.deadline.is_some() || self.limits.interrupt.is_some();
         let most = if is_timed { EVENTS_BETWEEN_LOOKS } else { u64::MAX };

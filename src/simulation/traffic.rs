@@ -22,7 +22,7 @@ const TRIES: u32 = 32;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Adds an inlet, which lets disks in from now on.
     ///
-    /// At equal times, the inlet opens after all events of disks and before a sample. Inlets take turns in
+    /// At equal times, the inlet opens after all events of disks and before a sample. Several inlets open in
     /// the order in which they were added.
     ///
     /// # Errors

@@ -41,8 +41,8 @@ const JUMP: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A wall was suddenly elsewhere when the boundary was set between two runs, and hit no disk. A motion
-    /// that begins at another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
+    /// A wall jumped when the boundary was set between two runs, and hit no disk. A motion that begins at
+    /// another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
     WallJumped {
         /// The wall that jumped farthest.
         wall: usize,
@@ -65,7 +65,7 @@ pub enum Warning {
         collisions: u64,
     },
     /// More than half of the collisions parted at the least speed of
-    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow,
+    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest, this is its purpose. In a flow,
     /// the speed is too high, and the energy that it adds keeps the disks moving.
     MostlyLeastRebound {
         /// Number of collisions that the remedy decided.
@@ -77,7 +77,7 @@ pub enum Warning {
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
     /// them aside. Rows of a lattice over a floor that moves vertically hop like this forever. Any small
-    /// velocities at the start mend it, for example by
+    /// velocities at the start prevent it, for example by
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.
@@ -105,7 +105,7 @@ pub enum Warning {
         /// The name of that wall.
         name: String,
     },
-    /// A thousand disks or more wait at an inlet. It may have no room at all, as inside of a part.
+    /// A thousand disks or more wait at an inlet. It may have no room at all, as inside a part.
     DisksWait {
         /// Index of the inlet.
         inlet: usize,

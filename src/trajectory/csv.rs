@@ -13,7 +13,7 @@ const TIME: &str = "time";
 
 /// Reads a table whose first line names the columns.
 ///
-/// Commas, semicolons, tabs or spaces divide the cells, whichever of them the first line has. A line that
+/// Commas, semicolons, tabs or spaces separate the cells, whichever of them the first line has. A line that
 /// begins with `#` is a comment, except before the names.
 pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut lines = text.lines()?;

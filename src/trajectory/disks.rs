@@ -116,7 +116,7 @@ fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f6
     Err(contradiction(what, &format!("{one} and {other}"), line))
 }
 
-/// Creates the error of columns that tell different things.
+/// Creates the error of columns that contradict each other.
 fn contradiction(what: &str, found: &str, line: usize) -> ReadError {
     ReadError::unexpected(line, what, "the same in all columns that tell it", found)
 }

@@ -11,7 +11,7 @@ use crate::observable::ObserverError;
 
 /// An error in recording a trajectory.
 ///
-/// The file keeps its whole frames.
+/// The file keeps its complete frames.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]

@@ -28,9 +28,9 @@ enum Form {
 
 /// GSD, the binary format of HOOMD-blue.
 ///
-/// Readers go to any frame at once. A frame has half of the bytes of [`ExtendedXyz`], with numbers in single
-/// precision, so it is for analysis: a run cannot start from it as if it had not stopped. The name of the
-/// file must not end in `.gz`.
+/// Readers can go directly to any frame. A frame has half of the bytes of [`ExtendedXyz`], with numbers in
+/// single precision, so it is for analysis: a run that starts from it does not continue with the same bits.
+/// The name of the file must not end in `.gz`.
 ///
 /// | chunk | |
 /// |---|---|

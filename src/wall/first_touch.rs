@@ -169,7 +169,7 @@ struct Search<'a, M: ?Sized> {
 struct Look {
     gap: f64,
     rate: f64,
-    /// Lower bound of the gap's acceleration until `until`.
+    /// Lower bound on the gap's acceleration until `until`.
     pull: f64,
     /// True if the bound is the acceleration itself.
     exact: bool,
@@ -275,7 +275,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns the mean acceleration of the gap while it falls through its rounding, within the piece.
     ///
-    /// The acceleration comes from the change of the rate, since the motion only gives bounds of the
+    /// The acceleration comes from the change of the rate, since the motion only gives bounds on the
     /// acceleration.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
         let fall = (-2.0 * first.tolerance / first.pull).sqrt();

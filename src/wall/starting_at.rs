@@ -92,8 +92,8 @@ pub(super) fn late_bounds(motion: &Motion, phase: f64, lead: f64) -> Acceleratio
     AccelerationBounds::new(bounds.until - lead, bounds.min, bounds.max)
 }
 
-/// Returns the phase of a motion that is ahead by `lead`. Where the sum was rounded to just before the end of
-/// a piece, but the phase belongs to the next piece, this is where the next piece begins.
+/// Returns the phase of a motion that is ahead by `lead`. If the sum was rounded to just before the end of a
+/// piece, but the phase belongs to the next piece, the result is the start of the next piece.
 pub(super) fn late(motion: &Motion, phase: f64, lead: f64) -> f64 {
     let mut late = phase + lead;
     for _ in 0..PIECES {

@@ -235,7 +235,7 @@ pub enum StudyError {
         /// The description of the damage.
         reason: String,
     },
-    /// A record belongs to another plan, so somebody has changed the record or the plan.
+    /// A record belongs to another plan, so the record or the plan has been changed.
     #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]
     Foreign {
         /// The file.

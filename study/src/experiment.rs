@@ -148,8 +148,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the disks at the start.
     ///
-    /// A plan can ask for any number of them: refuse one that no memory holds before you make a vector of
-    /// that length.
+    /// A plan can ask for any number of them: refuse a number that does not fit into memory, before you make
+    /// a vector of that length.
     ///
     /// # Errors
     /// If they do not fit.
@@ -279,7 +279,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the parameters are valid.
     ///
-    /// A plan calls this before anything runs, for all values, or for a spread of 1024 if there are more.
+    /// A plan calls this before anything runs, for all values, or for a selection of 1024 if there are more.
     /// A run calls it for each value that it begins.
     ///
     /// # Errors

@@ -204,8 +204,8 @@ impl<E: Experiment> Study<E> {
     /// values again. Returns whether there were failed values.
     ///
     /// The same code fails again, with the same bytes: call this for code whose changes were
-    /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process does
-    /// is left alone.
+    /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process is
+    /// running is left alone.
     ///
     /// # Errors
     /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or written.
@@ -228,7 +228,7 @@ impl<E: Experiment> Study<E> {
     /// Returns the processor seconds that the finished values took, and an estimate for the other values, if
     /// these are alike. The estimate is NaN before a value is finished.
     ///
-    /// Both are estimates: of a value that was interrupted, the last piece counts alone.
+    /// Both are estimates: for a value that was interrupted, only the last piece counts.
     ///
     /// # Errors
     /// If files cannot be read.

@@ -17,7 +17,7 @@ impl Part {
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`check_finite`](crate::wall::check_finite) looks at. Also if the motion jumps, as a
+    /// that [`check_finite`](crate::wall::check_finite) examines. Also if the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
     /// would jump. A part that turns has no such side, so no motion of it may jump.
     pub fn with_motion(

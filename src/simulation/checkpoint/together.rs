@@ -15,7 +15,7 @@ impl Checkpoint {
     /// Writes the checkpoint and the observers of its run to one file, completely or not at all.
     ///
     /// Numbers keep their bits, infinities and NaN, too, and state and observers cannot come from different
-    /// moments. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
+    /// times. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
     /// measure, a tuple of several, or a custom type.
     ///
     /// [`Series`]: crate::observable::Series

@@ -63,7 +63,8 @@ pub enum BuildError {
         /// Depth of the overlap.
         depth: f64,
     },
-    /// A disk fills a hollow of a wall, up to rounding. Rounding alone would decide whether it gets into it.
+    /// A disk fills a hollow of a wall, up to rounding. Rounding alone would decide whether the disk gets
+    /// into the hollow.
     #[error(
         "disk {disk} of radius {} is just as large as the hollow of the wall {wall:?}: make one of them larger",
         Readable(*.radius)

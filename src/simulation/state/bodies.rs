@@ -38,7 +38,7 @@ impl Trajectory {
     }
 }
 
-/// The rotation of a disk, which only collisions touch.
+/// The rotation of a disk, which only collisions change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Spin {

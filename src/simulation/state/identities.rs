@@ -39,7 +39,7 @@ impl Identities {
         self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
     }
 
-    /// Adds a disk after these `count` ones. One without an id gets one after all that were ever given.
+    /// Adds a disk after these `count` ones. A disk without an id gets an id above all ids given so far.
     pub(super) fn push(&mut self, count: usize, id: u64) {
         let id = if id == 0 { self.last + 1 } else { id };
         self.last = self.last.max(id);

@@ -114,8 +114,8 @@ impl Indexed {
 
     /// Reads the index of a file, and returns the times of its whole frames.
     ///
-    /// Each index but the first lies after the frames of the previous index, which stays unchanged. So a file
-    /// that lost its last index has the frames of the one before.
+    /// Each index but the first lies after the frames of the previous index, which stays unchanged. A file
+    /// that lost its last index therefore has the frames of the previous index.
     fn read(&mut self, file: &File) -> io::Result<Vec<f64>> {
         let (size, head) = (file.metadata()?.len(), read_at(file, 0, HEADER as u64)?);
         let last = (number(&head, 8), number(&head, 16));

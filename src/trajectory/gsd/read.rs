@@ -17,7 +17,7 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
-/// Chunks with a meaning.
+/// The chunks whose meaning is known.
 const KNOWN: [&str; 21] = [
     "configuration/box",
     "configuration/dimensions",
@@ -97,7 +97,8 @@ impl<R: Read + Seek> View<'_, R> {
         }
     }
 
-    /// Returns a chunk with a row for each disk. One of the first frame does not count for other disks.
+    /// Returns a chunk with a row for each disk. A chunk of the first frame does not count if it has another
+    /// number of rows.
     fn rows(&mut self, name: &str, rows: usize, columns: usize) -> Result<Option<Chunk>, ReadError> {
         let is_own = self.archive.chunk(self.frame, name)?.is_some();
         let Some(chunk) = self.find(name)? else { return Ok(None) };
@@ -247,8 +248,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters: those of the shapes if the file has shapes, or else its diameters, which are
-    /// by the settings, or else 1, where it has none.
+    /// Returns the diameters of the disks: from the shapes if the file has shapes; otherwise from its
+    /// diameters or, if it has none, from the settings, or else 1.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {

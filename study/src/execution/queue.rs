@@ -9,7 +9,7 @@ use crate::seed::anywhere;
 /// Blocks that wait, and blocks of other processes.
 ///
 /// Processes begin at random blocks and continue in order from there, so they seldom meet, and each runs
-/// the blocks ahead of it. One that meets another goes to a new place.
+/// the blocks ahead of it. A process that meets another moves to a new random block.
 #[derive(Debug)]
 pub(super) struct Queue(Mutex<Blocks>);
 

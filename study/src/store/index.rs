@@ -7,8 +7,8 @@ use super::log::{HEAD, Piece};
 pub(crate) struct Head {
     pub(crate) ramp: usize,
     pub(crate) value: usize,
-    /// If a value has two records, the record of the higher edition counts. Equal ones have the same
-    /// contents.
+    /// If a value has two records, the record of the higher edition counts. Records of equal editions have
+    /// the same contents.
     pub(crate) edition: u16,
     pub(crate) marks: Marks,
     /// Wall-clock seconds that the value took; NaN if it was taken over.
