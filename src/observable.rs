@@ -20,7 +20,7 @@
 //! | [`HexaticOrder`] | ψ6, local and global, and the coordination number |
 //! | [`Velocities`] | velocities of all disks |
 //! | [`OfKind`] | any of these, for the disks of one kind |
-//! | [`from_fn`] | the result of a closure |
+//! | [`measured_by`] | the result of a closure |
 //!
 //! | accumulator, observer when [`Sampled`] | keeps |
 //! |---|---|
@@ -101,6 +101,7 @@
 mod arrivals;
 mod by_kind;
 mod center_of_mass;
+mod closures;
 mod collision_counts;
 mod collision_event;
 mod collision_histograms;
@@ -112,7 +113,6 @@ mod energy_change;
 mod energy_change_profile;
 mod fields;
 mod free_shares;
-mod from_fn;
 mod grid;
 mod height_profile;
 mod hexatic_order;
@@ -145,6 +145,7 @@ mod wall_stress;
 pub use arrivals::Arrivals;
 pub use by_kind::{BetweenKinds, OfKind};
 pub use center_of_mass::CenterOfMass;
+pub use closures::{MeasuredBy, OnCollision, OnSample, measured_by, on_collision, on_sample};
 #[doc(alias("collision rate", "collision frequency"))]
 pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};
@@ -163,7 +164,6 @@ pub use energy_change::EnergyChange;
 pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
 #[doc(alias("density", "velocity field", "coarse-graining"))]
 pub use fields::{FieldCell, Fields};
-pub use from_fn::{FromFn, OnCollision, OnSample, from_fn, on_collision, on_sample};
 pub use grid::Grid;
 #[doc(alias("density profile", "volume fraction"))]
 pub use height_profile::{DenseLayer, HeightProfile};

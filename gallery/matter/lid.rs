@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::boundary::Thermal;
-use granular_edmd::observable::{HexaticOrder, from_fn};
+use granular_edmd::observable::{HexaticOrder, measured_by};
 use granular_edmd::prelude::*;
 use granular_edmd::wall::Piston;
 
@@ -104,7 +104,7 @@ fn pressed(arguments: &Arguments, pressure: f64) -> Result<Lid, Box<dyn Error>> 
     let mut progress = Progress::of(format!("pressure {pressure}")).until(2.0 * time);
     run.run_until(time, &mut progress)?;
     // A window with soft edges, which do not notice the layers of a crystal.
-    let filling = from_fn(|snapshot: &Snapshot<'_>| {
+    let filling = measured_by(|snapshot: &Snapshot<'_>| {
         let size = snapshot.wall_point(lid).map_or(f64::NAN, |point| point.y) - 2.0 * EDGE;
         let phase = |disk: &Disk| PI * ((disk.position().y - EDGE) / size).clamp(0.0, 1.0);
         let inside: f64 = snapshot.disks().iter().map(|disk| 2.0 * phase(disk).sin().powi(2)).sum();

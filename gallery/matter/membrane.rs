@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::observable::{Crossings, OfKind, Temperatures, WallStress, from_fn};
+use granular_edmd::observable::{Crossings, OfKind, Temperatures, WallStress, measured_by};
 use granular_edmd::prelude::*;
 use granular_edmd::wall::Piston;
 
@@ -142,7 +142,7 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
         snapshot.disks().iter().filter(is_inside).count() as f64 / (2.0 * STRIP * HEIGHT)
     };
     let (dilute, pure) = (0.5 * MEMBRANE, 1.5 * MEMBRANE);
-    let state = from_fn(|snapshot: &Snapshot<'_>| {
+    let state = measured_by(|snapshot: &Snapshot<'_>| {
         let push = snapshot.wall_point(left).map_or(f64::NAN, |point| STIFFNESS * (SLACK - point.x) / HEIGHT);
         let densities = [(SOLUTE, dilute), (SOLVENT, dilute), (SOLVENT, pure)];
         let densities = densities.map(|(kind, middle)| density(snapshot, kind, middle));

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::boundary::Obstacles;
 use granular_edmd::collision::RollingFriction;
-use granular_edmd::observable::{Crossings, from_fn};
+use granular_edmd::observable::{Crossings, measured_by};
 use granular_edmd::prelude::*;
 
 use gallery::command_line::{self, Failure, non_negative, positive};
@@ -93,7 +93,7 @@ fn speeds(coefficient: f64) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
     let disk = disk.with_angular_velocity(-SPEED / disk.radius())?;
     let mut run =
         Simulation::builder(rule(coefficient, 0.01)?, container).disks([disk]).gravity(1.0).build()?;
-    let speed = from_fn(|snapshot: &Snapshot<'_>| snapshot.mean(|disk| disk.velocity().x));
+    let speed = measured_by(|snapshot: &Snapshot<'_>| snapshot.mean(|disk| disk.velocity().x));
     let mut series = Series::new(speed, SampleTimes::every(2.0)?);
     run.run_until(LONG, &mut series)?;
     Ok(series.iter().map(|(time, &speed)| (time, speed)).collect())

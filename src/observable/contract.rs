@@ -18,7 +18,7 @@ use crate::{Disk, ParameterError};
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observable",
     label = "an `Observable` is expected here",
-    note = "wrap a closure that takes a `&Snapshot` in `observable::from_fn`",
+    note = "wrap a closure that takes a `&Snapshot` in `observable::measured_by`",
     note = "several observables make one as a tuple: `(OrderParameters, CenterOfMass)`"
 )]
 pub trait Observable {

@@ -40,7 +40,7 @@ impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
 /// [`OrderParameters`](super::OrderParameters), [`CenterOfMass`](super::CenterOfMass),
 /// [`Energies`](super::Energies), [`Temperatures`](super::Temperatures) and
 /// [`TemperaturesAboutFlow`](super::TemperaturesAboutFlow) are tabular, and so are tuples of them, and an
-/// [`OfKind`](super::OfKind) around them. [`named`](super::FromFn::named) makes a closure
+/// [`OfKind`](super::OfKind) around them. [`named`](super::MeasuredBy::named) makes a closure
 /// tabular.
 ///
 /// # Contract
@@ -79,7 +79,7 @@ impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
 #[diagnostic::on_unimplemented(
     message = "the values of `{Self}` have no names for a table",
     label = "a `Tabular` observable is expected here",
-    note = "a closure gets a name by `from_fn(…).named(\"name\", \"unit\")`",
+    note = "a closure gets a name by `measured_by(…).named(\"name\", \"unit\")`",
     note = "an observable of your own implements `observable::Tabular`"
 )]
 pub trait Tabular: Observable {
@@ -90,7 +90,8 @@ pub trait Tabular: Observable {
     fn add_numbers(&self, value: &Self::Value, row: &mut Vec<f64>);
 }
 
-/// An observable of one number, with its name and unit; made by [`FromFn::named`](super::FromFn::named).
+/// An observable of one number, with its name and unit; made by
+/// [`MeasuredBy::named`](super::MeasuredBy::named).
 #[derive(Debug, Clone)]
 pub struct Named<Q> {
     observable: Q,

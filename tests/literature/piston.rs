@@ -3,7 +3,7 @@
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{SampleTimes, Series, Snapshot, WallStress, from_fn};
+use granular_edmd::observable::{SampleTimes, Series, Snapshot, WallStress, measured_by};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 use granular_edmd::wall::Piston;
 use granular_edmd::{Disk, Simulation, initial};
@@ -88,7 +88,7 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
         let force = pressure * WIDTH;
         let mut run = under_a_lid([DISKS, WIDTH, MASS, pressure], 0.0, 1)?;
         run.run_until(1000.0, &mut ())?;
-        let mut series = Series::new(from_fn(look), SampleTimes::every(0.5)?);
+        let mut series = Series::new(measured_by(look), SampleTimes::every(0.5)?);
         let mut push = WallStress::new(SampleTimes::every(100.0)?).with_wall(LID, WIDTH)?;
         let duration = 6000.0;
         run.run_until(1000.0 + duration, &mut (&mut series, &mut push))?;
@@ -122,7 +122,7 @@ fn a_lid_fluctuates_at_constant_enthalpy() -> Outcome {
         for seed in 0..16 {
             let mut run = under_a_lid([disks, width, MASS, pressure], 0.0, 10 * seed + 1)?;
             run.run_until(1000.0, &mut ())?;
-            let mut series = Series::new(from_fn(look), SampleTimes::every(2.0)?);
+            let mut series = Series::new(measured_by(look), SampleTimes::every(2.0)?);
             run.run_until(1000.0 + duration, &mut series)?;
             ratios.push(fluctuation(series.values(), [disks, width, pressure]).0);
         }
@@ -178,7 +178,7 @@ fn a_heavy_lid_swings_adiabatically() -> Outcome {
     for seed in 0..8 {
         let mut run = under_a_lid([disks, width, mass, pressure], -0.15, 10 * seed + 1)?;
         let interval = 0.05 / guess;
-        let mut series = Series::new(from_fn(look), SampleTimes::every(interval)?);
+        let mut series = Series::new(measured_by(look), SampleTimes::every(interval)?);
         run.run_until(swings * std::f64::consts::TAU / guess, &mut series)?;
         let heights: Vec<f64> = series.values().iter().map(|value| value[1]).collect();
         let found = frequency(&heights, interval, guess);

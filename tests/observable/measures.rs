@@ -5,7 +5,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     Accumulator, CollisionHistograms, MeanSquaredDisplacement, Observer, PairCorrelation, SampleTimes,
-    Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress, from_fn,
+    Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress, measured_by,
 };
 use granular_edmd::statistics::Estimate;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
@@ -173,7 +173,7 @@ fn an_observable_of_known_memory_has_its_correlation() -> Outcome {
             state
         })
         .collect();
-    let value = from_fn(|snapshot: &Snapshot<'_>| series[snapshot.time() as usize]);
+    let value = measured_by(|snapshot: &Snapshot<'_>| series[snapshot.time() as usize]);
     let mut correlation = TimeCorrelation::new(value, 5, times()?)?;
     for time in 0..20_000 {
         correlation.on_sample(&Snapshot::new(f64::from(time), &[], BOX, 0.0));

@@ -11,8 +11,8 @@ use granular_edmd::observable::{
     Accumulator, CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange,
     EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Observable, Observer,
     OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled, Series, Snapshot, Stress,
-    TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, from_fn, on_collision, on_sample,
-    stop_when, stop_when_sampled,
+    TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, measured_by, on_collision,
+    on_sample, stop_when, stop_when_sampled,
 };
 use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
@@ -45,7 +45,7 @@ fn run(observer: &mut impl Observer, start: f64, end: f64) {
 
 /// Times of the samples of runs that follow each other, with this clock.
 fn sampled(times: SampleTimes, runs: &[(f64, f64)]) -> Vec<f64> {
-    let mut series = Series::new(from_fn(|snapshot: &Snapshot<'_>| snapshot.disks().len()), times);
+    let mut series = Series::new(measured_by(|snapshot: &Snapshot<'_>| snapshot.disks().len()), times);
     for &(start, end) in runs {
         run(&mut series, start, end);
     }
@@ -236,7 +236,7 @@ fn closures_stop_a_run_and_let_it_go_on() -> Outcome {
 fn all_observers_keep_their_contract() -> Outcome {
     let times = SampleTimes::every(0.7)?;
     let region = granular_edmd::boundary::Region::new([0.0, 0.0].into(), [10.0, 10.0].into());
-    let height = from_fn(|snapshot: &Snapshot<'_>| CenterOfMass.measure(snapshot).y);
+    let height = measured_by(|snapshot: &Snapshot<'_>| CenterOfMass.measure(snapshot).y);
     let (mut collisions, mut samples) = (0, 0);
     let mut all = (
         (Series::new(CenterOfMass, times), Series::new(height, times.starting_at(-3.0)?)),

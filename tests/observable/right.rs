@@ -8,7 +8,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, EnergyChange, Fields, Grid, HeightProfile, MeanSquaredDisplacement,
     PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Temperatures, TimeCorrelation,
-    WallStress, from_fn,
+    WallStress, measured_by,
 };
 use granular_edmd::replay::Replay;
 use granular_edmd::simulation::{Inlet, RunError};
@@ -259,7 +259,7 @@ fn disks_put_elsewhere_have_not_moved_there() -> Result<(), Failure> {
     let flying = disk(1.0, 1.0)?.with_velocity(DVec2::new(0.3, 0.4))?;
     let mut run = Simulation::builder(Elastic, Container::periodic(8.0, 8.0)?).disks([flying]).build()?;
     let mut displacement = MeanSquaredDisplacement::new(4, times()?)?;
-    let first = from_fn(|snapshot: &Snapshot<'_>| snapshot.disks()[0].position());
+    let first = measured_by(|snapshot: &Snapshot<'_>| snapshot.disks()[0].position());
     let mut correlation = TimeCorrelation::new(first, 1, times()?)?;
     for piece in 1..=20 {
         run.run_until(f64::from(piece) * 2.5, &mut (&mut displacement, &mut correlation))?;

@@ -7,7 +7,7 @@ use granular_edmd::observable::{
     CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
     Grid, Heading, HeightProfile, MeanSquaredDisplacement, Observable, Observer, OfKind, OrderParameters,
     PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Table, Tabular, Temperatures,
-    TimeCorrelation, TransportCoefficients, Velocities, VelocityDistribution, WallStress, from_fn,
+    TimeCorrelation, TransportCoefficients, Velocities, VelocityDistribution, WallStress, measured_by,
 };
 use granular_edmd::{Kind, Simulation, initial};
 
@@ -24,7 +24,7 @@ fn every_observable_has_a_heading_for_each_number() {
     let domain = Container::closed(10.0, 10.0).unwrap().domain();
     let disks = initial::lattice(&Container::closed(10.0, 10.0).unwrap(), 9, 0.5).unwrap();
     let snapshot = Snapshot::new(0.0, &disks, domain, 1.0);
-    let fastest = from_fn(|snapshot: &Snapshot<'_>| snapshot.disks().len() as f64).named("count", "1");
+    let fastest = measured_by(|snapshot: &Snapshot<'_>| snapshot.disks().len() as f64).named("count", "1");
     let all = (
         OrderParameters,
         CenterOfMass,
@@ -69,7 +69,7 @@ fn names_that_make_no_table_are_refused() {
         Series::new(observable, times()).write_csv(Vec::new()).unwrap_err().to_string()
     }
     assert_eq!(refused((CenterOfMass, CenterOfMass)), "two columns are named \"center_x\"");
-    let number = || from_fn(|_: &Snapshot<'_>| 1.0);
+    let number = || measured_by(|_: &Snapshot<'_>| 1.0);
     assert_eq!(refused(number().named("time", "1")), "two columns are named \"time\"");
     let plain = "the name of a column must be of letters, digits and underscores, but is \"a,b\"";
     assert_eq!(refused(number().named("a,b", "1")), plain);

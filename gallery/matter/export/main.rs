@@ -22,7 +22,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::Kind;
-use granular_edmd::observable::{OfKind, Temperatures, from_fn};
+use granular_edmd::observable::{OfKind, Temperatures, measured_by};
 use granular_edmd::prelude::*;
 use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State};
 use serde_json::{Value, json};
@@ -131,7 +131,7 @@ fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut recorders = recorders(out, clock)?;
     let fastest =
         |s: &Snapshot<'_>| s.disks().iter().map(|disk| disk.velocity().length()).fold(0.0, f64::max);
-    let fastest = from_fn(fastest).named("fastest", "length/time");
+    let fastest = measured_by(fastest).named("fastest", "length/time");
     let mut series = Series::new((CenterOfMass, OfKind::new(SMALL, Temperatures), fastest), clock);
     let mut frames = Vec::new();
     let mut expected = on_sample(clock, |snapshot: &Snapshot<'_>| frames.push(all_of(snapshot)));

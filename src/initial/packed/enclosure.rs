@@ -44,8 +44,9 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     }
 }
 
-/// Checks that a wall that reacts stands still until it is hit. The interior ends where it stands at the start,
-/// so it would fall among the disks.
+/// Checks that a wall that reacts stands still until it is hit.
+///
+/// The interior ends where such a wall is at the start. If it moved, it would come among the disks.
 fn stands<B: Boundary + ?Sized>(boundary: &B, wall: usize, room: &Domain) -> Result<(), ParameterError> {
     let middle = DVec2::new(0.5 * (room.left + room.right), 0.5 * (room.bottom + room.top));
     if boundary.surface(wall, middle, 0.0).mass == f64::INFINITY {

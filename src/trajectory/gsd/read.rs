@@ -120,7 +120,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(Some(std::array::from_fn(|at| chunk.number(at / chunk.columns, at % chunk.columns))))
     }
 
-    /// Returns the numbers in a chunk that must hold `COUNT` finite ones, or `None` if there is no such chunk.
+    /// Returns the numbers in a chunk that must hold `COUNT` finite ones, or `None` if the frame has no such
+    /// chunk.
     fn finite<const COUNT: usize>(&mut self, name: &str) -> Result<Option<[f64; COUNT]>, ReadError> {
         match self.numbers(name)? {
             Some(numbers) if numbers.iter().any(|number| !number.is_finite()) => {

@@ -7,7 +7,7 @@ use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     CenterOfMass, Energies, Grid, HexaticOrder, Observable, OfKind, OrderParameters, Sampled, Series,
-    Snapshot, Temperatures, TemperaturesAboutFlow, VelocityDistribution, from_fn,
+    Snapshot, Temperatures, TemperaturesAboutFlow, VelocityDistribution, measured_by,
 };
 
 use super::log::State;
@@ -30,7 +30,7 @@ fn series<Q: Observable>(
 }
 
 pub(super) fn numbers_of_disks(setting: &Setting) -> Cell {
-    let count = from_fn(|snapshot: &Snapshot<'_>| snapshot.len() as f64);
+    let count = measured_by(|snapshot: &Snapshot<'_>| snapshot.len() as f64);
     series(setting, count, |count| vec![*count], |state| vec![state.disks.len() as f64])
 }
 

@@ -2,16 +2,16 @@
 
 use super::{Accumulator, Collision, Named, Observable, Observer, SampleTimes, Sampled, Snapshot};
 
-/// A closure that measures a snapshot; made by [`from_fn`].
+/// A closure that measures a snapshot; made by [`measured_by`].
 #[derive(Debug, Clone, Copy)]
-pub struct FromFn<F>(F);
+pub struct MeasuredBy<F>(F);
 
 /// Makes an observable from a closure that measures a snapshot.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container};
 /// use granular_edmd::glam::DVec2;
-/// use granular_edmd::observable::{Observable, Snapshot, from_fn};
+/// use granular_edmd::observable::{Observable, Snapshot, measured_by};
 /// use granular_edmd::Disk;
 ///
 /// let fastest = |snapshot: &Snapshot<'_>| {
@@ -19,23 +19,23 @@ pub struct FromFn<F>(F);
 /// };
 /// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?];
 /// let domain = Container::closed(4.0, 6.0)?.domain();
-/// assert_eq!(from_fn(fastest).measure(&Snapshot::new(0.0, &disks, domain, 0.0)), 5.0);
+/// assert_eq!(measured_by(fastest).measure(&Snapshot::new(0.0, &disks, domain, 0.0)), 5.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-pub const fn from_fn<F, V>(measure: F) -> FromFn<F>
+pub const fn measured_by<F, V>(measure: F) -> MeasuredBy<F>
 where
     F: Fn(&Snapshot<'_>) -> V,
 {
-    FromFn(measure)
+    MeasuredBy(measure)
 }
 
-impl<F> FromFn<F> {
+impl<F> MeasuredBy<F> {
     /// Returns the same observable with a name and a unit for its number, so that a [`Series`](super::Series)
     /// of it can be written as a table.
     ///
     /// ```
-    /// use granular_edmd::observable::{SampleTimes, Series, Snapshot, Table, from_fn};
-    /// let count = from_fn(|snapshot: &Snapshot<'_>| snapshot.disks().len() as f64).named("disks", "1");
+    /// use granular_edmd::observable::{SampleTimes, Series, Snapshot, Table, measured_by};
+    /// let count = measured_by(|snapshot: &Snapshot<'_>| snapshot.disks().len() as f64).named("disks", "1");
     /// let mut table = Vec::new();
     /// Series::new(count, SampleTimes::every(1.0)?).write_csv(&mut table)?;
     /// assert_eq!(table, b"time [time],disks\n");
@@ -46,7 +46,7 @@ impl<F> FromFn<F> {
     }
 }
 
-impl<F, V> Observable for FromFn<F>
+impl<F, V> Observable for MeasuredBy<F>
 where
     F: Fn(&Snapshot<'_>) -> V,
 {
