@@ -221,13 +221,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
         let collisions = self.counters.collisions();
         let elapsed = self.time() - self.ledger.start;
-        // Of a collision of two disks, both take part.
+        // Both disks take part in a collision of two.
         let rate = |count: u64| 2.0 * count as f64 / (self.len() as f64 * elapsed);
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;
         // Matter that collapses has very many collisions before it rests, and few while it flowed. But its
-        // disks go nowhere in the contact duration. If the model decides nearly all collisions of a flow, on
+        // disks hardly move in the contact duration. If the model decides nearly all collisions of a flow, on
         // the other hand, few are left to count.
         let is_flow = way > FAR;
         let share_of_time = if elastic > collisions / 2 { longest_contact * rate(collisions) } else { free };

@@ -279,7 +279,7 @@ impl<E: Experiment> Study<E> {
         let entries = self.store.refreshed()?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        // Making walls takes longer than reading a small record, so only a spread of records is compared.
+        // Making walls takes longer than reading a small record, so only a selection of records is compared.
         let stride = 1 + entries.all().count() / MOST_TRIED;
         for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();

@@ -17,7 +17,7 @@ impl Part {
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`check_finite`](crate::wall::check_finite) examines. Also if the motion jumps, as a
+    /// that [`check_finite`](crate::wall::check_finite) examines. If the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
     /// would jump. A part that turns has no such side, so no motion of it may jump.
     pub fn with_motion(
@@ -47,7 +47,7 @@ impl Part {
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
     /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn.
-    /// Also if the part has a motion that jumps.
+    /// If the part has a motion that jumps.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};

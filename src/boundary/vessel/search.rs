@@ -55,7 +55,7 @@ impl Vessel {
         let mut moving: Vec<Entry> = Vec::new();
         let mut last = None;
         for entry in self.index.near(low, high) {
-            // A brick that lies in several cells comes several times, mostly in a row. A second search of a
+            // A brick that lies in several cells appears several times, mostly in a row. A second search of a
             // brick at rest costs time and changes nothing.
             if last.replace(entry) == Some(entry) {
                 continue;

@@ -187,7 +187,7 @@ impl<R: Read + Seek> View<'_, R> {
                 let square = 0.25 * sizes[row] * sizes[row];
                 let by_density = || density.map_or(1.0, |density| density * PI * square);
                 let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
-                // Rounding does not make a homogeneous disk another one.
+                // Rounding must not turn a homogeneous disk into another.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
                 let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
                 if is_other { moment / unit } else { homogeneous }
