@@ -143,8 +143,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
-/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap` for the default
-///     kind, and [`wall_point`](Self::wall_point) stays on its wall.
+/// 12. [`area`](Self::area), if it is known, is the area of the positions without an `overlap` for the
+///     default kind, and [`wall_point`](Self::wall_point) stays on its wall.
 /// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
 ///     have equal fingerprints, whatever their state and their origin.
 ///
@@ -270,8 +270,8 @@ pub trait Boundary {
         self.domain()
     }
 
-    /// Returns the displacement of a wall from its place at rest at `time`, and the phase of its motion: the
-    /// time since the motion began, less whole periods.
+    /// Returns the displacement of a wall from its position at rest at `time`, and the phase of its motion:
+    /// the time since the motion began, less whole periods.
     ///
     /// `None` for a wall that does not move, and for a wall that moves with one of a smaller index, as the
     /// bricks of a part do. It is `None` unless implemented. The phase of a [`Piston`](crate::wall::Piston)

@@ -5,8 +5,8 @@
 //! | [`lattice`] | equal ones | a square lattice from the floor up |
 //! | [`even_lattice`] | equal ones | a square lattice over the whole interior |
 //! | [`placed_in_rows`] | any | rows, small ones on top of each other |
-//! | [`random`], [`placed_at_random`] | equal ones, any | random places, up to an area fraction of 0.5 |
-//! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
+//! | [`random`], [`placed_at_random`] | equal ones, any | random positions, up to an area fraction of 0.5 |
+//! | [`packed_at_random`] | any | random positions, up to an area fraction of 0.8 |
 //!
 //! A [`Reader`](crate::trajectory::Reader) takes disks from files of other programs.
 //!

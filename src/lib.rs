@@ -51,7 +51,7 @@
 //! |---|---|
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`speed`] | reports of runs, standard states, comparisons of parts |
-//! | [`initial`] | initial states: lattices, random places, dense packings, radii |
+//! | [`initial`] | initial states: lattices, random positions, dense packings, radii |
 //! | [`replay`] | runs played back: any collision, and where two runs differ |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`trajectory`] | files of disks, frame by frame, and readers |

@@ -7,7 +7,7 @@
 //! | [`Sinusoidal`] | $`A\sin\omega t`$ | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
-//! | [`Tabulated`] | through given places at given times, or from one place to another | |
+//! | [`Tabulated`] | through given positions at given times, or from one position to another | |
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!

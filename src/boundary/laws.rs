@@ -43,9 +43,9 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// Checks that a boundary keeps its contract with disks of this radius and smaller ones, on random flights at
 /// about this speed.
 ///
-/// Each of four hundred disks of several kinds flies from a free place, with or without gravity, at various
-/// times and speeds. Each wall that it touches reflects it, for up to four flights in a row. After some
-/// touches, it also grazes the wall. The check requires of each flight:
+/// Each of four hundred disks of several kinds flies from a free position, with or without gravity, at
+/// various times and speeds. Each wall that it touches reflects it, for up to four flights in a row. After
+/// some touches, it also grazes the wall. The check requires of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is

@@ -255,7 +255,7 @@ pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DV
     rectangles.fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
 }
 
-/// A brick as seen from a place.
+/// A brick as seen from a position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sighted {
     nearest: Nearest,
@@ -274,7 +274,7 @@ impl Sighted {
     /// equally near and seen less edge-on.
     ///
     /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
-    /// that is seen more broadside decides: the extension beyond its ends is farther from the place.
+    /// that is seen more broadside decides: the extension beyond its ends is farther from the position.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

@@ -199,7 +199,7 @@ impl Plane {
     }
 
     /// Returns the fingerprint of motion, kind, response and sliding, if all of them have one. The container
-    /// adds the place of the wall.
+    /// adds the position of the wall.
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let kind = f64::from(self.kind.number());
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?).number(kind);

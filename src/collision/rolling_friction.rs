@@ -7,7 +7,7 @@ use crate::{Fingerprint, ParameterError};
 /// Rolling friction over any rule: a couple slows the relative spin of the partners, up to a limit that grows
 /// with the normal impulse.
 ///
-/// With the relative spin $`\omega'`$ that the rule inside leaves, and the effective radius
+/// With the relative spin $`\omega'`$ that the inner rule leaves, and the effective radius
 /// $`R = R_1R_2/(R_1 + R_2)`$,
 ///
 /// ```math

@@ -24,7 +24,7 @@ const APART: f64 = 1e-9;
 /// Returns these disks, of any mix of radii, packed at random below the height `below` (or the lid, if that
 /// is lower).
 ///
-/// The disks start small at random places, and move and collide without loss. Step by step, each of them
+/// The disks start small at random positions, and move and collide without loss. Step by step, each of them
 /// grows into the room that it finds, until it has its full radius. Two sizes reach an area fraction of 0.8
 /// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
 /// grains with boundaries between them. The disks keep their order, radii, masses and velocities.

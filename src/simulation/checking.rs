@@ -59,7 +59,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
     /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in
-    /// which the disk is, which may be another wall than the one that it touched.
+    /// which the disk is, which may be another wall than the wall that it touched.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(

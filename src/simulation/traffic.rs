@@ -127,7 +127,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // The lookahead holds indices, of which the last one no longer exists.
         self.lookahead.forget();
         self.make_room();
-        // The scheduler cannot remove a disk. One that is never due is the same to it.
+        // The scheduler cannot remove a disk. For it, a disk that is never due is as good as removed.
         self.scheduler.set(last, f64::INFINITY);
         if disk != last {
             self.schedule(disk);

@@ -55,7 +55,7 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     Ok(table)
 }
 
-/// Returns the places of the columns that have the same value in all rows of a state.
+/// Returns the indices of the columns that have the same value in all rows of a state.
 fn common(columns: &[Column]) -> Vec<usize> {
     let is_common = |column: &Column| {
         [TIME, "frame", "step", "timestep"].iter().any(|name| column.name.eq_ignore_ascii_case(name))

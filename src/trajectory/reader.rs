@@ -128,9 +128,9 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This turns states of soft disks, and files with few digits, into starts. [`State::shrunk`] tells by
-    /// how much. With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Overlaps of more
-    /// than half the sum of the radii always are. Masses stay.
+    /// This turns states of soft disks, and files with few digits, into starts. [`State::shrunk`] says by how
+    /// much. With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Overlaps of more than
+    /// half the sum of the radii always are. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;

@@ -141,7 +141,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
         return touch_at(touch);
     }
     for _ in 0..MOST_STEPS {
-        // A time that is not a number is not in time either.
+        // The test is also false for a time that is not a number.
         if !is_in_time(time) {
             return if time.is_nan() { FirstTouch::NotBefore(approach.time) } else { FirstTouch::NONE };
         }
@@ -174,8 +174,8 @@ struct Look {
     /// True if the bound is the acceleration itself.
     exact: bool,
     tolerance: f64,
-    /// End of the piece. It is not later than the time of the look if floating-point times cannot tell the
-    /// pieces apart.
+    /// End of the piece. It is not later than the present time of the search if floating-point times cannot
+    /// tell the pieces apart.
     until: f64,
     /// True if state, bounds and reach of the wall are finite.
     finite: bool,

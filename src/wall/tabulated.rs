@@ -108,7 +108,7 @@ impl Tabulated {
         &self.rows
     }
 
-    /// Returns the arc at a phase, and where it ends. Before the first row, that is the place of this row.
+    /// Returns the arc at a phase, and where it ends. Before the first row, the wall rests at it.
     fn arc(&self, phase: f64) -> (Arc, f64) {
         let next = self.arcs.partition_point(|arc| arc.from <= phase);
         let until = self.arcs.get(next).map_or(f64::INFINITY, |arc| arc.from);

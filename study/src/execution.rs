@@ -18,8 +18,8 @@ use control::{Control, Summary};
 use queue::Queue;
 use session::Session;
 
-/// Shortest and longest time between two checks of the work of other processes. It doubles from look to look,
-/// since a process that waits must not burden a file system that others need.
+/// Shortest and longest time between two checks of the work of other processes. It doubles from check to
+/// check, since a process that waits must not burden a file system that others need.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
 
 /// Largest number of blocks of other processes that one check tries to take over.

@@ -125,7 +125,7 @@ impl Brick {
         }
     }
 
-    /// Returns the radius of the brick toward a disk at this place. It is negative from inside an arc, and
+    /// Returns the radius of the brick toward a disk at this position. It is negative from inside an arc, and
     /// infinite for a segment or a corner, which has no radius.
     pub(in crate::boundary) fn radius_at(&self, place: DVec2) -> f64 {
         match self.shape {

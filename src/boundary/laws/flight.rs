@@ -103,7 +103,7 @@ fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
 
 /// Returns the duration of a flight that moves no farther than `way`, whatever the direction of its
 /// acceleration:
-/// |v| t + |a| t² / 2 is at most this way.
+/// |v| t + |a| t² / 2 is at most this distance.
 fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     let (way, speed) = (way.max(0.0), velocity.abs());
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())

@@ -1,8 +1,8 @@
 //! Overlaps with the parts of a vessel.
 //!
-//! The nearest brick of a part decides whether a place is behind the part. If the disk reaches a brick of the
-//! part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away, a
-//! table decides: it lists, for each cell of the index, the parts that fill the cell.
+//! The nearest brick of a part decides whether a position is behind the part. If the disk reaches a brick of
+//! the part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away,
+//! a table decides: it lists, for each cell of the index, the parts that fill the cell.
 
 use glam::DVec2;
 

@@ -162,7 +162,7 @@ impl Vessel {
         distances.fold(f64::INFINITY, f64::min) - flight.radius()
     }
 
-    /// Returns the surface of a brick that a disk at this place touches.
+    /// Returns the surface of a brick that a disk at this position touches.
     pub(super) fn surface_of_brick(&self, brick: usize, position: DVec2, time: f64) -> Surface<'_> {
         let wall = &self.walls[brick];
         let placed = &self.parts[wall.part];

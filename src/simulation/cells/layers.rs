@@ -20,7 +20,7 @@
 //! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
 //! class, cell and home are the same. A large disk needs both: from anywhere in a home of its size it could
 //! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
-//! many to look into.
+//! many to search.
 //!
 //! A pair must find each other from both sides, whichever of the two is searched for. The large disk searches
 //! the homes within its reach. The small disk cannot look up: the cells above it that reach its home are too

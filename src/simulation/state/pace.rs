@@ -33,7 +33,7 @@ impl Bodies {
 
     /// Returns whether a disk of this velocity moves no farther in an epoch of this length than is allowed.
     ///
-    /// A collision can make a disk faster than all disks were when the epoch began. Its place at the epoch
+    /// A collision can make a disk faster than all disks were when the epoch began. Its position at the epoch
     /// would be so far away that it would lack digits.
     #[inline]
     pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {

@@ -1,4 +1,4 @@
-//! A file of GSD: a header, an index of chunks, their names, and the chunks.
+//! A GSD file: a header, an index of chunks, their names, and the chunks.
 
 use std::fs::File;
 use std::io;

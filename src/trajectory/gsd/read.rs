@@ -42,7 +42,7 @@ const KNOWN: [&str; 21] = [
     "particles/velocity",
 ];
 
-/// Returns whether a file that begins with these bytes is a file of GSD.
+/// Returns whether a file that begins with these bytes is a GSD file.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
 }

@@ -30,7 +30,7 @@ impl Queue {
         self.blocks().waiting.pop_front()
     }
 
-    /// Notes that another process has a block, and goes to another place in the queue.
+    /// Notes that another process has a block, and moves to another block of the queue.
     pub(super) fn leave(&self, ramps: Range<usize>) {
         let mut blocks = self.blocks();
         blocks.elsewhere.push_back(ramps);
