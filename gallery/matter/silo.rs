@@ -2,9 +2,8 @@
 //!
 //! 600 grains stand on the floor of a silo, with an outlet that is shut by a gate. The gate is taken out. A
 //! sink below takes the grains out that have left, and an inlet puts them in again on top, so that the flow
-//! goes on at a constant filling. In two
-//! dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}` for an outlet of width `D` and grains of
-//! diameter `d`.
+//! continues at a constant filling. In two dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}` for an
+//! outlet of width `D` and grains of diameter `d`.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin silo
@@ -258,7 +257,7 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
     sheet.legend((panel.place.x + 16.0, panel.place.y + 28.0), &names);
 }
 
-/// Returns the color of the layer of a grain, or that of grains which came in again.
+/// Returns the color of the layer of a grain, or the color of grains that came in again.
 fn color(grain: &Disk) -> &'static str {
     const LAYERS: [&str; 3] = [BLUE, SKY, "#c9ced6"];
     let layer = usize::from(grain.kind().number());

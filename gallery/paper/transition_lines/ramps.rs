@@ -205,9 +205,9 @@ impl Ramp {
 
     /// Returns the transitions on this ramp.
     ///
-    /// Each leg is looked at alone, since bisected values are visited on one leg only. Coexistence begins
+    /// Each leg is examined alone, since bisected values are visited on one leg only. Coexistence begins
     /// where the first of the legs shows it, and ends where the last of them does; the other transitions lie
-    /// in the middle of what the legs show. Middles of frictions are those of their logarithms.
+    /// in the middle of what the legs show. Middles of frictions are taken from their logarithms.
     pub(crate) fn crossings(&self) -> Result<Vec<Crossing>, Box<dyn Error>> {
         let mut seen = Vec::new();
         for leg in ["up", "down"] {
