@@ -123,20 +123,21 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives the unit normal that points from the wall to the disk, the gradient of
 ///    the gap, to $`10^{-8}`$. The velocity is the velocity of the wall's material at the touch, whatever the
-///    time origin: along the normal, it is the speed at which the wall moves by `overlap`, to $`10^{-8}`$ of
-///    the speeds; two disks that touch the same point of a wall find the same velocity there. The radius is
-///    the surface's radius of curvature at the touch: infinite if it is straight, negative if it is hollow,
-///    never zero. At a tip or a corner, it may have any other value.
+///    time origin. Along the normal, it is the speed at which the wall moves according to `overlap`, to
+///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
+///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
+///    it is hollow, never zero. At a tip or a corner, it may have any other value.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
-///    $`10^{-9}`$ of the size of the domain overlaps the wall, and one that is smaller by this overlaps none.
+///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
+///    overlaps none.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
-/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple: its velocity changes by
+/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple. Its velocity changes by
 ///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
-///    over the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a
+///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with such a
 ///    mass m counts as the impulse C/R. No wall changes its position instantaneously. The result is
 ///    [`Reaction::Moved`] if the velocity changes. A wall of infinite masses does not react.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
@@ -296,7 +297,7 @@ pub trait Boundary {
     /// wall, and never while the disk leaves it.
     ///
     /// An `Option<Touch>` converts into the result with `into`. A search with many steps may return the time
-    /// up to which it has found no touch ([`FirstTouch::NotBefore`]); the engine calls again at that time, so
+    /// up to which it has found no touch ([`FirstTouch::NotBefore`]). The engine calls again at that time, so
     /// a run can check its limits between two parts of a long search.
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
@@ -339,7 +340,7 @@ pub trait Boundary {
     ///
     /// Containers, vessels and obstacles know it to 1e-10, whatever overlaps. The exceptions are
     /// obstacles that lie in a curved wall, and parts whose lines end inside the container with disks on one
-    /// side only: there, pieces below a sixteenth of their surroundings may be missed.
+    /// side only. There, pieces below a sixteenth of their surroundings may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
         let _ = (region, radius, time);
         None

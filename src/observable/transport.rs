@@ -54,7 +54,7 @@ type Moments = [DVec2; MOMENTS];
 ///
 /// A run ends with an error if
 /// - it does not continue the previous run;
-/// - the domain is not periodic in both directions, or is another one than before;
+/// - the domain is not periodic in both directions, or has changed;
 /// - there is gravity, or a disk meets a wall;
 /// - a collision of disks changes the energy by more than 1e-6 of their energy;
 /// - disks change by anything but collisions: an inlet, a driving, or a change between two runs.

@@ -25,7 +25,7 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 ///
 /// The recorder continues with the first sampling time after the last frame of the file. If the run is later
 /// than that, as from a checkpoint that is newer than the file, the run ends with an error, since frames
-/// would be missing. If you want the gap, give `times` a first time after it ([`SampleTimes::starting_at`]).
+/// would be missing. To accept the gap, give `times` a first time after it ([`SampleTimes::starting_at`]).
 ///
 /// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///

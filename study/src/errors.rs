@@ -15,7 +15,7 @@ use thiserror::Error;
 /// The error of an experiment that cannot be built or changed.
 ///
 /// `?` makes it from the errors of both packages, of input and output, and from texts;
-/// [`new`](Self::new) from any other. It shows its cause, and `?` takes it into any error.
+/// [`new`](Self::new) from any other. It shows its cause, and `?` converts it into any error type.
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;

@@ -34,8 +34,8 @@ impl<E: Experiment> Study<E> {
     /// is interrupted returns with all work saved. The next run continues from there, with the same result.
     ///
     /// # Errors
-    /// If plan or code of the study have changed, files cannot be read or written, or a value cannot be
-    /// started.
+    /// If the plan or the code of the study has changed, files cannot be read or written, or a value cannot
+    /// be started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
         let ramps = self.plan().ramp_count();
         self.run_blocks(0..ramps, blocks(ramps), control)

@@ -3,7 +3,7 @@
 //!
 //! An [`Experiment`] is the system under study. It is your own serializable type: its fields are the
 //! parameters, and its methods define the simulation, the measurements, and the columns of the tables. A
-//! [`Plan`] says what to do with it: a [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
+//! [`Plan`] says what to do with it. A [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
 //! down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of the grid may be
 //! repeated. A [`Study`] is a plan in a folder. [`Study::run`] runs the values that are missing, on all cores
 //! and in any number of processes. It writes each finished value immediately, as a [`Record`].

@@ -208,7 +208,8 @@ impl<E: Experiment> Study<E> {
     /// running is left alone.
     ///
     /// # Errors
-    /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or written.
+    /// If there is no such ramp, the plan or the code of the study has changed, or files cannot be read or
+    /// written.
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
         self.check_ramp(ramp)?;
         self.check_unchanged()?;

@@ -14,8 +14,8 @@ impl Brick {
     ///
     /// The strip is the band along the brick that is as wide as the stroke across it, and longer than the
     /// brick by the stroke at both ends. A rectangle around the brick in all its positions would be too
-    /// large: for a side at 45 degrees, disks would be in it all of their time, and the search would follow
-    /// them from piece to piece of a motion that can never touch them.
+    /// large. For a side at 45 degrees, disks would always be in it, and the search would follow them from
+    /// piece to piece of a motion that can never touch them.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         path: &Path,

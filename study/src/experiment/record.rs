@@ -239,8 +239,8 @@ impl<E: Experiment> Record<E> {
         }
     }
 
-    /// Returns the name of the part, rule or walls, that differs from the part with which the value was run.
-    /// Rules and walls without fingerprints cannot be distinguished.
+    /// Returns the name of the part (the rule or the walls) that differs from the part with which the value
+    /// was run. Rules and walls without fingerprints cannot be distinguished.
     pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {

@@ -63,7 +63,7 @@ impl Search {
         }
     }
 
-    /// Predicts the collisions with four more disks, and keeps the earlier collision in each lane. Of equal
+    /// Predicts the collisions with four more disks, and keeps the earlier collision in each lane. At equal
     /// times, the smaller partner wins.
     #[target_feature(enable = "avx512vl")]
     #[inline]
