@@ -1,10 +1,11 @@
 //! Checks of the results that the engine receives: collisions happen where surfaces touch, no event is lost,
 //! and no disk leaves the domain.
 //!
-//! All parts may be the user's code. None of them can make the engine panic. But a wall at another position
-//! than it reports, or a scheduler that loses events, would let a run end as if nothing had happened. The
-//! engine therefore checks where a check costs next to nothing: at each wall collision, at each new largest
-//! overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a run ends.
+//! All parts may be the user's code. None of them can make the engine panic. However, a wall at another
+//! position than it reports, or a scheduler that loses events, would let a run end as if nothing had
+//! happened. The engine therefore checks where a check costs next to nothing: at each wall collision, at each
+//! new largest overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a
+//! run ends.
 
 use glam::DVec2;
 
@@ -58,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
-    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in
-    /// which the disk is, which may be another wall than the wall that it touched.
+    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner that
+    /// the disk overlaps. This may be another wall than the touched one.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(

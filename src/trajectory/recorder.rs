@@ -117,7 +117,7 @@ impl Recorder {
     /// Returns the same recorder with its clock in the state after the last frame of the file.
     ///
     /// A clock that begins anew would take a sampling time just after the start of the run for one at the
-    /// start, and leave it out. Then a run in pieces that was killed between two of them would lack a frame.
+    /// start, and leave it out. A run in pieces that was killed between two of them would then lack a frame.
     fn going_on(mut self) -> Self {
         if let Some(&last) = self.times().last() {
             self.clock.start_at(last);

@@ -119,8 +119,8 @@ impl Approach {
 /// the wall never enters. The search then follows it from piece to piece.
 ///
 /// # Searches that do not come to an end
-/// A search invents no touch. It returns [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
-/// gap is known to be open:
+/// A search never reports a touch that does not happen. It returns [`NotBefore`](FirstTouch::NotBefore) with
+/// the time up to which the gap is known to be open:
 /// - After 256 steps. The caller may resume the search from that time.
 /// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends
 ///   before it begins, or where a number is not finite. A search that starts there gets no further. A run
@@ -253,7 +253,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns the end of a bounce that begins at `start`, or `None` if it rises above rounding.
     ///
-    /// The gap itself does not show when such a bounce is over. But the bounce is so short that the
+    /// The gap itself does not show when such a bounce is over. However, the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
     /// the bounce is over when the gap closes as fast as it opened. Any earlier, and bounces would lose speed
     /// that no rule takes. Any later, and each bounce would go deeper into the wall than the last.

@@ -132,7 +132,7 @@ fn say(line: &str) -> Result<(), Failure> {
 }
 
 /// Evaluates the result of writing output. A closed pipe is no error, since its reader has seen enough: the
-/// result is then false. A full disk is one.
+/// result is then false. A full disk is an error.
 fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),

@@ -164,7 +164,7 @@ impl Folder {
         whole::write(&self.provenance_file(), provenance.text().as_bytes())
     }
 
-    /// Writes the README of the folder, if it is missing or cut short. An edited one stays.
+    /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
     fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
         match fs::read(&path) {

@@ -74,7 +74,7 @@ impl Container {
     ///
     /// Floor and lid move along their normals; the sides slide.
     ///
-    /// Motions along the horizontal stay.
+    /// Horizontal motions that were set before are kept.
     ///
     /// # Errors
     /// The same as for [`shaken_sideways`](Self::shaken_sideways), with the walls exchanged.

@@ -190,9 +190,9 @@ impl Vessel {
 /// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
 /// there, until the gap is within rounding. It never steps over a touch.
 ///
-/// A fast part has many pieces of motion during a flight. But a disk can touch the part only in the strip
-/// that the part sweeps, and the part sweeps all of the strip within a period. The search therefore goes
-/// straight to the time at which the disk enters the strip, and is over a few pieces later.
+/// A fast part has many pieces of motion during a flight. A disk, however, can touch the part only in the
+/// strip that the part sweeps, and the part sweeps all of the strip within a period. The search therefore
+/// goes straight to the time at which the disk enters the strip, and is over a few pieces later.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,

@@ -243,7 +243,7 @@ impl Layers {
 }
 
 /// Returns whether a disk in its home and a disk of a larger class in its cell are less than half a period
-/// apart as long as they are within each other's reach. Then they keep meeting at the same image.
+/// apart as long as they are within each other's reach. In that case, they keep meeting at the same image.
 fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) -> bool {
     let touching = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a + 1].largest + classes[b + 1].largest);
     let half = 0.5 * domain.periods();

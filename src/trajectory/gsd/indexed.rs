@@ -195,8 +195,7 @@ impl Layout for Indexed {
     }
 }
 
-/// Checks that a file has the version that this crate writes, and that the size of its index is one that this
-/// crate makes.
+/// Checks that a file has the version that this crate writes, and an index of a size that this crate makes.
 fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     if head == header(location, room) && (room / ROOM as u64).is_power_of_two() {
         return Ok(());
