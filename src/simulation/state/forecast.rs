@@ -31,7 +31,7 @@ impl Exit {
     pub(in crate::simulation) const EDGES: [[Self; 2]; 2] =
         [[Self::Left, Self::Right], [Self::Down, Self::Up]];
 
-    /// Returns the number of columns to the right and of rows up to the next cell. The numbers are computed,
+    /// Returns the step to the neighbor cell: columns to the right, and rows up. The numbers are computed,
     /// since a branch would be a coin toss between four ways.
     #[inline]
     pub(in crate::simulation) fn direction(self) -> (i32, i32) {
