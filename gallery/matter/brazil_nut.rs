@@ -49,7 +49,7 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Runs for 20 oscillations at most.
+    /// Runs for 100 oscillations at most, in which the intruders of the same density rise.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -124,7 +124,7 @@ fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box
             (top, highest) = (height, (snapshot.time() / period, snapshot.disks().to_vec()));
         }
     });
-    let oscillations = if arguments.quick { arguments.oscillations.min(20) } else { arguments.oscillations };
+    let oscillations = if arguments.quick { arguments.oscillations.min(100) } else { arguments.oscillations };
     let end = period * f64::from(oscillations);
     let mut progress = Progress::of(format!("diameter {diameter}")).until(end);
     simulation.run_until(end, &mut (&mut series, &mut watch, &mut progress))?;
@@ -221,20 +221,11 @@ fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
         sheet.text(place.x + MARGINS[0], HEADER + 20.0, SMALL, INK, &words);
     }
     let place = Place { x: 0.0, y: HEADER + HEIGHT, width: 2.0 * frame, height: BELOW };
-    sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
-    add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, place.y + MARGINS[2] + 20.0), nuts);
-    Ok(sheet)
-}
-
-/// Adds the names of the intruders and of the grains below a place, two in a row.
-fn add_legend(sheet: &mut Sheet, (x, y): (f64, f64), nuts: &[Nut]) {
+    let panel = sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
     let names: Vec<String> = nuts.iter().map(Nut::name).collect();
     let names = names.iter().map(String::as_str).enumerate().map(|(k, name)| (look(k), name));
-    let names: Vec<_> = names.chain([(GRAIN, "mean of the grains")]).collect();
-    let rows = names.len().div_ceil(2);
-    for (column, names) in names.chunks(rows).enumerate() {
-        sheet.legend((x + 230.0 * column as f64, y), names);
-    }
+    sheet.legend_inside(&panel, &names.chain([(GRAIN, "mean of the grains")]).collect::<Vec<_>>());
+    Ok(sheet)
 }
 
 /// Returns the look of the curve of an intruder.

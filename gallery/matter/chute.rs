@@ -21,7 +21,7 @@ use granular_edmd::prelude::*;
 
 use gallery::command_line::{self, Failure, positive};
 use gallery::faces::{GAP, faces};
-use gallery::look::{BLUE, INK, Look, ORANGE, SKY, VERMILION};
+use gallery::look::{DARK_TO_LIGHT, INK, Look};
 use gallery::panel::{self, Margins, Place, SMALL};
 use gallery::progress::Progress;
 use gallery::results::Results;
@@ -126,15 +126,11 @@ fn draw(flows: &[Flow]) -> Sheet {
     if let Some(Flow { angle, shot, ground, .. }) = flows.last() {
         let layout = panel::axes((0.0, WIDTH), (0.0, TOP));
         let layout = layout.with_x_label("down the slope, in diameters").with_y_label("height, in diameters");
-        let color = |grain: &Disk| match 4.0 * grain.velocity().x / fastest {
-            speed if speed < 1.0 => BLUE,
-            speed if speed < 2.0 => SKY,
-            speed if speed < 3.0 => ORANGE,
-            _ => VERMILION,
-        };
+        let quarter = |grain: &Disk| (4.0 * grain.velocity().x / fastest).clamp(0.0, 3.0) as usize;
+        let color = |grain: &Disk| DARK_TO_LIGHT[quarter(grain)];
         let plots = vec![faces(shot.iter(), unit, GAP, color), faces(ground.iter(), unit, GAP, |_| INK)];
         sheet.panel(place, MARGINS, plots, layout);
-        let text = format!("slope of {angle}°; blue to red: speed, in quarters of the largest");
+        let text = format!("slope of {angle}°; dark to light: speed, in quarters of the largest");
         sheet.text(MARGINS[0], HEADER + 20.0, SMALL, INK, &text);
     }
     let place = Place { x: frame, width: 480.0, ..place };
@@ -152,6 +148,6 @@ fn draw(flows: &[Flow]) -> Sheet {
     }
     let names: Vec<_> = flows.iter().map(|flow| format!("slope of {}°", flow.angle)).collect();
     let names: Vec<_> = names.iter().enumerate().map(|(k, name)| (look(k), name.as_str())).collect();
-    sheet.legend((panel.place.x + 16.0, panel.place.y + 24.0), &names);
+    sheet.legend_inside(&panel, &names);
     sheet
 }

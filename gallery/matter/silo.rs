@@ -209,8 +209,8 @@ const HEIGHT: f64 = 520.0;
 /// Height of the part of the silo that is shown.
 const SHOWN: f64 = 38.0;
 
-/// The flows, and the law.
-const MEASURED: Look = Look::marks(BLUE, Mark::Disk).with_size(5.0);
+/// The flows, with marks smaller than their error bars, and the law.
+const MEASURED: Look = Look::marks(BLUE, Mark::Disk).with_size(3.0);
 const LAW: Look = Look::line(VERMILION, "8 3");
 
 /// Draws the silo with the widest outlet some time after the gate was opened, and the flows with the law.
@@ -248,13 +248,20 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
         LAW.curve((0..=200).map(at).map(|outlet| (outlet, law.rate(outlet))))
     });
     let panel = sheet.panel(place, MARGINS, curve.into_iter().collect(), layout);
+    let bar = |flow: &Flow| {
+        let (mean, error) = (flow.rate.mean(), flow.rate.standard_error());
+        [mean - error, mean + error].map(|rate| (flow.outlet, rate))
+    };
+    sheet.bars(&panel, MEASURED, flows.iter().map(bar));
     sheet.marks(&panel, MEASURED, flows.iter().map(|flow| (flow.outlet, flow.rate.mean())));
     let text = law.map(|Law { prefactor, lost, scatter }| {
         format!("W = {prefactor:.2} (D − {lost:.2})¹·⁵, scatter {:.1} %", 100.0 * scatter)
     });
-    let names: Vec<_> =
-        text.iter().map(|text| (LAW, text.as_str())).chain([(MEASURED, "measured")]).collect();
-    sheet.legend((panel.place.x + 16.0, panel.place.y + 28.0), &names);
+    let converged = flows.iter().all(|flow| flow.rate.is_converged());
+    let measured =
+        if converged { "measured, with standard error" } else { "measured; errors are lower bounds" };
+    let names: Vec<_> = text.iter().map(|text| (LAW, text.as_str())).chain([(MEASURED, measured)]).collect();
+    sheet.legend_inside(&panel, &names);
 }
 
 /// Returns the color of the layer of a grain, or the color of grains that came in again.

@@ -129,14 +129,14 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
         let look = if point.height.is_converged() { rough } else { rough.open() };
         sheet.marks(&panel, look, [place(point)]);
     }
-    sheet.legend((MARGINS[0] + 16.0, HEADER + HEIGHT - 130.0), &names);
+    sheet.legend_inside(&panel, &names);
     sheet
 }
 
-/// Returns the range of the heights with their errors, in whole tens.
+/// Returns the range of the heights with their errors, from zero to whole tens.
 fn heights(points: &[Point]) -> (f64, f64) {
     let bar =
         |point: &Point| [-1.0, 1.0].map(|sign| point.height.mean() + sign * point.height.standard_error());
-    let (low, high) = panel::ends(points.iter().flat_map(bar));
-    (10.0 * (0.1 * low - 0.2).floor(), 10.0 * (0.1 * high + 0.2).ceil())
+    let (_, high) = panel::ends(points.iter().flat_map(bar));
+    (0.0, 10.0 * (0.1 * high + 0.2).ceil())
 }

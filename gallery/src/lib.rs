@@ -6,6 +6,7 @@ pub mod command_line;
 pub mod faces;
 pub mod failure;
 pub mod flow;
+pub mod legend;
 pub mod letters;
 pub mod look;
 pub mod output;

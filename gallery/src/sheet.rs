@@ -8,6 +8,7 @@ use kuva::prelude::{Layout, LinePlot, Plot};
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use crate::failure::named;
+use crate::legend::Drawn;
 use crate::look::{INK, Look, QUIET};
 use crate::panel::{self, LARGE, MEDIUM, Margins, Panel, Place, SMALL};
 use crate::raster;
@@ -29,6 +30,7 @@ const SHORT: f64 = 3.5;
 /// A picture made of panels.
 pub struct Sheet {
     scene: Scene,
+    drawn: Drawn,
 }
 
 impl Sheet {
@@ -37,13 +39,26 @@ impl Sheet {
         let mut scene = Scene::new(width, height);
         scene.font_family = Some(FONTS.into());
         scene.text_color = Some(INK.into());
-        Self { scene }
+        Self { scene, drawn: Drawn::default() }
+    }
+
+    /// Makes the sheet higher, and returns its height before.
+    pub const fn grow(&mut self, by: f64) -> f64 {
+        let before = self.scene.height;
+        self.scene.height += by;
+        before
     }
 
     /// Adds a panel. The margins are the space between its edge and its axes: left, right, top, bottom.
     pub fn panel(&mut self, place: Place, margins: Margins, plots: Vec<Plot>, layout: Layout) -> Panel {
         let panel = Panel::new(place, margins, &layout);
         let name = layout.y_label.clone().filter(|_| layout.log_y);
+        for plot in &plots {
+            if let Plot::Line(line) = plot {
+                let points = line.data.iter().map(|point| panel.at(panel.nearest((point.x, point.y))));
+                self.drawn.add(&points.collect::<Vec<_>>());
+            }
+        }
         // Without any plot, kuva would draw no axes.
         let nothing = plots.is_empty().then(|| LinePlot::new().into());
         let plots = plots.into_iter().chain(nothing).collect();
@@ -119,7 +134,10 @@ impl Sheet {
     /// Adds the marks of a series to a panel.
     pub fn marks(&mut self, panel: &Panel, look: Look, points: impl IntoIterator<Item = (f64, f64)>) {
         let held = points.into_iter().filter(|&point| panel.holds(point));
-        held.for_each(|point| self.mark(panel.at(point), look));
+        for place in held.map(|point| panel.at(point)) {
+            self.drawn.add(&[place]);
+            self.mark(place, look);
+        }
     }
 
     /// Adds a mark about this place of the sheet.
@@ -131,6 +149,7 @@ impl Sheet {
     pub fn bars(&mut self, panel: &Panel, look: Look, bars: impl IntoIterator<Item = [(f64, f64); 2]>) {
         for ends in bars {
             let [from, to] = ends.map(|end| panel.at(panel.nearest(end)));
+            self.drawn.add(&[from, to]);
             self.line(vec![from, to], look.color, 1.0);
             // Caps across the ends: up for a bar that lies.
             let cap = if from.1 == to.1 { (0.0, 3.0) } else { (3.0, 0.0) };
@@ -140,9 +159,24 @@ impl Sheet {
         }
     }
 
+    /// Adds the names of series in the first corner of a panel where they hide nothing that was drawn before,
+    /// or below the sheet if there is none.
+    pub fn legend_inside(&mut self, panel: &Panel, entries: &[(Look, &str)]) {
+        // Single words may be wider than their number of letters says.
+        let longest = entries.iter().map(|(_, name)| width(name, SMALL) + 12.0).fold(0.0, f64::max);
+        let column = widest_sample(entries) + 8.0 + longest;
+        let columns = self.drawn.free_corner(panel, (column, LINE), entries.len());
+        let columns =
+            columns.unwrap_or_else(|| vec![(panel.place.x, self.grow(LINE * entries.len() as f64 + 8.0))]);
+        let rows = entries.len().div_ceil(columns.len()).max(1);
+        for ((x, y), entries) in columns.into_iter().zip(entries.chunks(rows)) {
+            self.legend((x, y + 17.0), entries);
+        }
+    }
+
     /// Adds the names of series, one below the other from here, with samples of their lines and marks.
     pub fn legend(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
-        let length = entries.iter().map(|(look, _)| sample(*look)).fold(0.0, f64::max);
+        let length = widest_sample(entries);
         for (row, (look, name)) in entries.iter().enumerate() {
             self.add_entry((x, y + LINE * row as f64), length, *look, name);
         }
@@ -263,6 +297,11 @@ impl Sheet {
         let png = raster::png(&self.scene, PIXELS).map_err(io::Error::other)?;
         write("png", &png)
     }
+}
+
+/// Returns the length of the longest sample in a legend.
+fn widest_sample(entries: &[(Look, &str)]) -> f64 {
+    entries.iter().map(|(look, _)| sample(*look)).fold(0.0, f64::max)
 }
 
 /// Returns the length of a sample in a legend.

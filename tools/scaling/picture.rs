@@ -32,7 +32,7 @@ pub(crate) fn draw(subtitle: &str, times: &[Time]) -> Sheet {
         sheet.marks(&panel, look, times.iter().map(point));
     }
     let names: Vec<_> = lines().map(|(look, name, _)| (look, name.as_str())).collect();
-    sheet.legend((panel.place.x + 14.0, panel.place.y + 26.0), &names);
+    sheet.legend_inside(&panel, &names);
     sheet
 }
 

@@ -13,7 +13,6 @@ use gallery::panel::{self, Margins, Place, SMALL};
 use gallery::sheet::Sheet;
 
 const MARGINS: Margins = [78.0, 18.0, 12.0, 60.0];
-const HEADER: f64 = 88.0;
 const SIDE: f64 = 268.0;
 const BELOW: f64 = 330.0;
 
@@ -24,24 +23,27 @@ const BODY: Look = Look::line(QUIET, "4 3").with_width(1.2);
 pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let (frame, tall) = (SIDE + MARGINS[0] + MARGINS[1], SIDE + MARGINS[2] + MARGINS[3]);
     let width = frame * drums.len().max(2) as f64;
-    let mut sheet = Sheet::new(width, HEADER + tall + 40.0 + BELOW);
+    let mut sheet = Sheet::new(width, tall + 40.0 + BELOW);
     let Arguments { pins, friction, speed, .. } = arguments;
     let grains = drums.first().map_or(0, |drum| drum.disks.len());
     let words = format!(
         "{grains} grains, {pins} pins, q = 0.1, κ = {friction}, elastic below {speed} √(gd); arrows: mean flow, dashed: mean surface"
     );
     let last = sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
+    // Words over a single drum take two lines.
+    let top = last + 32.0;
+    sheet.grow(top);
     let arrows = || drums.iter().map(|drum| Arrows::of(&drum.flow, 0.15, 2.0));
     let fastest = Arrows::fastest(&arrows().collect::<Vec<_>>());
     for (k, (drum, arrows)) in drums.iter().zip(arrows()).enumerate() {
-        let place = Place { x: k as f64 * frame, y: HEADER + 24.0, width: frame, height: tall };
+        let place = Place { x: k as f64 * frame, y: top + 24.0, width: frame, height: tall };
         draw_drum(&mut sheet, place, arguments, drum, &arrows.in_scale_of(fastest));
     }
     // An arrow of this length is this fast, in all drums.
     if let Some((speed, length)) = arrows().next().and_then(|arrows| arrows.in_scale_of(fastest).scale()) {
         sheet.arrow((MARGINS[0], last + 24.0), unit(arguments) * length, &format!("{speed} √(gd)"));
     }
-    let place = Place { x: 0.0, y: HEADER + tall + 40.0, width: 0.5 * width, height: BELOW };
+    let place = Place { x: 0.0, y: top + tall + 40.0, width: 0.5 * width, height: BELOW };
     draw_angles(&mut sheet, place, drums);
     draw_flows(&mut sheet, Place { x: 0.5 * width, ..place }, arguments, drums);
     sheet
@@ -70,7 +72,7 @@ fn draw_angles(sheet: &mut Sheet, place: Place, drums: &[Turned]) {
     let panel = sheet.panel(place, MARGINS, angles(drums), layout);
     let names: Vec<String> = drums.iter().map(|drum| format!("Ω²R/g = {:.3}", drum.froude)).collect();
     let names = names.iter().enumerate().map(|(k, name)| (look(k), name.as_str()));
-    sheet.legend((panel.place.x + 14.0, panel.place.y + 26.0), &names.collect::<Vec<_>>());
+    sheet.legend_inside(&panel, &names.collect::<Vec<_>>());
 }
 
 fn draw_flows(sheet: &mut Sheet, place: Place, arguments: &Arguments, drums: &[Turned]) {
@@ -79,8 +81,7 @@ fn draw_flows(sheet: &mut Sheet, place: Place, arguments: &Arguments, drums: &[T
     let layout =
         layout.with_x_label("velocity up the surface, in ΩR").with_y_label("height above the axis, in R");
     let panel = sheet.panel(place, MARGINS, flows(arguments, drums), layout);
-    let low = panel.place.y + panel.place.height - 14.0;
-    sheet.legend((panel.place.x + 14.0, low), &[(BODY, "turning as a body")]);
+    sheet.legend_inside(&panel, &[(BODY, "turning as a body")]);
 }
 
 /// Returns the look of the curves of a drum.

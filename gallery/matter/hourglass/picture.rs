@@ -42,8 +42,7 @@ pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> She
         |way: &Way| way.frames.iter().map(|frame| (frame.time, frame.above as f64)).collect::<Vec<_>>();
     let curves = looks.iter().zip(ways).map(|(look, way)| look.curve(points(way)));
     let panel = sheet.panel(place, MARGINS, curves.collect(), layout);
-    let right = panel.place.x + panel.place.width;
-    sheet.legend((right - 170.0, panel.place.y + 26.0), &[(looks[0], "first"), (looks[1], "turned over")]);
+    sheet.legend_inside(&panel, &[(looks[0], "first"), (looks[1], "turned over")]);
     sheet
 }
 

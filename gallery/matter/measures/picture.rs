@@ -45,7 +45,7 @@ fn draw_pairs(sheet: &mut Sheet, place: Place, gas: &Gas, bulk: &Bulk) {
     let panel = sheet.panel(place, MARGINS, vec![MEASURED.curve(points)], axes);
     sheet.marks(&panel, CONTACT, [(1.0, gas.contact_value())]);
     let names = [(MEASURED, "measured"), (CONTACT, "Henderson")];
-    sheet.legend((panel.place.x + 190.0, panel.place.y + 30.0), &names);
+    sheet.legend_inside(&panel, &names);
 }
 
 /// Draws the distributions of speeds over the Maxwellian one, of the elastic gas and of the one that cools.
@@ -69,7 +69,7 @@ fn draw_speeds(sheet: &mut Sheet, place: Place, arguments: &Arguments, gases: [&
     let cooling = format!("cooling, r = {}", arguments.restitution);
     let names =
         [(ELASTIC, "elastic"), (COOLING, &*cooling), (MAXWELL, "Maxwellian"), (SONINE, "Sonine, theory")];
-    sheet.legend((panel.place.x + 20.0, panel.place.y + 30.0), &names);
+    sheet.legend_inside(&panel, &names);
 }
 
 /// Returns the middle of a bin, and its share over that of a Maxwellian gas with the error.

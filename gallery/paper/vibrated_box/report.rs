@@ -44,12 +44,10 @@ pub(crate) fn print(outcome: &Outcome) {
     }
     line("run", &format!("{:.2} s", outcome.seconds));
     line("final state", &outcome.hash());
-    match lacking {
-        0 => {}
-        count if count < means.len() => {
-            gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N")
-        }
-        _ => gallery::say!("errors are lower bounds after a short run; run longer with --oscillations N"),
+    if lacking == means.len() {
+        gallery::say!("errors are lower bounds after a short run; run longer with --oscillations N");
+    } else if lacking > 0 {
+        gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N");
     }
 }
 
