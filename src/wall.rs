@@ -36,7 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Piston`] is no planned motion: the disks push it, and it moves by its mass, force and spring.
+//! A [`Piston`] is not a planned motion: the disks push it, and it moves by its mass, force and spring.
 //!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from position, velocity
 //! and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an example,

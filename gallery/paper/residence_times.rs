@@ -318,7 +318,8 @@ fn draw(values: &[Value]) -> Sheet {
     sheet
 }
 
-/// Returns the friction and the length of a stay at each value of the larger gravity that is no ramp.
+/// Returns the friction and the length of a stay at each value of the larger gravity that is not part of a
+/// ramp.
 fn times(stay: &Stay, values: &[Value]) -> impl Iterator<Item = (f64, Residence)> {
     let of_sweep = values.iter().filter(|value| value.row.leg.is_empty());
     of_sweep.filter_map(|value| Some((value.row.friction?, (stay.of)(value)?)))

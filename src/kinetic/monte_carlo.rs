@@ -27,7 +27,7 @@ const FIRST_ROUND: u64 = 16;
 ///
 /// - The angle is drawn uniformly, in 64 strata, so that grazing collisions get more samples than they would
 ///   by chance.
-/// - The density of $`R^2`$ is the true one times $`R^2`$, because the energy of the relative motion, the
+/// - The density of $`R^2`$ is the true density times $`R^2`$, because the energy of the relative motion, the
 ///   most that a collision can lose, is proportional to $`R^2`$.
 ///
 /// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a

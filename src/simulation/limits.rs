@@ -128,7 +128,7 @@ impl<'a> Watch<'a> {
         Self {
             limits,
             last_collision: counters.collisions().saturating_add(limits.most_collisions),
-            // A time so late that no clock can show it is no limit.
+            // A time so late that no clock can show it does not limit the run.
             deadline: limits.wall_clock.and_then(|time| Instant::now().checked_add(time)),
         }
     }

@@ -7,7 +7,7 @@ use crate::{Fingerprint, ParameterError};
 /// A motion whose phase counts from a given start instead of time 0.
 ///
 /// A base that replaces another between runs can in this way begin at its own phase 0, without a jump. The
-/// start is no delay: before it, the wall goes through the phases before 0.
+/// start is not a delay: before it, the wall goes through the phases before 0.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, StartingAt, WallMotion};

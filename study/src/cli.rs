@@ -131,8 +131,8 @@ fn say(line: &str) -> Result<(), Failure> {
     told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
 }
 
-/// Evaluates the result of writing output. A closed pipe is no error, since its reader has seen enough: the
-/// result is then false. A full disk is an error.
+/// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
+/// the result is then false. A full disk is an error.
 fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),

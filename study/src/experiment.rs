@@ -302,7 +302,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the contents of a file can belong to these parameters.
     ///
-    /// The study has checked the checksum, the place and the time before. Many records keep no state.
+    /// The study has already checked the checksum, the ramp and the value, and the time. Many records keep no
+    /// state.
     ///
     /// # Errors
     /// If they cannot, with the reason.

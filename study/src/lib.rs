@@ -26,8 +26,8 @@
 //! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
 //! 5. All records of a study come from the same code. `provenance.json` keeps the
 //!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the
-//!    experiment, and other code is refused by name whatever it asks of the study ([`StudyError::Code`]),
-//!    until [`Study::accept_changes`] allows it to continue.
+//!    experiment, and every operation of other code is refused by name ([`StudyError::Code`]), until
+//!    [`Study::accept_changes`] allows it to continue.
 //! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
 //!
 //! ```

@@ -91,8 +91,8 @@ impl Indexed {
         Ok(())
     }
 
-    /// Removes from the index everything that a cut has torn, before other bytes are written at the same
-    /// positions.
+    /// Removes from the index everything that was lost when the file was cut, before other bytes are written
+    /// at the same positions.
     fn mend(&mut self, file: &mut Growing<Locked>) -> io::Result<()> {
         let rest = vec![0; self.room * ENTRY - self.entries.len()];
         file.medium.write_at(self.location + self.entries.len() as u64, &rest)?;
