@@ -13,10 +13,10 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// Bizon et al. take $`v_0 = \sqrt{g\sigma}`$, with the diameter $`\sigma`$. Slow collisions lose next to
 /// nothing, as with real grains, so disks without gravity do not collapse. A disk on a floor still comes to
-/// rest after infinitely many bounces in a finite time, only later. Its speed falls by $`(1 -
-/// r_0)\,v\,(v/v_0)^{3/4}`$ in each bounce, and the durations $`2v/g`$ of the bounces have a finite sum.
-/// Matter at rest needs [`LeastRebound`](super::LeastRebound) or [`ElasticBelow`](super::ElasticBelow) around
-/// this rule.
+/// rest after infinitely many bounces in a finite time, only later. Its speed falls by
+/// $`(1 - r_0)\,v\,(v/v_0)^{3/4}`$ in each bounce, and the durations $`2v/g`$ of the bounces have a finite
+/// sum. Matter at rest needs [`LeastRebound`](super::LeastRebound) or [`ElasticBelow`](super::ElasticBelow)
+/// around this rule.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Friction, SpeedDependent};
