@@ -81,7 +81,7 @@ const LAYER: f64 = 3.0;
 const AGAIN: Kind = Kind::new(99);
 
 /// Least speed at which surfaces part, so that grains at rest do not collide ever faster. The flow does not
-/// depend on it: docs/rest.md has the table, also of what a contact duration would do.
+/// depend on it: docs/rest.md has the table, which also shows the effect of a contact duration.
 const LEAST: f64 = 0.05;
 
 /// A flow that was measured.

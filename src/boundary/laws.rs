@@ -53,8 +53,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along it is the
 ///   rate at which the wall moves there, and the radius of the surface is its radius of curvature.
-/// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, also for those that extend to
-///   infinity at the edges of the domain.
+/// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
+///   to infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.

@@ -133,7 +133,7 @@ pub trait Observer {
         let _ = (disk, time);
     }
 
-    /// Receives the end of a run, also of one that fails.
+    /// Receives the end of a run, even of a run that fails.
     fn on_end(&mut self, end: &Snapshot<'_>) {
         let _ = end;
     }

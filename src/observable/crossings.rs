@@ -17,7 +17,7 @@ use crate::{Disk, ParameterError};
 ///
 /// A crossing is *forward* if it goes from the right to the left of the direction from `start` to `end`:
 /// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
-/// is found exactly, also if a disk turns back between two samples. An interval counts only if it was watched
+/// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
 /// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count.
 ///
 /// ```

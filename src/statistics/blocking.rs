@@ -48,7 +48,7 @@ const LARGEST: f64 = 1e100;
 /// quantity is constant, or has not changed yet.
 ///
 /// # Errors
-/// If there are fewer than two samples, or one is not finite or above 1e100 in size.
+/// If there are fewer than two samples, or one is not finite or above 1e100 in magnitude.
 ///
 /// ```
 /// use granular_edmd::statistics::block_average;

@@ -127,7 +127,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ///
     /// Values of different code must not be mixed, so a study with another revision is refused.
     /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment, changes
-    /// by itself with every edit of that file, also of a comment. `Fingerprint::of("Cooling 2")` changes when
+    /// by itself with every edit of that file, even of a comment. `Fingerprint::of("Cooling 2")` changes when
     /// you raise the number: do so whenever rule, walls, disks, observer or sample give other numbers than
     /// before. Code in other files, and in other crates, is covered only if you add it with
     /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the

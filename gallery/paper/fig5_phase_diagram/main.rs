@@ -43,7 +43,7 @@ struct Arguments {
     /// The same as `--size quick`.
     #[arg(long, conflicts_with = "size")]
     quick: bool,
-    /// Draws the finished points and computes nothing, also while another process does.
+    /// Draws the finished points and computes nothing, even while another process does.
     #[arg(long)]
     draw: bool,
     /// Draws the points of a table, such as docs/reproduction has, and computes nothing.

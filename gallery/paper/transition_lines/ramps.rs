@@ -253,7 +253,7 @@ impl Ramp {
         let first = &self.observations[0];
         let (friction, inelasticity) =
             if self.along_friction { (middle.exp(), first.inelasticity) } else { (first.friction, middle) };
-        // The values on both sides have this distance but for rounding.
+        // The values on both sides have this distance, up to rounding.
         let is_near = |seen: &&Observation| (self.value(seen) - middle).abs() <= half_width * (1.0 + 1e-9);
         let near: Vec<&Observation> = self.observations.iter().filter(is_near).collect();
         let mean =

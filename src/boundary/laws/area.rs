@@ -30,7 +30,7 @@ const BEND: f64 = 0.01;
 ///
 /// A bent wall deviates from its straight line by the square of the distance along it. The mean of this
 /// square is subtracted, so the errors of the cells have both signs and a zero mean: at most 1e-3 of a cell,
-/// in some hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
+/// in about a hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
 const SLACK: f64 = 2e-5;
 
 /// Checks the free areas of the domain and of a random region.

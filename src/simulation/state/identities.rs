@@ -10,7 +10,7 @@ use crate::{Disk, ParameterError};
 pub(in crate::simulation) struct Identities {
     /// Empty as long as the ids are 1, 2, 3, …: most runs need no memory for them.
     ids: Vec<u64>,
-    /// The largest id so far, also of disks that were removed.
+    /// The largest id so far, including the ids of removed disks.
     last: u64,
 }
 

@@ -165,8 +165,8 @@ impl StateCriteria {
     /// profile. Without it no state is collapsed.
     ///
     /// # Errors
-    /// If there is no sample, a sample is not finite or above 1e100 in size, or the noise is negative or not
-    /// finite.
+    /// If there is no sample, a sample is not finite or above 1e100 in magnitude, or the noise is negative or
+    /// not finite.
     pub fn classify(
         &self,
         samples: &[ConvectionOrder],

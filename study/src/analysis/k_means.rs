@@ -65,7 +65,7 @@ impl KMeans {
     /// If there are fewer distinct points than requested clusters, there are fewer clusters.
     ///
     /// # Errors
-    /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
+    /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in magnitude.
     pub fn fit(&self, points: &[DVec2]) -> Result<Clusters, ParameterError> {
         check(points, self.clusters)?;
         // Sums of sorted points round alike, so the bits do not depend on the order in which points are
