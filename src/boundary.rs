@@ -154,7 +154,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
 ///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
-///   epoch, a typical disk moves some tens of diameters.
+///   epoch, a typical disk moves tens of diameters.
 /// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
 /// - It calls `surface` for a touch that `first_touch` found: with its wall, its time, and the position of

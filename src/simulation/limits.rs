@@ -85,9 +85,9 @@ impl<'a> Limits<'a> {
     ///
     /// Progress is judged over windows of 200 000 events, and 20 more for each disk; a search for a wall that
     /// ends at its horizon counts as 256 events. A run with less progress is
-    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have some
-    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk moves or falls some tens
-    /// of diameters.
+    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have about
+    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk moves or falls tens of
+    /// diameters.
     ///
     /// # Errors
     /// If the time is negative or not finite.

@@ -25,7 +25,7 @@ pub enum BuildError {
         start: f64,
         /// Distance to the next floating-point number.
         spacing: f64,
-        /// Time in which a typical disk moves some tens of diameters.
+        /// Time in which a typical disk moves tens of diameters.
         epoch: f64,
     },
     /// The boundary's domain is not a rectangle with finite sides and a finite bottom.

@@ -127,7 +127,7 @@ pub enum RunError {
         time: f64,
         /// Distance to the next floating-point number.
         spacing: f64,
-        /// Time in which a typical disk moves some tens of diameters.
+        /// Time in which a typical disk moves tens of diameters.
         epoch: f64,
     },
     /// An observer asks for a sample at a time that is not a number, or that is not later than the last

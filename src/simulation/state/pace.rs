@@ -15,8 +15,8 @@ const FASTER: f64 = 16.0;
 pub(in crate::simulation) const FARTHEST: f64 = FASTER * DIAMETERS;
 
 impl Bodies {
-    /// Returns the length of an epoch. A typical disk moves, or falls, some tens of diameters in it, and no
-    /// disk moves more than [`FASTER`] times as far.
+    /// Returns the length of an epoch. A typical disk moves, or falls, tens of diameters in it, and no disk
+    /// moves more than [`FASTER`] times as far.
     pub(in crate::simulation) fn epoch_length(&self) -> f64 {
         let squares = || self.particles.iter().map(|particle| particle.trajectory.velocity.length_squared());
         let typical = (squares().sum::<f64>() / self.len() as f64).sqrt();
