@@ -1,11 +1,11 @@
-//! A checkpoint: a run that is cut, goes to a file, and goes on with the same bits.
+//! A checkpoint: a run that is interrupted, written to a file, and resumed with the same bits.
 //!
 //! ```text
 //! cargo run --release --features serde --example checkpoint
 //! ```
 //!
-//! A moment. You learn what a checkpoint holds (all of the state) and what it does not (rule and walls, which
-//! the program makes again), and how to keep a measurement with it.
+//! It takes less than a second. You learn what a checkpoint holds (all of the state) and what it does not
+//! (rule and walls, which the program makes again), and how to keep a measurement with it.
 
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Checkpoint;
@@ -30,14 +30,14 @@ fn main() -> anyhow::Result<()> {
     let file = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
     whole.checkpoint().write_with(&series, &file)?;
 
-    // Another program, on another day, makes rule and walls again, and goes on. A checkpoint refuses another
+    // A later program makes the rule and the walls again, and resumes the run. A checkpoint refuses another
     // rule or another wall; a custom part needs a `fingerprint` for that.
     let (checkpoint, mut resumed) = Checkpoint::read_with::<Series<CenterOfMass>>(&file)?;
     let mut second = Simulation::resume(&checkpoint, rule()?, self::container()?).build()?;
     second.run_until(1000.0, &mut resumed)?;
     std::fs::remove_file(&file)?;
 
-    // The run that was never cut comes to the same state, and has the same samples.
+    // The uninterrupted run reaches the same state, with the same samples.
     whole.run_until(1000.0, &mut series)?;
     assert_eq!(second.disks(), whole.disks());
     assert_eq!(resumed.values(), series.values());

@@ -29,7 +29,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let truths = [factor()?, jump()?, friction()?, last_maximum()?];
     let mut all = true;
     for ((question, answer), truth) in QUESTIONS.iter().zip(answers).zip(truths) {
-        // Five percent is what can be read off a figure.
+        // A figure can be read off to about five percent.
         let right = (answer / truth - 1.0).abs() < 0.05;
         println!("{}  {question}: {answer}", if right { "right" } else { "WRONG" });
         all &= right;
@@ -52,7 +52,7 @@ fn energy_change(rule: &Frictional, closing_speed: f64, slip_speed: f64) -> f64 
     rule.impulse(&contact).energy_change(&contact)
 }
 
-/// Returns what a sticking collision loses by its slip.
+/// Returns the energy that a sticking collision loses by its slip.
 fn factor() -> anyhow::Result<f64> {
     let (rule, slip) = (Frictional::from_inelasticity(0.0, 0.2, 10.0)?, 0.3);
     Ok(-energy_change(&rule, 1.0, slip) / (0.2 * 0.8 * slip * slip))
@@ -86,7 +86,7 @@ fn frictions() -> impl Iterator<Item = f64> {
     (0..=1200).map(|step| 0.01 * 10_f64.powf(f64::from(step) / 400.0))
 }
 
-/// Returns the inelasticity at which the largest loss of the printed form is lost, by bisection.
+/// Returns the inelasticity from which on the printed form has no largest loss, by bisection.
 fn last_maximum() -> anyhow::Result<f64> {
     let (mut with, mut without) = (0.01, 0.2);
     while without - with > 1e-4 {

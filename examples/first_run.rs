@@ -5,7 +5,7 @@
 //! ```
 //!
 //! It takes less than a second. You learn how a run is put together: walls, disks, a rule for their
-//! collisions, something to watch.
+//! collisions, and observers.
 
 use granular_edmd::prelude::*;
 
@@ -16,7 +16,8 @@ fn main() -> anyhow::Result<()> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = std::f64::consts::TAU / base.angular_frequency();
 
-    // A box 60 wide and 150 high. A question mark ends the program if a number makes no sense, and says why.
+    // A box 60 wide and 150 high. The question mark ends the program with a message if a number makes no
+    // sense.
     let container = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, base)?;
 
     // 1000 grains of radius 1/2 on a lattice, with random velocities. The last number is the seed: the same
@@ -25,7 +26,7 @@ fn main() -> anyhow::Result<()> {
     let disks = initial::with_maxwellian_velocities(disks, 0.5, 1)?;
 
     // Grains lose no energy by their inelasticity (0), but rub with the friction coefficient 0.07. Contacts
-    // within 1e-4 of the last one lose nothing, so that grains that lie on each other end no run.
+    // within 1e-4 of the last one lose nothing, so that grains at rest on each other do not stall the run.
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, 0.07)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
 

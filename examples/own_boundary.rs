@@ -36,7 +36,7 @@ impl Boundary for Drum {
         if wall == 0 { "hot half".into() } else { "cold half".into() }
     }
 
-    // The drum rests, so it needs no clock.
+    // The drum does not move, so it needs no clock.
     fn set_time_origin(&mut self, _: f64) {}
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
@@ -50,7 +50,7 @@ impl Boundary for Drum {
 
     fn surface(&self, wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
         let surface = Surface::new(self.rim.normal(position), DVec2::ZERO);
-        // The rim is hollow for rules that ask for its radius.
+        // The rim is hollow, so its radius is negative for the rules that use it.
         surface.with_radius(-self.radius).with_response(Response::Thermal(self.temperatures[wall]))
     }
 
@@ -64,7 +64,7 @@ fn main() -> anyhow::Result<()> {
     let radius = 15.0;
     let temperatures = [Thermal::new(2.0)?, Thermal::new(0.5)?];
     let mut drum = Drum { radius, rim: Brick::circle(DVec2::ZERO, radius)?, temperatures };
-    // Does the drum keep the contract? Disks of radius 1/2 at speed 1 fly about in it.
+    // The check of the contract lets disks of radius 1/2 fly in the drum at speed 1.
     laws::check(&mut drum, 0.5, 1.0, 1)?;
 
     let disks = initial::random(&drum, 150, 0.5, radius, 1)?;

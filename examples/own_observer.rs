@@ -16,7 +16,7 @@ struct Force {
     clock: SampleTimes,
     base: Partner,
     momentum: f64,
-    /// Time of each beat, and the mean force since the one before.
+    /// Each sampling time, and the mean force since the previous one.
     forces: Vec<(f64, f64)>,
     last: f64,
 }
@@ -33,7 +33,7 @@ impl Observer for Force {
         }
     }
 
-    // The engine asks when the observer wants to see the disks, and comes at exactly that time.
+    // The engine asks for the next sampling time, and samples at exactly that time.
     fn next_sample(&self) -> f64 {
         self.clock.upcoming()
     }

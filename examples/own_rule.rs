@@ -18,14 +18,14 @@ struct Viscous {
 
 impl CollisionRule for Viscous {
     fn impulse(&self, contact: &Contact) -> Impulse {
-        // The engine solves everything that is geometry. A rule sees the speeds and masses of one contact.
-        // For friction, `collision::Friction` takes a normal impulse and adds the tangential one.
+        // The engine handles the geometry. A rule sees the speeds and masses of one contact. For friction,
+        // `collision::Friction` takes a normal impulse and adds the tangential one.
         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
         Impulse::new(contact.normal_impulse(restitution), 0.0)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        // By this, a checkpoint knows that it goes on with the same rule.
+        // A checkpoint compares this fingerprint, so that a run resumes under the same rule.
         Some(Fingerprint::of("viscous").number(self.loss))
     }
 }
@@ -43,7 +43,8 @@ fn cooling(rule: impl CollisionRule) -> anyhow::Result<Vec<f64>> {
 
 fn main() -> anyhow::Result<()> {
     let rule = Viscous { loss: 0.2 };
-    // Ten thousand contacts, mild and extreme: does the rule part the surfaces, and gain no energy?
+    // The check tries thousands of contacts, mild and extreme: surfaces must part, and no energy may be
+    // gained.
     laws::check(&rule, &Promises::new())?;
 
     let own = cooling(rule)?;

@@ -4,7 +4,7 @@
 //! cargo run --release --example own_wall
 //! ```
 //!
-//! It takes two seconds. You learn what a wall motion returns (position, velocity, bounds of its
+//! It takes two seconds. You learn what a wall motion returns (position, velocity, bounds on its
 //! acceleration), and how to check it.
 
 use granular_edmd::prelude::*;
@@ -38,7 +38,7 @@ impl WallMotion for Hopping {
         )
     }
 
-    // The engine finds touches exactly where acceleration is constant. So each piece names its end.
+    // The engine finds touches exactly where acceleration is constant, so each piece names its end.
     fn acceleration(&self, phase: f64) -> AccelerationBounds {
         let (time, begin, hop) = self.moment(phase);
         if time >= hop {
@@ -61,12 +61,12 @@ fn main() -> anyhow::Result<()> {
     println!("period  height of the center of mass");
     for period in [0.5, 1.0, 2.0, 4.0] {
         let base = Hopping { height: 0.2, period };
-        // Do place, velocity and acceleration fit together, on all pieces of 20 periods?
+        // The check compares position, velocity and acceleration on all pieces of 20 periods.
         laws::check(&base, 0.0, 20.0 * period)?;
         let container = Container::open(20.0)?.with_motion(Wall::Floor, base)?;
         let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
-        // Grains that come to rest on the base part with a speed of 0.1 at least. A run of hard grains needs
-        // that.
+        // Grains that come to rest on the base leave it at a speed of 0.1 at least; otherwise, the run would
+        // stall.
         let rule = LeastRebound::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?, 0.1)?;
         let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(1.0).build()?;
         simulation.run_until(50.0, &mut ())?;

@@ -7,7 +7,7 @@
 //! It takes five seconds. You learn how to replay a run, how chaos shows, and why a result is a mean with an
 //! error and not a trajectory.
 //!
-//! It prints when a disk is first a billionth, a thousandth and a radius away from itself (t = 16, 49, 68),
+//! It prints when a disk is first a billionth, a thousandth and a radius away from its twin (t = 16, 49, 68),
 //! when a disk first meets another partner (68), the mean |Ψ1| of both runs, and when their Ψ1 first differ
 //! by more than Ψ1 fluctuates in one run (99).
 
@@ -20,8 +20,8 @@ const BEAT: f64 = std::f64::consts::TAU / 10.0;
 fn main() -> anyhow::Result<()> {
     let container = Container::open(40.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, DISKS, 0.5)?, 0.1, 1)?;
-    // The last bit of the place of a grain on the right. On the left, numbers have bits that no sum would
-    // notice.
+    // The last bit of the position of a grain on the right. On the left, coordinates are so small that sums
+    // would lose their last bits.
     let mut others = disks.clone();
     if let Some(grain) = others.iter_mut().max_by(|a, b| a.position().x.total_cmp(&b.position().x)) {
         let place = grain.position();
@@ -47,7 +47,8 @@ fn main() -> anyhow::Result<()> {
         }
     }
 
-    // The roll is the same in both as far as its fluctuations tell, and they differ by as much as these.
+    // Within its fluctuations, the roll is the same in both runs, which differ by as much as these
+    // fluctuations.
     let mut fluctuation: f64 = 0.0;
     for (name, replay) in [("first", &first), ("second", &second)] {
         let mut series = Series::new(OrderParameters, SampleTimes::every(BEAT)?);

@@ -79,8 +79,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// # Times
 /// All times are *offsets* from the absolute time that was last given to
 /// [`set_time_origin`](Self::set_time_origin). Absolute times grow without bound and would lose digits.
-/// Before the first call, the origin is 0. A boundary whose walls do not move may ignore the origin. One with
-/// walls that move reduces it by whole periods to a phase of their motion, as
+/// Before the first call, the origin is 0. A boundary whose walls do not move may ignore the origin. A
+/// boundary whose walls move reduces it by whole periods to a phase of their motion, as
 /// [`WallMotion`](crate::wall::WallMotion) explains.
 ///
 /// # Who asks what, and when
@@ -118,33 +118,35 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    every larger region that contains the region.
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
 ///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`. A search
-///    that cannot come to an end says how far the way is free, which is later than the flight begins.
+///    that cannot finish returns a time up to which the path is free, later than the start of the flight.
 /// 4. If the disk already touches a wall, even if only by rounding, that touch is found immediately while the
 ///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives the unit normal that points from the wall to the disk, the gradient of
 ///    the gap, to $`10^{-8}`$. The velocity is the velocity of the wall's material at the touch, whatever the
-///    time origin: along the normal, it is the speed at which the wall moves by `overlap`, to $`10^{-8}`$ of
-///    the speeds; two disks that touch the same point of a wall find the same velocity there. The radius is
-///    the surface's radius of curvature at the touch: infinite if it is straight, negative if it is hollow,
-///    never zero. At a tip or a corner it may be any other. The angular velocity is that of the surface.
-/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the positive depth to which the
-///    disk reaches into a wall, and names the wall in which it is deepest, or one that is as deep. It agrees
-///    with `first_touch` for disks of each kind: at a touch, a disk that is larger by $`10^{-9}`$ of the size
-///    of the domain overlaps the wall, and one that is smaller by this overlaps none.
+///    time origin. Along the normal, it is the speed at which the wall moves according to `overlap`, to
+///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
+///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
+///    it is hollow, never zero. At a tip or a corner, it may have any other value.
+///    The angular velocity is that of the surface.
+/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
+///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
+///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
+///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
+///    overlaps none.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
-/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple: its velocity changes by
+/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple. Its velocity changes by
 ///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
-///    over the [`tangential_mass`](Surface::tangential_mass); a couple C on a wall of radius R with such a
-///    mass m counts as the impulse C/R. No wall moves in an instant. The result is [`Reaction::Moved`] if the
-///    velocity changes. A wall of infinite masses does not react.
+///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with such a
+///    mass m counts as the impulse C/R. No wall changes its position instantaneously. The result is
+///    [`Reaction::Moved`] if the velocity changes. A wall of infinite masses does not react.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
-/// 12. [`area`](Self::area), if it is known, is the area of the places without an `overlap` for the default
-///     kind, and [`wall_point`](Self::wall_point) stays on its wall.
+/// 12. [`area`](Self::area), if it is known, is the area of the positions without an `overlap` for the
+///     default kind, and [`wall_point`](Self::wall_point) stays on its wall.
 /// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
 ///     have equal fingerprints, whatever their state and their origin.
 ///
@@ -153,7 +155,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
 ///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
-///   epoch, a typical disk moves some tens of diameters.
+///   epoch, a typical disk moves tens of diameters.
 /// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
 /// - It calls `surface` for a touch that `first_touch` found: with its wall, its time, and the position of
@@ -164,12 +166,12 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// # Boundaries that break the contract
 /// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
 /// `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
-/// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, and it must be no deeper
-/// in one than 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a
-/// disk that has left the domain, and a disk that overlaps a wall at the end of a search that found no touch.
-/// A missed touch with a thin wall that disks meet from both sides stays unseen. A touch with a wall that the
-/// disk is leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal
-/// that is not finite is an error of the run.
+/// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than 1e-6 of
+/// its radius. Three things therefore end a run with an error: an early or late touch, a disk that has left
+/// the domain, and a disk that overlaps a wall at the end of a search that found no touch. A missed touch
+/// with a thin wall that disks meet from both sides stays unseen. A touch with a wall that the disk is
+/// leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal that is
+/// not finite is an error of the run.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -270,8 +272,8 @@ pub trait Boundary {
         self.domain()
     }
 
-    /// Returns the displacement of a wall from its place at rest at `time`, and the phase of its motion: the
-    /// time since the motion began, less whole periods.
+    /// Returns the displacement of a wall from its position at rest at `time`, and the phase of its motion:
+    /// the time since the motion began, less whole periods.
     ///
     /// `None` for a wall that does not move, and for a wall that moves with one of a smaller index, as the
     /// bricks of a part do. It is `None` unless implemented. The phase of a [`Piston`](crate::wall::Piston)
@@ -295,9 +297,9 @@ pub trait Boundary {
     /// If the disk already touches a wall, that touch is found immediately while the disk approaches the
     /// wall, and never while the disk leaves it.
     ///
-    /// An `Option<Touch>` becomes the result by `into`. A search with many steps may return the time up to
-    /// which it has found no touch ([`FirstTouch::NotBefore`]); the engine calls again at that time, so a run
-    /// can check its limits between two parts of a long search.
+    /// An `Option<Touch>` converts into the result with `into`. A search with many steps may return the time
+    /// up to which it has found no touch ([`FirstTouch::NotBefore`]). The engine calls again at that time, so
+    /// a run can check its limits between two parts of a long search.
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
@@ -333,13 +335,13 @@ pub trait Boundary {
     /// default kind is free at `time`, or `None` if the boundary does not know the area.
     ///
     /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
-    /// it, and refuse to measure without it where the domain is not all free. As long as the
-    /// [points](Self::wall_point) of all walls stay where they are, they may keep the answer. It is `None`
+    /// it; where walls occupy part of the domain, they refuse to measure without it. As long as the
+    /// [points](Self::wall_point) of all walls stay where they are, they may reuse the area. It is `None`
     /// unless implemented.
     ///
     /// Containers, vessels and obstacles know it to 1e-10, whatever overlaps. The exceptions are
     /// obstacles that lie in a curved wall, and parts whose lines end inside the container with disks on one
-    /// side only: there, pieces below a sixteenth of their surroundings may be missed.
+    /// side only. There, pieces below a sixteenth of their surroundings may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
         let _ = (region, radius, time);
         None
@@ -349,7 +351,7 @@ pub trait Boundary {
     ///
     /// The engine calls it after each collision with a wall. A wall that reacts has a finite
     /// [mass](Surface::with_mass), and its motion between two impacts is known. If the result is
-    /// [`Reaction::Moved`], the engine predicts all flights anew that [`may_meet`](Self::may_meet) names. The
+    /// [`Reaction::Moved`], the engine predicts anew all flights that [`may_meet`](Self::may_meet) names. The
     /// default reacts to nothing, and costs nothing.
     #[inline]
     fn react(&mut self, impact: &Impact) -> Reaction {
@@ -359,7 +361,7 @@ pub trait Boundary {
 
     /// Returns whether a disk with its center in `region` may touch this wall at any time up to `until`.
     ///
-    /// The engine calls the method after a wall has [reacted](Self::react), in order to find the disks whose
+    /// The engine calls this method after a wall has [reacted](Self::react), in order to find the disks whose
     /// flights may now end differently. A narrow result saves predictions; the default is the result of
     /// [`may_touch`](Self::may_touch).
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
@@ -368,7 +370,7 @@ pub trait Boundary {
     }
 
     /// Returns the state of the walls that [react](Self::react) at the time origin, as numbers: positions,
-    /// velocities, and all else that impacts have changed.
+    /// velocities, and everything else that impacts have changed.
     ///
     /// A checkpoint keeps them, since a boundary that is given again begins anew. It is empty unless
     /// implemented.

@@ -112,15 +112,16 @@ use crate::forward::forward;
 ///    run ends as stalled.
 /// 4. The collision gains no energy, of the relative motion of the surfaces and of the relative spin, unless
 ///    the rule is meant to drive. Otherwise, the system heats up unnoticed.
-/// 5. The partners exchanged give the same physics: the same normal and tangential impulse, and the opposite
-///    couple, for the contact with kinds and radii in the other order and with the opposite relative spin and
-///    response. Otherwise, a trajectory depends on the order of the disks in a list.
-/// 6. The mirror image gives the mirror image: the same normal impulse, and the opposite tangential one and
-///    couple, for the opposite slip and relative spin. A rule for disks that are not symmetric may differ.
+/// 5. An exchange of the partners leaves the physics unchanged: the same normal and tangential impulse, and
+///    the opposite couple, for the contact with kinds and radii in the other order and with the opposite
+///    relative spin and response. Otherwise, a trajectory depends on the order of the disks in a list.
+/// 6. The mirror image of a contact gives the mirror image of the impulse: the same normal impulse, and the
+///    opposite tangential one and couple, for the opposite slip and relative spin. A rule for disks that are
+///    not symmetric may differ.
 ///
 /// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
-/// [`laws::check`] tests it. The promises that it takes say which of 4 to 6 a rule does not give, and which
-/// others it gives: friction and rolling friction within their limits. `docs/validation.md` says which
+/// [`laws::check`] tests it. Its `promises` say which of promises 4 to 6 a rule does not keep, and which
+/// further ones it keeps: friction and rolling friction within their limits. `docs/validation.md` says which
 /// planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",

@@ -191,8 +191,8 @@ impl Disk {
     /// Returns the numbers of periods that the disk has crossed to the right and up, minus the numbers
     /// crossed to the left and down.
     ///
-    /// Each passage counts one, also if the period has changed since. After 2³¹ passages the count continues
-    /// at −2³¹.
+    /// Each passage counts as one, even if the period has changed since. After 2³¹ passages the count
+    /// continues at −2³¹.
     ///
     /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) turns these
     /// numbers into a position that does not jump.

@@ -90,8 +90,8 @@ impl ParameterError {
 
 /// Converts errors of these types into an error that holds its cause in a box.
 ///
-/// A conversion from any error at all would also be one from the error itself, which the language has
-/// already.
+/// A conversion from every type of error would include this type itself, and the standard library has that
+/// conversion already.
 macro_rules! from_causes {
     ($error:ident from $($cause:ty),+) => {
         $(impl From<$cause> for $error {

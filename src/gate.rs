@@ -33,7 +33,8 @@ macro_rules! from_file {
 
 pub(crate) use from_file;
 
-/// A value without fields, as files hold it: an empty table. Some formats, TOML among them, know no unit.
+/// A value without fields, as files hold it: an empty table. Some formats, TOML among them, have no unit
+/// value.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,7 +61,7 @@ macro_rules! without_fields {
 
 pub(crate) use without_fields;
 
-/// Writes a number that can be infinite or NaN. It is absent then, since not all formats know these.
+/// Writes a number that can be infinite or NaN. Such a number is left out, since not all formats can hold it.
 #[cfg(feature = "serde")]
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 pub(crate) fn if_finite<S: serde::Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {

@@ -5,8 +5,8 @@
 //! | [`lattice`] | equal ones | a square lattice from the floor up |
 //! | [`even_lattice`] | equal ones | a square lattice over the whole interior |
 //! | [`placed_in_rows`] | any | rows, small ones on top of each other |
-//! | [`random`], [`placed_at_random`] | equal ones, any | random places, up to an area fraction of 0.5 |
-//! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
+//! | [`random`], [`placed_at_random`] | equal ones, any | random positions, up to an area fraction of 0.5 |
+//! | [`packed_at_random`] | any | random positions, up to an area fraction of 0.8 |
 //!
 //! A [`Reader`](crate::trajectory::Reader) takes disks from files of other programs.
 //!
@@ -14,7 +14,7 @@
 //! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks
 //! into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
-//! The functions place no disk into a wall: at time 0,
+//! The functions place no disk in a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in
 //! a boundary of any shape, even if it leaves only some of its interior free.
 

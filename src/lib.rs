@@ -42,16 +42,16 @@
 //!
 //! The [`guide`] leads from a question to a figure, with a chapter for each step.
 //!
-//! Many runs, over the values of parameters, on all cores and in many processes, are a study: the package
-//! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, also by the
-//! command `granular-edmd`.
+//! A study is many runs over the values of parameters, on all cores and in many processes. The package
+//! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, and so does
+//! its command `granular-edmd`.
 //!
 //! # Map
 //! | module | contents |
 //! |---|---|
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`speed`] | reports of runs, standard states, comparisons of parts |
-//! | [`initial`] | initial states: lattices, random places, dense packings, radii |
+//! | [`initial`] | initial states: lattices, random positions, dense packings, radii |
 //! | [`replay`] | runs played back: any collision, and where two runs differ |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`trajectory`] | files of disks, frame by frame, and readers |

@@ -83,7 +83,7 @@
 //!
 //! # Tables
 //! Every measure is a [`Table`]: [`write_csv`](Table::write_csv) writes its results with names, units and
-//! errors. A [`Series`] is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
+//! errors. A [`Series`] is a table if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Errors
 //! These errors do not assume that samples are independent. They come from blocks of consecutive samples or
@@ -95,8 +95,8 @@
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
 //! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. Read back and lent to
-//! the resumed run, they have the same bits in the end as in a run without interruption. Text formats may
-//! lose bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
+//! the resumed run, they finally have the same bits as in a run without interruption. Text formats may lose
+//! bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
 
 mod arrivals;
 mod by_kind;

@@ -1,8 +1,8 @@
 //! Playback of runs: the state before any collision, the last collisions of a disk, and the first differences
 //! of two runs.
 //!
-//! Only states of the run are recorded, at intervals. All in between follows from these states, bit for bit,
-//! so any collision can be looked at as if one had waited for it. A state may come from a
+//! Only states of the run are recorded, at intervals. Everything in between follows from these states, bit
+//! for bit, so any collision can be examined as if the run had just reached it. A state may come from a
 //! [checkpoint](Simulation::resume), from a start file or from a plan and a seed.
 //!
 //! ```
@@ -159,7 +159,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     }
 
     /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in
-    /// their order. The disk is known by its [id](crate::Disk::id).
+    /// their order. The disk is identified by its [id](crate::Disk::id).
     ///
     /// # Errors
     /// If the parts of the run return other results than the first time.
@@ -202,8 +202,8 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     ///
     /// A bisection finds the last state that is the same in both, and the collisions are compared from there
     /// on, disk by disk. Two runs that differ in a rounding therefore have the same partners for a while,
-    /// although their times differ. A run that ended with an error is compared up to there. The result is
-    /// `None` if the two keep no states of the same times.
+    /// although their times differ. A run that ended with an error is compared up to the error. The result is
+    /// `None` if the two runs keep no states at the same times.
     ///
     /// # Errors
     /// If the parts of a run return other results than the first time.

@@ -1,13 +1,13 @@
 //! Schedulers, which know the disk with the earliest event.
 //!
 //! The engine keeps one event for each disk, the earliest that is known. A scheduler orders the times of
-//! these events, and knows nothing else about them. Of equal times, the one with the smaller index comes
-//! first, so any two schedulers give the same trajectory bit for bit.
+//! these events, and knows nothing else about them. At equal times, the smaller index comes first, so any two
+//! schedulers give the same trajectory bit for bit.
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
 //! | [`BySize`] | as the faster of the next two | default |
-//! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to some ten thousand disks |
+//! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to tens of thousands of disks |
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |
 //!
@@ -62,12 +62,12 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///
 /// # Schedulers that break the contract
 /// The engine compares each result with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. If a scheduler loses a `set` and never names an
-/// event that is due, the engine notices when the epoch ends, or at the end of a run with at least as many
-/// events as disks, and ends the run with an error. Checking all disks more often would cost time, so the
+/// than the last one set for it, ends the run with an error. A scheduler that loses a `set` may never name an
+/// event that is due. The engine then ends the run with an error, but only when the epoch ends, or at the end
+/// of a run with at least as many events as disks. Checking all disks more often would cost time, so the
 /// engine does not notice a lost event in shorter runs and in single steps within an epoch, nor swapped
 /// events once both were named. [`laws::check`] finds such faults if they show within its scripts of up to
-/// fifty thousand operations; `docs/validation.md` says which planted faults it finds.
+/// three million operations; `docs/validation.md` says which planted faults it finds.
 ///
 /// # Why the answer is a pair and not an `Option`
 /// The engine calls the method at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails

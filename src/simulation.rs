@@ -16,12 +16,11 @@
 //!    time per event, over windows of 200 000 events and 20 more for each disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
-//!    the caller gives again. It notices if they are different ones, as far as they have fingerprints.
+//!    the caller gives again. If they have fingerprints, it notices when others are given.
 //! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
 //!    error that names the result. It never makes the engine go back in time, or name a disk or wall that
-//!    does not exist. A collision that is carried out is at its wall, and no deeper in it or in a disk than
-//!    rounding. The chapters of [`Boundary`] and [`EventScheduler`] on broken contracts say which faults stay
-//!    unseen.
+//!    does not exist. A collision that is carried out happens at the surface of the partner, up to rounding.
+//!    The sections of [`Boundary`] and [`EventScheduler`] on broken contracts say which faults go unnoticed.
 
 mod builder;
 mod cells;
@@ -300,8 +299,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets other walls from now on.
     ///
-    /// Moving walls are where their motions are at the present time. A wall that is thereby suddenly
-    /// elsewhere is a [`Warning`].
+    /// Moving walls are where their motions are at the present time. A wall that jumps in this way causes a
+    /// [`Warning`].
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation

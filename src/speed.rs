@@ -4,7 +4,7 @@
 //! [`mixture`] and [`vessel`] are standard states, in which a custom part is measured beside the built-in
 //! one: [`Simulation::with_rule`](crate::Simulation::with_rule),
 //! [`with_boundary`](crate::Simulation::with_boundary) and
-//! [`with_scheduler`](crate::Simulation::with_scheduler) put it in, and a [`Comparison`] distinguishes a
+//! [`with_scheduler`](crate::Simulation::with_scheduler) insert it, and a [`Comparison`] distinguishes a
 //! difference from noise. In criterion, a [`stretch`] is one run alone, without a partner that alternates
 //! with it.
 //!

@@ -7,11 +7,11 @@
 //! | [`Sinusoidal`] | $`A\sin\omega t`$ | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
-//! | [`Tabulated`] | through given places at given times, or from one place to another | |
+//! | [`Tabulated`] | through given positions at given times, or from one position to another | |
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!
-//! Motions combine, and bounds of the acceleration follow:
+//! Motions combine, and bounds on the acceleration follow:
 //!
 //! | of motions | displacement |
 //! |---|---|
@@ -36,11 +36,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Piston`] is no planned motion: the disks push it, and it moves by its mass, force and spring.
+//! A [`Piston`] is not a planned motion: the disks push it, and it moves by its mass, force and spring.
 //!
-//! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
-//! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
-//! [`laws`] for a check of a custom motion.
+//! [`first_touch`] finds the contact for all of them and for your own motions. Apart from position, velocity
+//! and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an example,
+//! and [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
 mod delayed;
@@ -108,9 +108,9 @@ impl WallState {
 pub struct AccelerationBounds {
     /// End of the piece: a phase later than the requested one, or infinite for a piece without an end.
     pub until: f64,
-    /// Lower bound of the acceleration on the piece.
+    /// Lower bound on the acceleration in the piece.
     pub min: f64,
-    /// Upper bound of the acceleration on the piece.
+    /// Upper bound on the acceleration in the piece.
     pub max: f64,
 }
 
@@ -121,7 +121,7 @@ impl AccelerationBounds {
         Self { until, min, max }
     }
 
-    /// Creates bounds from the acceleration at this phase and a bound of the jerk, its rate of change.
+    /// Creates bounds from the acceleration at this phase and a bound on the jerk, its rate of change.
     ///
     /// They hold for a time of this length: $`a\pm|j|\,\mathit{length}`$. A good length is a sixteenth of the
     /// shortest period in the motion. Shorter pieces cost steps, and so do longer ones, whose bounds are
@@ -174,7 +174,7 @@ impl AccelerationBounds {
 /// 4. Inside a piece, displacement and velocity are continuous, the acceleration jumps a few times at most,
 ///    and the displacement is the integral of the velocity, to $`10^{-8}`$ of it. At the end of a piece, the
 ///    velocity may jump. The displacement may jump there, too, but only away from the disks. The state at
-///    that phase is the one after the jump.
+///    that phase is the state after the jump.
 /// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
 /// 6. [`jumps`](Self::jumps) is true if the displacement jumps at the end of any piece.
 /// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and equal motions have equal ones.
@@ -183,11 +183,11 @@ impl AccelerationBounds {
 /// container calls the methods in any order and from any thread.
 ///
 /// # Motions that break the contract
-/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
-/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even if the
-/// motion breaks the contract; its documentation says how. Bounds that are too small, a reach that is too
-/// small or a jump toward the disks let disks pass into the wall, which the engine notices at the next
-/// collision with it. Bounds that are too large only cost time.
+/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion with a number that is
+/// not finite at one of the tried phases, from 0 on. [`first_touch`] always ends, even if the motion breaks
+/// the contract; its documentation says how. Bounds that are too small, a reach that is too small or a jump
+/// toward the disks let disks pass into the wall, which the engine notices at the next collision with it.
+/// Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{
@@ -228,7 +228,7 @@ pub trait WallMotion {
     /// Returns displacement and velocity at `phase`.
     fn state(&self, phase: f64) -> WallState;
 
-    /// Returns bounds of the acceleration from `phase` to the end of the piece in which it lies.
+    /// Returns bounds on the acceleration from `phase` to the end of the piece in which it lies.
     fn acceleration(&self, phase: f64) -> AccelerationBounds;
 
     /// Returns the smallest and the largest displacement.

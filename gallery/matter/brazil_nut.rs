@@ -105,7 +105,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     write(arguments, &nuts).map_err(Failure::run)
 }
 
-/// Shakes an intruder among the grains, and returns its way.
+/// Shakes an intruder among the grains, and returns its path.
 fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box<dyn Error>> {
     let floor = Sinusoidal::new(AMPLITUDE, 2.0)?;
     let container = Container::open(WIDTH)?.with_motion(Wall::Floor, floor)?;
@@ -193,7 +193,7 @@ const BELOW: f64 = 330.0;
 const SHOWN: f64 = 32.0;
 const LEVELS: (f64, f64) = (-2.0, SHOWN);
 
-/// The highest and the lowest place of the base.
+/// The highest and the lowest position of the base.
 const BASE: Look = Look::line(QUIET, "2 3").with_width(1.0);
 
 /// The mean height of the grains.

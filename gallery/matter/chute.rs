@@ -137,7 +137,7 @@ fn draw(flows: &[Flow]) -> Sheet {
     let layout = panel::axes((0.0, 1.05 * fastest), (0.0, TOP));
     let layout = layout.with_x_label("speed, in √(gd)").with_y_label("height, in diameters");
     let look = |number: usize| Look::number(number).with_size(3.5);
-    // A layer that few grains visit has no mean worth a mark.
+    // The mean of a layer with few grains is not drawn.
     let layers = |flow: &Flow| -> Vec<_> {
         flow.profile.iter().filter(|layer| layer[2] > 0.2).map(|layer| (layer[1], layer[0])).collect()
     };

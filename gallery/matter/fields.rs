@@ -204,7 +204,7 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, arrows:
     }
 }
 
-/// Returns the height that is shown: that of the highest cell with enough disks, and a little more.
+/// Returns the height that is shown, a little more than the height of the highest cell with enough disks.
 fn top(fields: &Fields) -> f64 {
     let highest = seen(fields).map(|cell| cell.center.y).fold(0.0, f64::max);
     (10.0 * (0.1 * highest + 0.5).ceil()).min(BOX.y)

@@ -1,9 +1,9 @@
 //! Osmosis: a membrane that one of two kinds passes, and the pressure on a piston.
 //!
-//! A solution on the left and a solvent on the right are parted by a membrane, which stops the solute only.
-//! The left wall is a piston on a spring, and shows the pressure. Solvent flows through the membrane until as
-//! much comes back; the solution then has the greater pressure. All disks are hard, elastic and of diameter
-//! 1, and the box is periodic upward.
+//! A solution on the left and a solvent on the right are separated by a membrane, which stops the solute
+//! only. The left wall is a piston on a spring, and shows the pressure. Solvent flows through the membrane
+//! until as much comes back; the solution then has the greater pressure. All disks are hard, elastic and of
+//! diameter 1, and the box is periodic upward.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin membrane
@@ -76,7 +76,7 @@ struct Osmosis {
     inflow: Vec<(f64, f64)>,
     /// The same in equilibrium, in a unit of time.
     exchange: Estimate,
-    /// The disks and the place of the piston in the end.
+    /// The disks and the position of the piston at the end.
     shot: Vec<Disk>,
     piston: f64,
 }

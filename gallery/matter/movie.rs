@@ -1,7 +1,7 @@
 //! A movie of a run: one convection roll turns.
 //!
-//! 1000 disks in the paper's vibrated box. They are colored by their height once the roll turns, so that it
-//! is seen how the roll carries them around. The movie is an animated PNG, which browsers show.
+//! 1000 disks in the paper's vibrated box. They are colored by their height once the roll turns, to show how
+//! the roll carries them around. The movie is an animated PNG, which browsers show.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin movie
@@ -55,7 +55,7 @@ struct Arguments {
     results: Results,
 }
 
-/// Width and height of the box, and what of the height is seen.
+/// Width and height of the box, and the part of the height that is shown.
 const BOX: DVec2 = DVec2::new(60.0, 150.0);
 const SEEN: f64 = 120.0;
 
@@ -118,7 +118,7 @@ fn frames(arguments: &Arguments) -> Result<Vec<Frame>, Box<dyn Error>> {
     Ok(frames)
 }
 
-/// Returns the layer of each disk by its height: as many disks in one as in another.
+/// Returns the layer of each disk by its height. All layers have the same number of disks.
 fn layers(disks: &[Disk]) -> Vec<u8> {
     let mut order: Vec<usize> = (0..disks.len()).collect();
     order.sort_by(|&a, &b| disks[a].position().y.total_cmp(&disks[b].position().y));
@@ -145,7 +145,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// Draws disks in the colors of their layers, with so many pixels for a unit of length.
+    /// Draws disks in the colors of their layers, with this number of pixels per unit of length.
     fn of(disks: &[Disk], layers: &[u8], scale: f64) -> Self {
         let (width, height) = ((scale * BOX.x).ceil() as usize + 2, (scale * SEEN).ceil() as usize + 1);
         let mut canvas = Self { width, height, pixels: vec![0; width * height] };
@@ -196,7 +196,7 @@ fn palette() -> Vec<u8> {
     [PAPER, WALL].into_iter().chain(shades).flatten().collect()
 }
 
-/// Writes the movie, at twelve frames per second, without an end.
+/// Writes the movie, an endless loop at twelve frames per second.
 fn write(path: &Path, frames: &[Frame]) -> Result<(), Box<dyn Error>> {
     let first = &frames.first().ok_or("there are no frames")?.canvas;
     let file = BufWriter::new(named(path, File::create(path))?);

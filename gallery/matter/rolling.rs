@@ -104,7 +104,7 @@ fn rolling_speed(coefficient: f64, time: f64) -> f64 {
     (SPEED - 2.0 / 3.0 * coefficient * time).max(0.0)
 }
 
-/// Returns the grains that flow down a slope in a unit of time, and the grains in the end.
+/// Returns the grains that flow down a slope in a unit of time, and the grains at the end.
 fn flow(arguments: &Arguments, coefficient: f64) -> Result<(Estimate, Vec<Disk>), Box<dyn Error>> {
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps()?);
     let grains = initial::homogeneous(initial::Radii::uniform(0.4, 0.5)?.draw(GRAINS, 1), 1.0)?;

@@ -2,9 +2,8 @@
 //!
 //! 600 grains stand on the floor of a silo, with an outlet that is shut by a gate. The gate is taken out. A
 //! sink below takes the grains out that have left, and an inlet puts them in again on top, so that the flow
-//! goes on at a constant filling. In two
-//! dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}` for an outlet of width `D` and grains of
-//! diameter `d`.
+//! continues at a constant filling. In two dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}` for an
+//! outlet of width `D` and grains of diameter `d`.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin silo
@@ -82,7 +81,7 @@ const LAYER: f64 = 3.0;
 const AGAIN: Kind = Kind::new(99);
 
 /// Least speed at which surfaces part, so that grains at rest do not collide ever faster. The flow does not
-/// depend on it: docs/rest.md has the table, also of what a contact duration would do.
+/// depend on it: docs/rest.md has the table, which also shows the effect of a contact duration.
 const LEAST: f64 = 0.05;
 
 /// A flow that was measured.
@@ -265,7 +264,7 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
     sheet.legend_inside(&panel, &names);
 }
 
-/// Returns the color of the layer of a grain, or that of grains which came in again.
+/// Returns the color of the layer of a grain, or the color of grains that came in again.
 fn color(grain: &Disk) -> &'static str {
     const LAYERS: [&str; 3] = [BLUE, SKY, "#c9ced6"];
     let layer = usize::from(grain.kind().number());

@@ -1,4 +1,5 @@
-//! Which single change of the paper's box moves the collapse at small friction to where the paper has it?
+//! Single changes of the paper's box, which may move the collapse at small friction to where the paper has
+//! it.
 //!
 //! At g = 0.002025 and κ = 0.005, inelasticity grows in steps of 0.01 until the disks are collapsed, three
 //! times for each cause. The paper's mean ⟨dE⟩ of the collapse, −0.614, is at q = 0.18 here; the box as
@@ -33,7 +34,7 @@ const HEIGHT: f64 = 150.0;
 /// Oscillations between two samples.
 const EVERY: u32 = 20;
 
-/// Where the collapse is under single changes of the paper's box.
+/// The collapse under single changes of the paper's box.
 #[derive(Parser)]
 struct Arguments {
     /// Oscillations of each value; the first half is discarded.
@@ -66,7 +67,7 @@ enum Cause {
     LosslessBase,
     /// No wall loses anything.
     LosslessWalls,
-    /// The width of the box is that of the places of the centers, or one diameter less.
+    /// Another width of the box: 61 if the paper's 60 is the width for the centers of disks, or 59.
     Width(f64),
     /// The factor β of the moment of inertia βmR².
     Inertia(f64),

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The example writes the studies and `contact_duration.svg` and `.png`, and prints a table. After an
-//! interruption, the same command goes on.
+//! interruption, the same command continues.
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -95,7 +95,7 @@ fn plan(
         .with_repeats(RUNS)
 }
 
-/// Prints a row for each contact duration: the places of the transitions, and the share of collisions that
+/// Prints a row for each contact duration: the positions of the transitions, and the share of collisions that
 /// the model has changed.
 fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
     gallery::say!(
@@ -183,7 +183,7 @@ const MARGINS: Margins = [74.0, 16.0, 10.0, 60.0];
 const HEIGHT: f64 = 320.0;
 const HEADER: f64 = 176.0;
 
-/// Draws the places of the transitions over the contact duration, for both parameters.
+/// Draws the positions of the transitions over the contact duration, for both parameters.
 fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
     let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT * panels.len() as f64);
     let system = format!("N = 1000, g = 0.015625; above: q = 0, below: κ = {FRICTION}");

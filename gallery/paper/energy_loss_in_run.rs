@@ -44,7 +44,7 @@ impl Arguments {
     }
 }
 
-/// Parts of the measured time, whose scatter tells the errors.
+/// Parts of the measured time, whose scatter gives the errors.
 const PARTS: u32 = 80;
 
 /// Energy changes and temperatures by height.

@@ -91,7 +91,7 @@ impl Panel {
         if self.logarithmic { layout.with_log_x() } else { layout.with_x_tick_step(0.2) }
     }
 
-    /// Returns the place of a point in the panel, from 0 to 1 in both directions.
+    /// Returns the position of a point in the panel, from 0 to 1 in both directions.
     fn fraction(&self, (friction, inelasticity): (f64, f64)) -> (f64, f64) {
         let across = if self.logarithmic { (friction.log10() + 3.0) / 4.0 } else { friction };
         (across, inelasticity / self.largest_inelasticity)
@@ -241,7 +241,7 @@ fn draw_panel(
     Ok(())
 }
 
-/// Returns the look of a line: in three colors for little loss, more, and much. The numbers tell which it is.
+/// Returns the look of a line: in one of three colors, by its loss. The labels show the numbers.
 fn look(level: f64) -> Look {
     let color = match -level {
         ..0.25 => SKY,

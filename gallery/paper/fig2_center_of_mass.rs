@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The example writes `fig2_center_of_mass.svg` and `.png`, and the tables of the study. After an
-//! interruption, the same command goes on.
+//! interruption, the same command continues.
 
 use std::error::Error;
 use std::process::ExitCode;

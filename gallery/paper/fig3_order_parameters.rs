@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The example writes `fig3_order_parameters.svg` and `.png`, and the tables of the study. With `--down` the
-//! picture shows both ways of friction. After an interruption, the same command goes on.
+//! picture shows both ways of friction. After an interruption, the same command continues.
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -42,8 +42,8 @@ type Record = granular_edmd_study::Record<VibratedBox>;
 impl Arguments {
     fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {
         let experiment = gallery::studies::vibrated_box(0.015_625);
-        // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient
-        // included.
+        // The paper keeps each value for 100 000 oscillations, and draws all samples, including the
+        // transient.
         let protocol =
             if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) }?;
         let frictions: Vec<f64> = (1..=15).map(|step| f64::from(step) * STEP).collect();

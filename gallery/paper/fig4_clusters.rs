@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The example writes `fig4_clusters.svg` and `.png`, `clusters.csv` and the tables of the study. After an
-//! interruption, the same command goes on.
+//! interruption, the same command continues.
 
 use std::error::Error;
 use std::path::Path;

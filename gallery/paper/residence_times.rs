@@ -1,4 +1,4 @@
-//! How long does a roll keep its sense, and how long do two rolls stay where one is stable, too?
+//! The time for which a roll keeps its sense, and for which two rolls last where one is stable, too.
 //!
 //! The example reads the order parameters that `docs/reproduction/protocols/long` has recorded, a million
 //! oscillations for each value, names the state of each sample, and counts how long states last. It writes
@@ -99,22 +99,22 @@ impl Value {
         self.residence(senses.len(), changes).filter(|_| self.share(State::TwoRolls) < 0.25)
     }
 
-    /// Returns how long two rolls stay, or one roll of either sense.
+    /// Returns how long two rolls last, or one roll of either sense.
     fn rolls(&self, two: bool) -> Option<Residence> {
         let are_two = self.two_rolls()?;
         let ends = are_two.windows(2).filter(|pair| pair[0] == two && pair[1] != two).count();
         self.residence(are_two.iter().filter(|seen| **seen == two).count(), ends)
     }
 
-    /// Returns where there are two rolls, without fluctuations; `None` where rolls are weak: two of them come
-    /// from one by fluctuations there, and at the edge of the collapse both do from none.
+    /// Returns where there are two rolls, without fluctuations; `None` where rolls are weak: there,
+    /// fluctuations turn one roll into two, and at the edge of the collapse they make rolls from none.
     fn two_rolls(&self) -> Option<Vec<bool>> {
         let are_two: Vec<bool> = self.states.iter().map(|state| *state == State::TwoRolls).collect();
         (self.strength >= 8.0).then(|| without_short(&are_two, (self.shortest / self.every) as usize))
     }
 
-    /// Returns the time of samples over the number of ends; so the last stay counts, too, whose end is not
-    /// seen. The stays are independent, and their number has the error of a count.
+    /// Returns the time of samples over the number of ends; so the last stay, whose end is not seen, counts,
+    /// too. The stays are independent, and their number has the error of a count.
     fn residence(&self, samples: usize, ends: usize) -> Option<Residence> {
         let mean = (samples as u64 * self.every) as f64 / ends as f64;
         (ends > 0).then(|| Residence { mean, error: mean / (ends as f64).sqrt(), ends })
@@ -136,8 +136,8 @@ impl Residence {
         self.ends <= 2
     }
 
-    /// Returns the means for which so many ends are as usual as one standard deviation of a count. Without a
-    /// bound from above, the bar goes on to the edge of the picture.
+    /// Returns the means for which this number of ends is within one standard deviation of a count. Without a
+    /// bound from above, the bar extends to the edge of the picture.
     fn interval(&self) -> [f64; 2] {
         let (ends, deviation) = (self.ends as f64, (self.ends as f64).sqrt());
         let above = if self.is_bound() { f64::INFINITY } else { self.mean * ends / (ends - deviation) };
@@ -157,8 +157,8 @@ fn without_short(series: &[bool], least: usize) -> Vec<bool> {
 
 /// Names the state of each sample. A state lasts until the order parameter of another one is above three
 /// times the noise of a gas at rest, and by twice the noise on its side of Ψ₂ = 2 |Ψ₁|, between one roll that
-/// leans to a side and two rolls: less would count noise as changes. Samples before the first such are left
-/// out.
+/// leans to a side and two rolls: less would count noise as changes. Samples before the first such sample are
+/// left out.
 fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
     let (least, margin) = (3.0 * noise, 2.0 * noise);
     let mut now = None;
@@ -318,7 +318,8 @@ fn draw(values: &[Value]) -> Sheet {
     sheet
 }
 
-/// Returns the friction and the length of a stay at each value of the larger gravity that is no ramp.
+/// Returns the friction and the length of a stay at each value of the larger gravity that is not part of a
+/// ramp.
 fn times(stay: &Stay, values: &[Value]) -> impl Iterator<Item = (f64, Residence)> {
     let of_sweep = values.iter().filter(|value| value.row.leg.is_empty());
     of_sweep.filter_map(|value| Some((value.row.friction?, (stay.of)(value)?)))

@@ -30,7 +30,7 @@ struct Arguments {
     /// Folder of a phase diagram with its `transitions.csv`; may be given once for each gravity.
     #[arg(long)]
     study: Vec<PathBuf>,
-    /// Does the same: the whole table takes no time.
+    /// Changes nothing, since the whole table takes no time.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -45,13 +45,13 @@ fn effective(row: &Row) -> Result<f64, ParameterError> {
     effective_inelasticity(row.change.0, 1.0)
 }
 
-/// Returns the error that follows from that of the mean energy change, by the slope of Eq. (9),
+/// Returns the error that follows from the error of the mean energy change, by the slope of Eq. (9),
 /// $`1/(4(1-2q))`$.
 fn error(row: &Row) -> Result<f64, ParameterError> {
     Ok(row.change.1 / (4.0 * (1.0 - 2.0 * effective(row)?)))
 }
 
-/// Tells whether the one column follows from the other. Both are printed to three decimals.
+/// Returns whether one column follows from the other. Both are printed to three decimals.
 fn verdict(row: &Row) -> Result<&'static str, ParameterError> {
     let (change, printed) = (row.change.0, row.effective.0);
     let least = effective_inelasticity(change + HALF_DIGIT, 1.0)?;

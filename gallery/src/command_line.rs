@@ -27,7 +27,7 @@ pub fn make_folder(out: &Path) -> Result<(), Failure> {
 
 /// Parses the command line. A mistake ends the program with one line and exit code 2.
 fn parse<A: Parser>() -> A {
-    // A negative number is told by the flag that cannot take it, and is no unknown flag.
+    // A negative number is reported by the flag that cannot take it, not as an unknown flag.
     let matches = A::command().allow_negative_numbers(true).try_get_matches();
     matches.and_then(|matches| A::from_arg_matches(&matches)).unwrap_or_else(|error| {
         if !error.use_stderr() {
@@ -45,7 +45,7 @@ fn in_one_line(message: &str) -> String {
     let told = message.lines().map(str::trim);
     let told = told.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let told = told.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
-    // What the standard library says of a text that is no whole number.
+    // The message of the standard library about a text that is not a whole number.
     let told = told.replace("invalid digit found in string", NO_WHOLE_NUMBER);
     let told = told.replace("cannot parse integer from empty string", NO_WHOLE_NUMBER);
     told.replace("number too large to fit in target type", "the number is too large")

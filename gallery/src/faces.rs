@@ -3,7 +3,7 @@
 use granular_edmd::Disk;
 use kuva::prelude::{Plot, ScatterPlot};
 
-/// Distance by which disks are drawn too small, so that disks that touch are seen apart.
+/// Distance by which disks are drawn too small, so that touching disks look separate.
 pub const GAP: f64 = 0.4;
 
 /// Returns disks in their colors, for a panel with this many units of the sheet to a unit of length. On the

@@ -56,7 +56,7 @@ impl From<RunError> for Failure {
     }
 }
 
-/// Tells an error of a run with its sources.
+/// Converts an error of a run, with its sources in the text.
 impl From<Box<dyn Error>> for Failure {
     fn from(error: Box<dyn Error>) -> Self {
         let chain = std::iter::successors(Some(&*error), |&error| error.source());

@@ -83,6 +83,6 @@ fn side(fields: &Fields) -> f64 {
 fn round(speed: f64) -> f64 {
     let decade = speed.log10().floor();
     let digit = (speed / 10f64.powf(decade)).floor();
-    // A division keeps 0.3 what it is; a product with 0.1 would not.
+    // A division gives exactly 0.3; a product with 0.1 would not.
     if decade < 0.0 { digit / 10f64.powf(-decade) } else { digit * 10f64.powf(decade) }
 }

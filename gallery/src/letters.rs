@@ -29,7 +29,7 @@ struct Line<'a> {
 
 impl Letters {
     /// Returns the fonts that kuva brings, so that letters look the same on all machines, and appear on those
-    /// without fonts. kuva gives them away only inside of a picture.
+    /// without fonts. kuva gives access to them only inside a picture.
     pub fn of_kuva() -> Result<Self, String> {
         let picture = SvgBackend::new().with_embedded_font(true).render_scene(&Scene::new(1.0, 1.0));
         let coded = picture.split("base64,").skip(1).map(|text| text.split('\'').next().unwrap_or_default());

@@ -16,7 +16,8 @@ pub const PURPLE: &str = "#cc79a7";
 pub const ORANGE: &str = "#e69f00";
 pub const SKY: &str = "#56b4e9";
 
-/// Colors of a quantity from low to high. They get lighter in steps, so that their order is seen in gray, too.
+/// Colors of a quantity from low to high. They get lighter in steps, so that their order is visible in gray,
+/// too.
 pub const DARK_TO_LIGHT: [&str; 4] = ["#443983", "#2a788e", "#35b779", "#b5de2b"];
 
 /// The shape of a mark.

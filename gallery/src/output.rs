@@ -1,7 +1,8 @@
 //! Standard output, which a reader may close at any time.
 //!
-//! `println!` panics if nobody reads on, and then a program's files are not written. Here, a closed pipe ends
-//! what is printed and nothing else, and any other failure ends the program with an error, after its work.
+//! `println!` panics if the reader has gone, and then a program's files are not written. Here, a closed pipe
+//! ends what is printed and nothing else, and any other failure ends the program with an error, after its
+//! work.
 
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
@@ -12,10 +13,10 @@ use granular_edmd::simulation::Warning;
 
 use crate::failure::Failure;
 
-/// Why nothing is printed any more.
+/// The reason why nothing is printed any more.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Whether standard output belongs to the numbers as JSON, and all else goes to standard error.
+/// True if standard output is only for the numbers as JSON, and everything else goes to standard error.
 static FOR_JSON: AtomicBool = AtomicBool::new(false);
 
 /// Prints a line, as `println!` does.
@@ -44,7 +45,7 @@ pub fn warn(warnings: &[Warning]) {
     }
 }
 
-/// Prints a line on standard error. If nobody listens there, nothing is left to tell it to.
+/// Prints a line on standard error. A failure there is ignored, since no other place is left to report it.
 pub fn complain(text: Arguments<'_>) {
     let _ = writeln!(io::stderr(), "{text}");
 }

@@ -50,7 +50,7 @@ impl Palette {
 struct Group {
     colors: Vec<(Color, u64)>,
     channel: usize,
-    /// What it would gain to cut this group: its spread times the root of its pixels; 0 for a single color.
+    /// The gain of cutting this group: its spread times the root of its pixels; 0 for a single color.
     weight: u64,
 }
 

@@ -33,7 +33,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Returns the place of a value between the ends, from 0 to 1.
+    /// Returns the position of a value between the ends, from 0 to 1.
     fn share(&self, value: f64) -> f64 {
         let (low, high) = self.range;
         if self.logarithmic { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
@@ -46,7 +46,7 @@ impl Axis {
         let short = high / low < 30.0;
         let long = |k| k == 1 || (short && (k == 2 || k == 5));
         let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
-        // Division keeps 0.001 what it is; a product with 1e-3 would not.
+        // Division gives exactly 0.001; a product with 1e-3 would not.
         let at = |k, decade: i32| f64::from(k) * 10f64.powi(decade.max(0)) / 10f64.powi((-decade).max(0));
         let ticks = decades.flat_map(|decade| (1..10).map(move |k| (at(k, decade), long(k))));
         ticks.filter(|(tick, _)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(tick)).collect()
@@ -90,18 +90,18 @@ impl Panel {
         }
     }
 
-    /// Returns the place of a point on the sheet.
+    /// Returns the position of a point on the sheet.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let Place { x: left, y: top, width, height } = self.place;
         (left + width * self.x.share(x), top + height * (1.0 - self.y.share(y)))
     }
 
-    /// Returns the place of a value of the axis that lies.
+    /// Returns the position of a value on the horizontal axis.
     pub fn along(&self, value: f64) -> f64 {
         self.at((value, self.y.range.0)).0
     }
 
-    /// Returns the place of a value of the axis that stands.
+    /// Returns the position of a value on the vertical axis.
     pub fn up(&self, value: f64) -> f64 {
         self.at((self.x.range.0, value)).1
     }
@@ -116,7 +116,7 @@ impl Panel {
         (x.clamp(self.x.range.0, self.x.range.1), y.clamp(self.y.range.0, self.y.range.1))
     }
 
-    /// Tells whether a point is within the axes.
+    /// Returns whether a point is within the axes.
     pub fn holds(&self, (x, y): (f64, f64)) -> bool {
         let within = |share: f64| (-1e-9..=1.0 + 1e-9).contains(&share);
         within(self.x.share(x)) && within(self.y.share(y))

@@ -1,4 +1,4 @@
-//! Progress of long work: a bar on a terminal, elsewhere a line now and then.
+//! Progress of long work: a bar on a terminal, and otherwise lines at intervals.
 
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
@@ -12,7 +12,7 @@ use crate::output;
 /// Time between two lines where there is no terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
-/// Collisions between two looks at the clock.
+/// Collisions between two readings of the clock.
 const BETWEEN_LOOKS: u64 = 1 << 12;
 
 /// Steps of the bar of a run.
@@ -37,7 +37,7 @@ impl Progress {
         Self { name, bar, start, told: Mutex::new(start) }
     }
 
-    /// Shows that this much of all is done.
+    /// Shows the share of the work that is done.
     pub fn show(&self, done: u64, all: u64) {
         let Some(bar) = &self.bar else { return self.tell(100.0 * done as f64 / all.max(1) as f64) };
         let before = bar.position();

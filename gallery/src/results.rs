@@ -42,7 +42,7 @@ impl Results {
         self.json.as_ref().is_some_and(|path| path == "-")
     }
 
-    /// Returns the place of a result of this name.
+    /// Returns the path of a result of this name.
     pub fn path(&self, name: &str) -> PathBuf {
         self.out.join(name)
     }

@@ -32,7 +32,8 @@ pub struct Common {
 }
 
 impl Common {
-    /// Does what is not done yet of a study in a folder of this name, or of one ramp of it; see [`complete`].
+    /// Runs the remaining values of a study in a folder of this name, or of one of its ramps; see
+    /// [`complete`].
     pub fn complete<E: Experiment>(
         &self,
         name: &str,
@@ -63,11 +64,11 @@ pub fn vibrated_box(gravity: f64) -> VibratedBox {
     VibratedBox::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
 }
 
-/// Does what is not done yet of a study, or of one ramp of it, and returns the study once all of it is
+/// Runs the remaining values of a study, or of one of its ramps, and returns the study once all of it is
 /// complete.
 ///
-/// The same command starts a study and goes on with it. Ctrl-C stops with all that was done saved; a second
-/// one ends the program at once, with what was saved by then.
+/// The same command starts a study and continues it. Ctrl-C saves all work and stops; a second Ctrl-C ends
+/// the program immediately, with the work saved so far.
 pub fn complete<E: Experiment>(
     folder: &Path,
     plan: &Plan<E>,

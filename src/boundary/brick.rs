@@ -214,7 +214,7 @@ impl Brick {
         }
     }
 
-    /// Returns a lower and an upper bound of the distances of the brick's points from a given point.
+    /// Returns a lower and an upper bound on the distances of the brick's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         match self.shape {
             Shape::Segment(segment) => segment.distances(place),

@@ -125,7 +125,7 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) looks at.
+    /// phases that [`check_finite`](crate::wall::check_finite) examines.
     pub fn with_motion(
         mut self,
         wall: Wall,
@@ -138,8 +138,9 @@ impl Container {
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
     ///
-    /// Initial states are placed where the wall is at the start. An impact of a disk changes when other disks
-    /// meet the wall, so each costs a look at all disks, and new ends for the flights that may meet it.
+    /// Initial states are placed where the wall is at the start. An impact of a disk changes the times at
+    /// which other disks meet the wall. Each impact therefore costs a pass over all disks, and new
+    /// predictions for the flights that may meet the wall.
     ///
     /// # Errors
     /// If the container has no such wall, or the motion of the piston has numbers that are not finite.
@@ -182,7 +183,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall of this kind, as rules find it in the contact.
+    /// Returns the same container with a wall of this kind, which rules read from the contact.
     ///
     /// # Errors
     /// If the container has no such wall.

@@ -152,7 +152,7 @@ impl Domain {
 }
 
 /// Returns the whole numbers whose products with the period lie between `low` and `high`, or at most a
-/// quarter of a period beyond. Callers refuse input that would need many more.
+/// quarter of a period beyond. Callers refuse input that would give very many numbers.
 fn numbers(period: f64, low: f64, high: f64) -> impl Iterator<Item = f64> + Clone {
     const MOST: f64 = 1e4;
     let (first, last) = if period > 0.0 {
@@ -173,8 +173,8 @@ impl fmt::Display for Domain {
     }
 }
 
-/// How files store the upper edge. Some text formats have no infinite numbers, so text files hold `None` for
-/// an open top.
+/// The upper edge as files store it. Some text formats have no infinite numbers, so text files hold `None`
+/// for an open top.
 #[cfg(feature = "serde")]
 mod open_top {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

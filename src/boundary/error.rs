@@ -30,7 +30,7 @@ pub enum VesselError {
     /// A polygon has no area, so it has no inside.
     #[error("the polygon has no area: its points are on one line, or it crosses itself")]
     NoArea,
-    /// A polygon crosses or touches itself, so its inside is not clear. Side 0 begins at the first point.
+    /// A polygon crosses or touches itself, so its inside is not defined. Side 0 begins at the first point.
     #[error(
         "the polygon crosses or touches itself: its side from point {first} to the next one meets its side from point \
          {second} to the next one, counted from 0; are the points in order around it?"

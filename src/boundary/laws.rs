@@ -24,7 +24,7 @@ use area::check_areas;
 use flight::check_flights;
 use trial::{PART, Trial};
 
-/// Number of disks that the check lets fly.
+/// Number of disks that fly in the check.
 const DISKS: usize = 400;
 
 /// Number of flights of each disk, from touch to touch.
@@ -43,9 +43,9 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// Checks that a boundary keeps its contract with disks of this radius and smaller ones, on random flights at
 /// about this speed.
 ///
-/// Each of four hundred disks of several kinds flies from a free place, with or without gravity, at various
-/// times and speeds. A wall that it touches turns it back, for up to four flights in a row, and after some
-/// touches it also grazes that wall. The check requires of each flight:
+/// Each of four hundred disks of several kinds flies from a free position, with or without gravity, at
+/// various times and speeds. Each wall that it touches reflects it, for up to four flights in a row. After
+/// some touches, it also grazes the wall. The check requires of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
@@ -53,8 +53,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along it is the
 ///   rate at which the wall moves there, and the radius of the surface is its radius of curvature.
-/// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, also for those that extend to
-///   infinity at the edges of the domain.
+/// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
+///   to infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.

@@ -12,7 +12,7 @@ use crate::{Disk, Fingerprint, Flight, ParameterError};
 
 /// A boundary with fixed round obstacles inside, such as pegs.
 ///
-/// Each obstacle has the place, the radius and the kind of a disk. It follows the rule of the disks, as a
+/// Each obstacle has the position, the radius and the kind of a disk. It follows the rule of the disks, as a
 /// partner of infinite mass at rest. Obstacles may overlap each other and the walls. Among the walls of the
 /// boundary, obstacles come last, in the order in which they are given. Each search for a touch tries all of
 /// them, so hundreds of obstacles are slow.

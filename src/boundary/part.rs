@@ -112,7 +112,7 @@ impl Part {
         self.with_conduct(Conduct::AbsorbingCenters)
     }
 
-    /// Returns the same part with this kind, as rules find it in the contact.
+    /// Returns the same part with this kind, which rules read from the contact.
     #[must_use]
     pub fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }
@@ -260,7 +260,7 @@ pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DV
     rectangles.fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
 }
 
-/// A brick as seen from a place.
+/// A brick as seen from a position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sighted {
     nearest: Nearest,
@@ -279,7 +279,7 @@ impl Sighted {
     /// equally near and seen less edge-on.
     ///
     /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
-    /// that is seen more broadside decides: the extension beyond its ends is farther from the place.
+    /// that is seen more broadside decides: the extension beyond its ends is farther from the position.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

@@ -10,7 +10,7 @@ use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall of a container: the disks stay on one side of a line.
 ///
-/// Files do not hold where it is: that follows from the size of the container.
+/// Files do not hold its position, which follows from the size of the container.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, rename = "ContainerWall"))]
@@ -80,7 +80,7 @@ impl Plane {
         Self { wall, normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0, slide: None }
     }
 
-    /// Returns whether nothing was set for the wall.
+    /// Returns whether the wall has its default properties.
     pub(super) fn is_plain(&self) -> bool {
         let is_still = self.motion.reach() == (0.0, 0.0) && self.slide.is_none();
         is_still && matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL
@@ -199,7 +199,7 @@ impl Plane {
     }
 
     /// Returns the fingerprint of motion, kind, response and sliding, if all of them have one. The container
-    /// adds the place of the wall.
+    /// adds the position of the wall.
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let kind = f64::from(self.kind.number());
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?).number(kind);

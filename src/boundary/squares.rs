@@ -11,7 +11,7 @@ use crate::Disk;
 /// Factor by which disks reach further than their radii, so that rounding hides no neighbor.
 const MARGIN: f64 = 1.0 + 1e-9;
 
-/// Squares for finding the disks near a place.
+/// Squares for finding the disks near a position.
 ///
 /// A disk is entered in all squares that it reaches. A disk that is entered with radius 0 is in one square,
 /// so it is found only once.
@@ -56,8 +56,8 @@ impl Squares {
         }
     }
 
-    /// Returns all disks that may overlap a disk of this radius, and some others. A disk may come several
-    /// times, but one that was entered with radius 0 comes only once.
+    /// Returns all disks that may overlap a disk of this radius, and some others. A disk may appear several
+    /// times, but one that was entered with radius 0 appears only once.
     pub(crate) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
@@ -72,7 +72,7 @@ impl Squares {
 }
 
 /// A hash of the column and row of a square, faster than the standard hash. It need not resist attacks: the
-/// places come from the program itself.
+/// positions come from the program itself.
 #[derive(Default)]
 struct Mixer(u64);
 

@@ -110,7 +110,8 @@ impl<'a> Surface<'a> {
 
     /// Returns the same surface of a wall that turns at this angular velocity, counterclockwise.
     ///
-    /// Rolling friction acts on the spin of the disk relative to it. The velocity of the surface is set apart.
+    /// Rolling friction acts on the spin of the disk relative to it. The velocity of the surface does not
+    /// follow from it.
     ///
     /// ```
     /// use granular_edmd::boundary::Surface;

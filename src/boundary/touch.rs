@@ -21,7 +21,7 @@ impl Touch {
 }
 
 impl FirstTouch<Touch> {
-    /// Returns the time up to which there is no touch, which is the time of the touch if there is one.
+    /// Returns the time up to which there is no touch: the time of the touch, if there is one.
     #[inline]
     pub fn time(&self) -> f64 {
         match self {
@@ -32,8 +32,8 @@ impl FirstTouch<Touch> {
 
     /// Returns the earlier of two results for the same flight.
     ///
-    /// Of touches at the same time, the wall with the smaller index counts. A boundary that adds walls to
-    /// another boundary, as [`Obstacles`](super::Obstacles) does, combines the results in this way.
+    /// If both touches happen at the same time, the wall with the smaller index counts. A boundary that adds
+    /// walls to another boundary, as [`Obstacles`](super::Obstacles) does, combines the results in this way.
     #[inline]
     pub fn or(self, other: Self) -> Self {
         let is_first = match (&self, &other) {

@@ -24,8 +24,8 @@ const MOST_WALLS: usize = 1 << 16;
 /// brick has an image for each period, and each image may overlap a large part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
-/// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in
-/// rounding.
+/// Least stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are
+/// lost in rounding.
 const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 
 /// A vessel of any shape: named [parts](Part) in a [`Container`].

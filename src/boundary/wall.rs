@@ -56,7 +56,7 @@ pub enum WallError {
         /// The requested wall.
         wall: Wall,
     },
-    /// The settings of the wall would be lost: the wall would be taken away, or move otherwise.
+    /// The settings of the wall would be lost, because the wall would be removed or would move differently.
     #[error("the wall \"{wall}\" has settings that would be lost: leave out what was set before, or this")]
     Lost {
         /// The wall with the settings.

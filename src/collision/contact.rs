@@ -90,7 +90,7 @@ impl Contact {
         Self { relative_spin, spin_inertia, spin_response, ..self }
     }
 
-    /// Returns the speed v_n at which the surfaces approach, which is never negative in a collision.
+    /// Returns the speed v_n at which the surfaces approach; it is never negative in a collision.
     #[inline]
     pub const fn closing_speed(&self) -> f64 {
         self.closing_speed

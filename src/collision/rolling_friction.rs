@@ -7,7 +7,7 @@ use crate::{Fingerprint, ParameterError};
 /// Rolling friction over any rule: a couple slows the relative spin of the partners, up to a limit that grows
 /// with the normal impulse.
 ///
-/// With the relative spin $`\omega'`$ that the rule inside leaves, and the effective radius
+/// With the relative spin $`\omega'`$ that the inner rule leaves, and the effective radius
 /// $`R = R_1R_2/(R_1 + R_2)`$,
 ///
 /// ```math
@@ -19,7 +19,7 @@ use crate::{Fingerprint, ParameterError};
 /// gives no momentum, so disks in translation alone do not feel it.
 ///
 /// The couple acts after the tangential impulse, on the spins that friction has left. Friction is thus the
-/// same with rolling friction and without, and the couple never gains energy, whatever the rule inside does:
+/// same with rolling friction and without, and the couple never gains energy, whatever the inner rule does:
 /// it takes $`C(|\omega'| - C/2I)`$. In the other order, it could push surfaces that have just stuck.
 ///
 /// ```

@@ -13,7 +13,7 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// Bizon et al. take $`v_0 = \sqrt{g\sigma}`$, with the diameter $`\sigma`$. Slow collisions lose next to
 /// nothing, as with real grains, so disks without gravity do not collapse. A disk on a floor still comes to
-/// rest after infinitely many bounces in a finite time, only later: its speed falls by
+/// rest after infinitely many bounces in a finite time, only later. Its speed falls by
 /// $`(1 - r_0)\,v\,(v/v_0)^{3/4}`$ in each bounce, and the durations $`2v/g`$ of the bounces have a finite
 /// sum. Matter at rest needs [`LeastRebound`](super::LeastRebound) or [`ElasticBelow`](super::ElasticBelow)
 /// around this rule.

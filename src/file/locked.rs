@@ -17,20 +17,20 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Locks a file that nobody else has locked.
+    /// Locks a file, unless another owner holds the lock.
     ///
     /// # Errors
-    /// If somebody has the lock, or the file system has no locks.
+    /// If another owner holds the lock, or the file system has no locks.
     pub fn take(file: File) -> Result<Self, TryLockError> {
         file.try_lock()?;
         Ok(Self(file))
     }
 
-    /// Locks a file that nobody else has locked. Continues without a lock where the system has no locks, and
-    /// outside Unix, where a lock could keep other programs from reading.
+    /// Locks a file, unless another owner holds the lock. Continues without a lock where the system has no
+    /// locks, and outside Unix, where a lock could keep other programs from reading.
     ///
     /// # Errors
-    /// [`WouldBlock`](io::ErrorKind::WouldBlock) if somebody has the lock.
+    /// [`WouldBlock`](io::ErrorKind::WouldBlock) if another owner holds the lock.
     pub fn take_if_possible(file: File) -> io::Result<Self> {
         match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
             Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),

@@ -53,7 +53,7 @@ impl Seal {
         bytes
     }
 
-    /// Checks the seal of these bytes, and returns the contents behind it.
+    /// Checks the seal of these bytes, and returns the contents after it.
     ///
     /// # Errors
     /// If they are of another format or version, or were cut or changed.

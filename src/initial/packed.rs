@@ -24,15 +24,14 @@ const APART: f64 = 1e-9;
 /// Returns these disks, of any mix of radii, packed at random below the height `below` (or the lid, if that
 /// is lower).
 ///
-/// The disks start small at random places, and move and collide without loss. Step by step, each of them
+/// The disks start small at random positions, and move and collide without loss. Step by step, each of them
 /// grows into the room that it finds, until it has its full radius. Two sizes reach an area fraction of 0.8
 /// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
 /// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
 ///
 /// The disks are packed in the interior of the boundary, in which walls must not move. Give a container a
-/// piston that falls or is pushed after the disks are packed. To pack disks around
-/// one that has its place already, put that one into the boundary as
-/// [`Obstacles`](crate::boundary::Obstacles).
+/// piston that falls or is pushed after the disks are packed. To pack disks around a disk that is already
+/// placed, put that disk into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 ///
 /// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
 /// all disks grow at the same rate all the time.

@@ -14,12 +14,12 @@ use crate::random::uniform;
 /// Number of trials for each disk.
 const TRIALS: usize = 10_000;
 
-/// Returns equal disks at rest at random places that do not overlap, below the height `below` (or the lid, if
-/// that is lower).
+/// Returns equal disks at rest at random positions that do not overlap, below the height `below` (or the lid,
+/// if that is lower).
 ///
-/// Places are drawn in the interior of the boundary, and a place is taken if the disk overlaps neither
-/// another disk nor a wall there ([`Boundary::overlap`] at time 0). In a round drum, all disks lie inside the
-/// circle.
+/// Positions are drawn in the interior of the boundary, and a position is accepted if the disk overlaps
+/// neither another disk nor a wall there ([`Boundary::overlap`] at time 0). In a round drum, all disks lie
+/// inside the circle.
 ///
 /// Disks are placed one by one where there is room. This cannot reach dense states (with an area fraction
 /// above 0.5, say). For these, start from a [`lattice`](super::lattice()) and let it melt, or take
@@ -27,7 +27,7 @@ const TRIALS: usize = 10_000;
 ///
 /// # Errors
 /// If the radius is not finite and positive, the height is not finite and above the bottom of the interior,
-/// there are more than 2²⁸ disks, or a disk finds no place in ten thousand trials.
+/// there are more than 2²⁸ disks, or a disk finds no position in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -51,13 +51,14 @@ pub fn random<B: Boundary + ?Sized>(
     placed_at_random(boundary, disks, below, seed)
 }
 
-/// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`.
+/// Returns these disks, of any mix of radii, at random positions that do not overlap, below the height
+/// `below`.
 ///
 /// In all other respects, the function works like [`random`].
 ///
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one
-/// finds no place in ten thousand trials.
+/// finds no position in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -102,7 +103,7 @@ fn room_for(interior: &Domain, radius: f64) -> Option<Domain> {
     (room.width() >= 0.0 && room.height() >= 0.0 && fits(x) && fits(y)).then_some(room)
 }
 
-/// Returns a random place in a rectangle.
+/// Returns a random position in a rectangle.
 fn random_site(room: &Domain, generator: &mut Xoshiro256PlusPlus) -> DVec2 {
     DVec2::new(
         room.left + room.width() * uniform(generator),

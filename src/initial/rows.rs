@@ -6,7 +6,7 @@ use super::{PlacementError, check_periods, countable, spacings};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain, Probe};
 
-/// Number of places tried for each disk.
+/// Number of positions tried for each disk.
 const TRIALS: usize = 100_000;
 
 /// Returns these disks, of any mix of radii, in rows from the floor up and from left to right, in the order
@@ -14,8 +14,8 @@ const TRIALS: usize = 100_000;
 ///
 /// A row is as high as the largest disk is wide. Where several disks fit on top of each other, they stand in
 /// one column. Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for
-/// that. Equal disks stand on a square lattice. Places that overlap a wall ([`Boundary::overlap`]) are left
-/// out.
+/// that. Equal disks stand on a square lattice. Positions that overlap a wall ([`Boundary::overlap`]) are
+/// left out.
 ///
 /// # Errors
 /// If there are more than 2²⁸ disks, or there is no room.
@@ -70,7 +70,7 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
         Self { boundary, interior, spacing, height: 2.0 * largest * spacing, corner, column: DVec2::ZERO }
     }
 
-    /// Returns the next free place for a disk of this radius.
+    /// Returns the next free position for a disk of this radius.
     fn site(&mut self, radius: f64) -> Option<DVec2> {
         let size = 2.0 * radius * self.spacing;
         for _ in 0..TRIALS {

@@ -15,20 +15,21 @@ use crate::{Disk, ParameterError};
 /// A homogeneous gas without correlations: direct simulation of the Boltzmann–Enskog equation (DSMC) under
 /// any rule.
 ///
-/// Disks have velocities and spins, and no places. Any two of them collide, in any direction
+/// Disks have velocities and spins, but no positions. Any two of them collide, in any direction
 /// $`\hat\sigma`$, at the rate
 ///
 /// ```math
 /// \frac{n\chi}{N}\,\sigma\,(\vec v_{12}\cdot\hat\sigma)\,d\hat\sigma ,
 /// ```
 ///
-/// so partners are drawn at random and never know each other: molecular chaos holds by construction. A
-/// simulation with events that differs has velocities that are correlated, or a gas that is not homogeneous.
-/// With $`N\to\infty`$, the distribution of velocities is the solution of the equation, without an expansion.
+/// so partners are drawn at random and have no common past: molecular chaos holds by construction. If an
+/// event-driven simulation gives another result, its velocities are correlated, or its gas is not
+/// homogeneous. With $`N\to\infty`$, the distribution of velocities is the solution of the equation, without
+/// an expansion.
 ///
 /// Waits between collisions have no memory, so each call of `run_until` draws the first wait anew. A gas that
-/// is run in pieces therefore has other collisions than one that is run in one piece, with the same
-/// statistics; a [`Simulation`](crate::Simulation) has the same bits.
+/// is run in pieces therefore has other collisions than a gas that is run in one piece, with the same
+/// statistics. A [`Simulation`](crate::Simulation) has the same bits in both cases.
 ///
 /// The density with the contact value, $`n\chi`$, sets the unit of time alone. Disks of several radii have
 /// one $`\chi`$.

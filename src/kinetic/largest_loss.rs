@@ -15,9 +15,9 @@ use crate::collision::Frictional;
 /// \kappa = \frac{(1-q_t)\,w}{\lambda(1-q_n)}\,\frac{s}{\sqrt{1-s^2}},
 /// ```
 ///
-/// which exists for $`q_t < 1/3`$. The notation is the one of
-/// [`mean_energy_change`](super::mean_energy_change); the derivation is in `docs/physics-kinetic.md`. Elastic
-/// disks lose most at $`\kappa = 0.2627`$, the paper's $`\kappa\approx0.3`$.
+/// which exists for $`q_t < 1/3`$. The notation is as in [`mean_energy_change`](super::mean_energy_change);
+/// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at $`\kappa = 0.2627`$, the
+/// paper's $`\kappa\approx0.3`$.
 ///
 /// The result is `None` if the loss has no maximum at a finite friction. If sticking itself loses much
 /// ($`q_t\ge1/3`$ for $`\rho=1`$), the loss grows with friction all the way to rough disks. There is no

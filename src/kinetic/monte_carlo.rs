@@ -16,7 +16,7 @@ const STRATA: u32 = 64;
 const SAMPLES: u32 = 64;
 /// Number of collisions in one chunk, the unit of parallel work.
 const CHUNK: u64 = STRATA as u64 * SAMPLES as u64;
-/// Number of chunks before the error is checked for the first time, enough to know the error itself well.
+/// Number of chunks before the error is checked for the first time, enough for a reliable error.
 const FIRST_ROUND: u64 = 16;
 
 /// A Monte Carlo average of the energy change per collision, for any rule.
@@ -27,7 +27,7 @@ const FIRST_ROUND: u64 = 16;
 ///
 /// - The angle is drawn uniformly, in 64 strata, so that grazing collisions get more samples than they would
 ///   by chance.
-/// - The density of $`R^2`$ is the true one times $`R^2`$, because the energy of the relative motion, the
+/// - The density of $`R^2`$ is the true density times $`R^2`$, because the energy of the relative motion, the
 ///   most that a collision can lose, is proportional to $`R^2`$.
 ///
 /// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a

@@ -10,8 +10,8 @@ use crate::statistics::{Estimate, block_average};
 /// An observer that counts the disks that arrive at some walls, over intervals of time: the flow into a sink.
 ///
 /// The rate of an interval of length $`\Delta t`$ with $`n`$ arrivals is $`n/\Delta t`$. An interval counts
-/// only if it was watched from its start to its end. At a wall that is no sink, each bounce is an arrival. In
-/// an [`OfKind`](super::OfKind), only disks of one kind count.
+/// only if it was watched from its start to its end. At a wall that is not a sink, each bounce is an arrival.
+/// In an [`OfKind`](super::OfKind), only disks of one kind count.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

@@ -31,8 +31,8 @@ pub trait Observable {
 
 /// The error of an observer that makes a run fail: any error, or a text.
 ///
-/// It is an error like any other, so `?` takes it into `Box<dyn Error>` and into the types of crates for
-/// errors.
+/// It is an error like any other, so `?` converts it into `Box<dyn Error>` and into the error types of other
+/// crates.
 ///
 /// ```
 /// use granular_edmd::observable::ObserverError;
@@ -88,7 +88,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    `next_sample` is what it was at the end.
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
-/// breaks another, it gets samples at times that it did not mean. [`SampleTimes`](super::SampleTimes) keeps
+/// breaks another, it gets samples at times that it did not intend. [`SampleTimes`](super::SampleTimes) keeps
 /// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` says which planted
 /// faults it finds.
 #[diagnostic::on_unimplemented(
@@ -133,7 +133,7 @@ pub trait Observer {
         let _ = (disk, time);
     }
 
-    /// Receives the end of a run, also of one that fails.
+    /// Receives the end of a run, even of a run that fails.
     fn on_end(&mut self, end: &Snapshot<'_>) {
         let _ = end;
     }

@@ -12,11 +12,12 @@ use crate::statistics::{Estimate, block_average};
 use crate::{Disk, ParameterError};
 
 /// An observer that counts how often centers of disks cross a segment, by direction, over intervals of time:
-/// the flux through the throat of a silo, or through any line of a gas. The disks do not notice it.
+/// the flux through the throat of a silo, or through any line of a gas. The segment does not affect the
+/// disks.
 ///
 /// A crossing is *forward* if it goes from the right to the left of the direction from `start` to `end`:
 /// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
-/// is found exactly, also if a disk turns back between two samples. An interval counts only if it was watched
+/// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
 /// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count.
 ///
 /// ```

@@ -12,7 +12,7 @@ pub struct EnergyPerDisk {
     pub translational: f64,
     /// Rotational energy, ⟨½ I ω²⟩.
     pub rotational: f64,
-    /// Potential energy, ⟨−m **g**·**r**⟩, which is zero at the origin, with unwrapped places.
+    /// Potential energy, ⟨−m **g**·**r**⟩, which is zero at the origin, with unwrapped positions.
     pub potential: f64,
 }
 

@@ -10,7 +10,7 @@ use crate::quantity::accept;
 
 /// The free shares of several regions. They are kept as long as no wall has moved.
 ///
-/// They are no part of what was measured: they go into no file, and all are equal.
+/// They are not part of the measurement: no file holds them, and any two of them compare equal.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FreeShares {
     walls: Mark,
@@ -37,7 +37,7 @@ impl FreeShares {
 /// Checks that the free area is known for a region, or else for each part of it.
 ///
 /// # Errors
-/// If not. The error names what to take instead.
+/// If not. The error says what to use instead.
 pub(super) fn check_area(
     region: &Region,
     parts: impl IntoIterator<Item = Region>,

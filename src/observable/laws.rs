@@ -1,6 +1,6 @@
 //! Checks of an observer's contract, for custom observers.
 //!
-//! An observer can never change a trajectory, since the engine shows it copies. But the observer is
+//! An observer can never change a trajectory, since the engine shows it copies, but the observer is
 //! responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
 
 use glam::DVec2;
@@ -31,9 +31,9 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
 /// samples each, at the times that the observer requests. The first run starts at time 0 and is cut twice:
 /// between two samples, and after a sample; the runs that continue it must ask for the sample that was next.
-/// Then come runs that start later and between two sampling times, at a late time, and before 0; the last one
-/// has ten thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it
-/// has collected in the check, so make a new one for a measurement. The page "Validation" says which planted
+/// Further runs start later and between two sampling times, at a late time, and before 0; the last one has
+/// ten thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it has
+/// collected in the check, so make a new one for a measurement. The page "Validation" says which planted
 /// faults the check finds.
 ///
 /// # Errors

@@ -29,7 +29,7 @@ pub struct PerDisk<T>(Vec<(u64, T)>);
 impl<T> PerDisk<T> {
     /// Evaluates a quantity of each disk.
     ///
-    /// If some of them have no id, all are known by their place in the list.
+    /// If some of them have no id, all are identified by their index in the list.
     pub fn of(disks: &[Disk], quantity: impl Fn(&Disk) -> T) -> Self {
         numbered(disks).map(|(id, disk)| (id, quantity(disk))).collect::<Vec<_>>().into()
     }

@@ -77,7 +77,7 @@ impl<Q: Observable> Series<Q> {
     /// ([`block_average`]).
     ///
     /// # Errors
-    /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
+    /// If there are fewer than two samples, or one is not finite or above 1e100 in magnitude.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;

@@ -133,8 +133,8 @@ impl<'a> Snapshot<'a> {
 
     /// Returns a point that moves with a wall, or `None` if the boundary knows no such point.
     ///
-    /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the place
-    /// of the wall.
+    /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the
+    /// position of the wall.
     pub fn wall_point(&self, wall: usize) -> Option<DVec2> {
         self.walls.and_then(|walls| walls.boundary.wall_point(wall, walls.time))
     }
@@ -153,8 +153,8 @@ impl<'a> Snapshot<'a> {
         self.walls.map_or(self.domain, |walls| walls.boundary.edges(walls.time))
     }
 
-    /// Returns the walls that move: the index of each, its displacement from its place at rest, and the phase
-    /// of its motion, which is the time since the motion began, less whole periods.
+    /// Returns the walls that move: the index of each, its displacement from its position at rest, and the
+    /// phase of its motion, which is the time since the motion began, less whole periods.
     ///
     /// Walls that move together, as the bricks of a part do, appear once.
     ///
@@ -190,7 +190,7 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the share of a region that matter can fill, or `None` if the share is not known. A snapshot
-    /// without walls knows of nothing that is not free.
+    /// without walls counts every region as free.
     pub(crate) fn free_share(&self, region: &Region) -> Option<f64> {
         /// Smallest share that counts as completely free, up to rounding.
         const WHOLE: f64 = 1.0 - 1e-12;

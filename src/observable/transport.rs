@@ -23,7 +23,8 @@ type Moments = [DVec2; MOMENTS];
 /// (Helfand 1960; Alder, Gass and Wainwright 1970).
 ///
 /// The moments belong to momentum and energy, with the collisional parts: in a collision, the momentum
-/// $`\vec\Delta`$ and the energy $`\Delta e`$ go over the vector $`\vec r`$ between the centers at once.
+/// $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the vector $`\vec r`$ between
+/// the centers.
 ///
 /// ```math
 /// W_{ab}(t) = \int_0^t \sum_i m_i v_{i,a} v_{i,b}\,dt' + \sum_{\rm collisions}\Delta_a\, r_b ,
@@ -53,7 +54,7 @@ type Moments = [DVec2; MOMENTS];
 ///
 /// A run ends with an error if
 /// - it does not continue the previous run;
-/// - the domain is not periodic in both directions, or is another one than before;
+/// - the domain is not periodic in both directions, or has changed;
 /// - there is gravity, or a disk meets a wall;
 /// - a collision of disks changes the energy by more than 1e-6 of their energy;
 /// - disks change by anything but collisions: an inlet, a driving, or a change between two runs.

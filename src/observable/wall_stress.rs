@@ -68,7 +68,7 @@ impl WallStress {
         Self { stretch: Stretch::new(times), walls: BTreeMap::new(), fault: None }
     }
 
-    /// Returns the same observer, also for the wall of this index and length.
+    /// Returns the same observer, which also watches the wall of this index and length.
     ///
     /// # Errors
     /// If the length is not finite and positive.

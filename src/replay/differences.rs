@@ -50,8 +50,8 @@ pub struct TooFarApart {
 type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
 
 impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
-    /// Compares the partners of each disk, alternately a collision of one run and of the other. The errors of
-    /// runs that `failed` are their ends.
+    /// Compares the partners of each disk, alternately by a collision of one run and a collision of the
+    /// other. A run that `failed` ends at its error.
     pub(super) fn other_partners(
         pair: Pair<'_, R, B, S>,
         end: f64,

@@ -16,7 +16,7 @@ pub struct Replayed {
     pub id: u64,
     /// Id of the other disk; `None` if the partner is a wall.
     pub partner_id: Option<u64>,
-    /// The collision. Its indices are the ones at that time.
+    /// The collision. Its indices are the indices at that time.
     pub collision: Collision,
 }
 

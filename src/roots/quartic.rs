@@ -14,7 +14,8 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 /// Returns the first time, not later than `end`, at which the gap `c₀ + c₁t + c₂t² + c₃t³ + c₄t⁴` is closed
 /// and closes further.
 ///
-/// It means the same as [`first_descent`], which handles polynomials of degree two and less:
+/// The result has the same meaning as for [`first_descent`], which handles polynomials of degree two and
+/// less:
 /// - An open gap counts at the first zero through which it falls.
 /// - A gap that is closed and closes further counts immediately, at time 0.
 /// - A closed gap that rises counts when it closes next or, if it never opens, when it falls back to its

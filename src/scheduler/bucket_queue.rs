@@ -41,7 +41,7 @@ const SIGHT: usize = 48;
 /// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
 ///   to a new one, whose buckets are as wide as the events of the last page suggest.
 ///
-/// An event thus writes only to places that are in the caches, however many disks there are. The one
+/// An event thus writes only to locations that are in the caches, however many disks there are. The one
 /// exception is the time of its disk.
 #[derive(Debug, Clone)]
 pub struct BucketQueue {

@@ -16,7 +16,7 @@ const PART: &str = "scheduler";
 /// Checks that a scheduler keeps the contract of [`EventScheduler`].
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
-/// have from none to some ten thousand disks, and up to three million operations. They contain times that
+/// have from none to tens of thousands of disks, and up to three million operations. They contain times that
 /// advance, go back, or are before the last result; ties and times that differ only in their last bits, both
 /// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
 /// many and no disks. Each query is made twice. At intervals, the scripts call

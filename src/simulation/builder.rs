@@ -80,8 +80,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
     /// Sets gravity; 0 unless given.
     ///
-    /// A number points down, or up if it is negative. A vector is the acceleration, and
-    /// [`Gravity::tilted`] that on a slope.
+    /// A number points down, or up if it is negative. A vector is the acceleration, and [`Gravity::tilted`]
+    /// gives the gravity on a slope.
     pub fn gravity(mut self, gravity: impl Into<Gravity>) -> Self {
         self.gravity = gravity.into();
         self

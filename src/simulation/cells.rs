@@ -56,7 +56,8 @@ pub(super) struct Cells {
 
 impl Cells {
     /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for
-    /// them. The cells suit a disk of one `further` diameter, too, and any below it if it is the largest.
+    /// them. The cells also suit a disk of one `further` diameter and, if that is the largest, any smaller
+    /// disk.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         cell_size: CellSize,

@@ -1,7 +1,7 @@
 //! Checks of the results that the engine receives: collisions happen where surfaces touch, no event is lost,
 //! and no disk leaves the domain.
 //!
-//! All parts may be code of the user's. None of them can make the engine panic. But a wall at another
+//! All parts may be the user's code. None of them can make the engine panic. However, a wall at another
 //! position than it reports, or a scheduler that loses events, would let a run end as if nothing had
 //! happened. The engine therefore checks where a check costs next to nothing: at each wall collision, at each
 //! new largest overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a
@@ -22,8 +22,8 @@ use crate::scheduler::EventScheduler;
 /// enlarged radius loses no digits for usual radii.
 const NEAR: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Largest overlap at a collision, relative to the radius. Ordinary runs have 1e-13. Disks of speeds of
-/// thousands that bounce a hundred thousand times in a corner that closes have up to 1e-8.
+/// Largest overlap at a collision, relative to the radius. Ordinary runs have 1e-13. Disks with speeds in the
+/// thousands that bounce a hundred thousand times in a closing corner reach 1e-8.
 const DEEP: f64 = 1e-6;
 
 /// Number of times that the search for a wall doubles its reach, in order to report the distance of the wall.
@@ -35,8 +35,8 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Checks that a disk at this position touches a wall, and keeps the largest overlap.
     ///
-    /// One question serves both. With a radius enlarged by the largest gap, a disk that touches overlaps, and
-    /// the depth less the gap is its own.
+    /// One question serves both. A disk that touches overlaps the wall once its radius is enlarged by the
+    /// largest gap. The depth minus this gap is the depth of the disk itself.
     #[inline]
     pub(super) fn check_touch(&mut self, disk: usize, wall: usize) -> Outcome<()> {
         let probe = self.probe(disk);
@@ -59,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
-    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in
-    /// which the disk is, which may be another wall than the one that it touched.
+    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner that
+    /// the disk overlaps. This may be another wall than the touched one.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(
@@ -105,8 +105,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the error by which the gap between a disk and its partner may differ from zero.
     ///
     /// Positions are rounded relative to their distance from the origin, and to the distance traveled since
-    /// the epoch. The time of a touch is rounded as absolute times are, since some walls know no others.
-    /// Meanwhile, both the disk and the wall move.
+    /// the epoch. The time of a touch is rounded as absolute times are, since some walls know only absolute
+    /// times. Meanwhile, both the disk and the wall move.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);

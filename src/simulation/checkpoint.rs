@@ -221,7 +221,7 @@ fn read<T>(path: &Path, parse: impl Fn(&[u8]) -> Result<T, CheckpointError>) -> 
     parse(&std::fs::read(path).map_err(failed("read", path))?).map_err(unusable)
 }
 
-/// Returns the contents behind a seal.
+/// Returns the contents after a seal.
 fn opened(seal: Seal, bytes: &[u8]) -> Result<&[u8], CheckpointError> {
     seal.open(bytes).map_err(|broken| match broken {
         Damage::Foreign => CheckpointError::NotACheckpoint,

@@ -20,7 +20,7 @@ const FAST: f64 = 1e3;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the first sink that no disk can touch now, because its walls lie in or beside other walls.
     ///
-    /// The smallest disk of each kind flies from both sides to places all along the walls.
+    /// The smallest disk of each kind flies from both sides to positions all along the walls.
     #[cold]
     pub(super) fn closed_sink(&self) -> Option<usize> {
         let now = self.clock.now;
@@ -54,8 +54,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         smallest
     }
 
-    /// Returns places on all walls and on the edges of the domain, a diameter apart at most, each with a unit
-    /// vector across.
+    /// Returns positions on all walls and on the edges of the domain, a diameter apart at most, each with a
+    /// unit vector across.
     fn places_at_walls(&self, radius: f64) -> impl Iterator<Item = (DVec2, DVec2)> {
         let inside = self.boundary.interior();
         let top = inside.top.min(inside.bottom + inside.width());
@@ -71,7 +71,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         })
     }
 
-    /// Returns the wall that a disk touches first when it flies from `side` across this place.
+    /// Returns the wall that a disk touches first when it flies from `side` across this position.
     fn wall_ahead(&self, place: DVec2, side: DVec2, radius: f64, kind: Kind) -> Option<usize> {
         let (domain, inside, now) = (self.boundary.domain(), self.boundary.interior(), self.clock.now);
         let start = domain.wrapped(place + AWAY * radius * side);

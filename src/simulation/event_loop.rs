@@ -93,8 +93,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // it waits for the roots and quotients of the collision.
         let counts = [self.neighbors(disk, 0), self.neighbors(partner, 1)];
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
-        // A couple can make a spin impossible while the velocity stays. Without one, the comparison is known
-        // when the rule is compiled.
+        // A couple can make a spin impossible while the velocity stays possible. Without one, the comparison
+        // is known when the rule is compiled.
         let may_spin = (collision.impulse.couple() == 0.0) | (kicks[0].may_spin() & kicks[1].may_spin());
         if !(may_spin & self.is_tame(&kicks[0]) & self.is_tame(&kicks[1])) {
             self.prepare_for_pair(disk, partner)?;
@@ -113,7 +113,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         observer.on_collision(&collision);
         self.find_next_of_both([disk, partner], counts);
-        // The scheduler hears of both disks after both predictions: one at a time, a run is 2 to 4 % slower.
+        // Both times go to the scheduler after both predictions: with one call after each prediction, a run
+        // is 2 to 4 % slower.
         for disk in [disk, partner] {
             self.schedule(disk);
         }
@@ -267,7 +268,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let lengths = velocities.map(|velocity| self.bodies.epoch_length_for(velocity));
         let epoch_length = lengths.fold(self.clock.epoch_length, f64::min);
         // Very late times are so coarse that no epoch can begin near the present. The kick would then lose
-        // the digits of the disk's place.
+        // the digits of the disk's position.
         Clock { epoch_length, ..self.clock }.check_coarseness(self.clock.now)?;
         self.shift_epoch(self.clock.exact_offset());
         self.clock.epoch_length = epoch_length;

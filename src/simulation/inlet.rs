@@ -11,7 +11,7 @@ use crate::quantity::{accept, finite};
 use crate::random::uniform;
 use crate::{Disk, Kind, ParameterError};
 
-/// An inlet: it lets disks into a run, at set times and at random places of a rectangle.
+/// An inlet: it lets disks into a run, at set times and at random positions in a rectangle.
 ///
 /// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
 /// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it

@@ -85,9 +85,9 @@ impl<'a> Limits<'a> {
     ///
     /// Progress is judged over windows of 200 000 events, and 20 more for each disk; a search for a wall that
     /// ends at its horizon counts as 256 events. A run with less progress is
-    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have some
-    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk goes or falls some tens
-    /// of diameters.
+    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have about
+    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk moves or falls tens of
+    /// diameters.
     ///
     /// # Errors
     /// If the time is negative or not finite.
@@ -128,7 +128,7 @@ impl<'a> Watch<'a> {
         Self {
             limits,
             last_collision: counters.collisions().saturating_add(limits.most_collisions),
-            // A time so late that no clock can show it is no limit.
+            // A time so late that no clock can show it does not limit the run.
             deadline: limits.wall_clock.and_then(|time| Instant::now().checked_add(time)),
         }
     }
@@ -152,7 +152,7 @@ impl<'a> Watch<'a> {
 
     /// Returns the number of events until the next check of the limits.
     ///
-    /// No more events than collisions left: the run then ends exactly at the last one.
+    /// The result is at most the number of collisions left, so the run ends exactly at the last collision.
     pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {
         let is_timed = self.deadline.is_some() || self.limits.interrupt.is_some();
         let most = if is_timed { EVENTS_BETWEEN_LOOKS } else { u64::MAX };

@@ -37,7 +37,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.replace_disks(&disks.collect::<Result<Vec<_>, _>>()?)
     }
 
-    /// Replaces the present disks by these disks.
+    /// Replaces all disks by the given ones.
     pub(super) fn replace_disks(&mut self, disks: &[Disk]) -> Result<(), BuildError> {
         check_speeds(disks.iter().map(Disk::velocity))?;
         let stay = |(index, disk): (usize, &Disk)| {

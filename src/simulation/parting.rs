@@ -47,7 +47,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Makes a disk leave a wall if engine and boundary disagree about its motion.
+    /// Makes a disk leave a wall if the engine and the boundary disagree about its motion.
     ///
     /// Because its speed is rounded, a disk can part from the wall in the engine's arithmetic and approach it
     /// in the boundary's. A disk that rests on a wall does not part from it, and stays unchanged. The pushes

@@ -17,10 +17,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// The new disks come after all others, in the order given.
     ///
-    /// All events are predicted anew. The run then has the same bits under every scheduler, and also if it is
+    /// All events are predicted anew. The run then has the same bits under every scheduler, and even if it is
     /// resumed from a checkpoint taken before or after. The counters keep counting. The new disks have
     /// collided with nothing yet, and may be of any size and kind. A disk that was removed keeps its
-    /// [id](Disk::id); one without gets a new one.
+    /// [id](Disk::id); a disk without an id gets a new one.
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk, or has the id of another; the error

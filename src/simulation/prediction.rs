@@ -77,7 +77,7 @@ impl Best {
         Self { due: [known.due; LANES], partner: [u64::from(known.partner); LANES] }
     }
 
-    /// Replaces the known collision in each lane where a new one is earlier. Of equal times, the smaller
+    /// Replaces the known collision in each lane where a new one is earlier. At equal times, the smaller
     /// partner wins.
     #[inline]
     fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {

@@ -101,7 +101,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Advances to the next collision and returns it, unless the collision is after the absolute time `end`.
     ///
-    /// If there is none, goes to `end` and returns `None`.
+    /// If there is none, the run advances to `end`, and the result is `None`.
     ///
     /// The observer sees only the collision: `on_start`, `on_sample` and `on_end` are not called, so the
     /// observer's clock stands still. If the observer fails, the step returns an error. A verdict to stop has

@@ -22,7 +22,7 @@ const TRIES: u32 = 32;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Adds an inlet, which lets disks in from now on.
     ///
-    /// At equal times, the inlet opens after all events of disks and before a sample. Inlets take turns in
+    /// At equal times, the inlet opens after all events of disks and before a sample. Several inlets open in
     /// the order in which they were added.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // The lookahead holds indices, of which the last one no longer exists.
         self.lookahead.forget();
         self.make_room();
-        // The scheduler cannot remove a disk. One that is never due is the same to it.
+        // The scheduler cannot remove a disk. For it, a disk that is never due is as good as removed.
         self.scheduler.set(last, f64::INFINITY);
         if disk != last {
             self.schedule(disk);

@@ -41,8 +41,8 @@ const JUMP: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A wall was suddenly elsewhere when the boundary was set between two runs, and hit no disk. A motion
-    /// that begins at another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
+    /// A wall jumped when the boundary was set between two runs, and hit no disk. A motion that begins at
+    /// another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
     WallJumped {
         /// The wall that jumped farthest.
         wall: usize,
@@ -65,7 +65,7 @@ pub enum Warning {
         collisions: u64,
     },
     /// More than half of the collisions parted at the least speed of
-    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow,
+    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest, this is its purpose. In a flow,
     /// the speed is too high, and the energy that it adds keeps the disks moving.
     MostlyLeastRebound {
         /// Number of collisions that the remedy decided.
@@ -77,7 +77,7 @@ pub enum Warning {
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
     /// them aside. Rows of a lattice over a floor that moves vertically hop like this forever. Any small
-    /// velocities at the start mend it, for example by
+    /// velocities at the start prevent it, for example by
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.
@@ -97,15 +97,15 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk can reach a sink, and none has been removed: walls block the sink, such as walls nearer than a
-    /// radius to a line for centers. A gate that opens later is a harmless cause.
+    /// No disk can reach a sink, and none has been removed: walls block the sink, for example because they
+    /// are closer than a radius to a line for centers. A gate that opens later is a harmless cause.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
         /// The name of that wall.
         name: String,
     },
-    /// A thousand disks or more wait at an inlet. It may have no room at all, as inside of a part.
+    /// A thousand disks or more wait at an inlet. The inlet may have no room at all, as inside a part.
     DisksWait {
         /// Index of the inlet.
         inlet: usize,
@@ -221,13 +221,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
         let collisions = self.counters.collisions();
         let elapsed = self.time() - self.ledger.start;
-        // Of a collision of two disks, both take part.
+        // Both disks take part in a collision of two.
         let rate = |count: u64| 2.0 * count as f64 / (self.len() as f64 * elapsed);
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;
         // Matter that collapses has very many collisions before it rests, and few while it flowed. But its
-        // disks go nowhere in the contact duration. If the model decides nearly all collisions of a flow, on
+        // disks hardly move in the contact duration. If the model decides nearly all collisions of a flow, on
         // the other hand, few are left to count.
         let is_flow = way > FAR;
         let share_of_time = if elastic > collisions / 2 { longest_contact * rate(collisions) } else { free };
@@ -278,8 +278,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 }
 
-/// Returns the walls of a boundary by name, each with its index and its place. Of walls of one name, such as
-/// the parts of a gate, the first is enough. The map is sorted, so that the count is the same on every run.
+/// Returns the walls of a boundary by name, each with its index and its position. Of walls of one name, such
+/// as the parts of a gate, the first is enough. The map is sorted, so that the count is the same on every
+/// run.
 fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, (usize, DVec2)> {
     let mut places = BTreeMap::new();
     for wall in 0..boundary.wall_count() {

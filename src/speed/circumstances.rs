@@ -5,7 +5,7 @@ use std::fs;
 
 use crate::instructions::Instructions;
 
-/// The machine and the build of a measurement. Times from others cannot be compared.
+/// The machine and the build of a measurement. Times from different machines or builds cannot be compared.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]

@@ -19,8 +19,9 @@ const OUTSIDE: usize = 78;
 
 /// Runs a copy of the simulation for `collisions` collisions, with disks or walls, and returns the report.
 ///
-/// Equal calls do the same work, from the same state. Take a fixed number of collisions also in a bench of
-/// criterion: in longer stretches, a rule with other physics leaves the state. An iteration is a stretch.
+/// Equal calls do the same work, from the same state. Take a fixed number of collisions in a bench of
+/// criterion, too: in a longer stretch, a rule with other physics would leave the state. An iteration is a
+/// stretch.
 ///
 /// ```no_run
 /// # use criterion_stand_in::Bencher;
@@ -37,7 +38,7 @@ const OUTSIDE: usize = 78;
 /// # }
 /// ```
 ///
-/// Criterion does not alternate two benches: a difference of some percent is for a [`Comparison`].
+/// Criterion does not alternate two benches; use a [`Comparison`] for a difference of a few percent.
 ///
 /// # Errors
 /// The same as for [`Simulation::run`].
@@ -58,8 +59,8 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
 /// Stretches of the two runs follow each other in pairs, and each pair gives a ratio, so what slows both
 /// cancels. Stretches of one run do the same work each time, from the same state. A rule with other physics
 /// leads to other states, in which a collision may take more events. The numbers of events stand beside the
-/// times: if they agree, the ratio is the cost of the rule itself. The cost in its own state, too, comes from
-/// a run that has settled under it.
+/// times: if they agree, the ratio is the cost of the rule itself. To include the cost of the state to which
+/// the rule leads, take a run that has settled under it.
 ///
 /// ```no_run
 /// use granular_edmd::collision::Frictional;
@@ -138,9 +139,10 @@ impl Comparison {
     /// Returns the 99.8 % confidence interval of the median ratio, whatever the distribution of the ratios,
     /// if they are independent.
     ///
-    /// It knows this pair of trajectories only. A rule with other physics takes another one, which alone
-    /// makes up to 2 % in a dilute gas: compare from several states, with `run_until` between them, and take
-    /// the spread. The compiler places equal code at different addresses, which makes 1 or 2 %, too.
+    /// The interval holds for this pair of trajectories only. A rule with other physics leads to another
+    /// trajectory, which alone makes a difference of up to 2 % in a dilute gas: compare from several states,
+    /// with `run_until` between them, and take the spread. The compiler places equal code at different
+    /// addresses, which makes another 1 or 2 %.
     pub const fn interval(&self) -> [f64; 2] {
         self.interval
     }

@@ -59,8 +59,8 @@ pub fn dense() -> Result<PaperBox, StateError> {
     paper_box(0.05, 0.1)
 }
 
-/// Returns an elastic gas of equal disks at this area fraction, periodic on all sides. The standard ones are
-/// 0.1, 0.3 and 0.65.
+/// Returns an elastic gas of equal disks at this area fraction, periodic on all sides. The standard fractions
+/// are 0.1, 0.3 and 0.65.
 ///
 /// # Errors
 /// If the area fraction is not in `1e-4..=0.78`. A square lattice has room for no more disks, and fewer would

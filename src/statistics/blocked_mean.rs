@@ -79,7 +79,7 @@ impl BlockedMean {
         self.0.first().map_or_else(RunningMean::default, |level| level.blocks)
     }
 
-    /// Returns the mean with an error from blocks, for numbers of at most 1e100 in size.
+    /// Returns the mean with an error from blocks, for numbers of at most 1e100 in magnitude.
     pub fn estimate(&self) -> Estimate {
         let whole = self.ungrouped();
         let naive = whole.standard_error();

@@ -33,8 +33,9 @@ const LARGEST: f64 = 1e100;
 /// because errors that are small by chance pass this test more often than others. If an error is not
 /// converged, it is the largest that was found.
 ///
-/// Tried on 4000 Gaussian series of $`n`$ samples with one correlation time ($`\tau`$ samples are worth one),
-/// and on series with two times (70 % and 30 % of the variance, the second time $`\tau_2`$ 30 times longer):
+/// The method was tried on 4000 Gaussian series of $`n`$ samples with one correlation time ($`\tau`$ samples
+/// are worth one), and on series with two times (70 % and 30 % of the variance, the second time $`\tau_2`$ 30
+/// times longer):
 ///
 /// | $`n/\tau`$ or $`n/\tau_2`$ | 30 | 50 | 75 | 100 | 150 | 300 | 1000 |
 /// |---|---|---|---|---|---|---|---|
@@ -47,7 +48,7 @@ const LARGEST: f64 = 1e100;
 /// quantity is constant, or has not changed yet.
 ///
 /// # Errors
-/// If there are fewer than two samples, or one is not finite or above 1e100 in size.
+/// If there are fewer than two samples, or one is not finite or above 1e100 in magnitude.
 ///
 /// ```
 /// use granular_edmd::statistics::block_average;

@@ -5,9 +5,9 @@ use std::fmt;
 /// A mean of samples with its standard error, and whether that error can be trusted.
 ///
 /// The error of correlated samples is taken from blocks ([`BlockedMean`](super::BlockedMean),
-/// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is
-/// not converged: its error is then a lower bound. An estimate from samples that are independent, or are
-/// assumed to be, says so.
+/// [`block_average`](super::block_average)). A series too short for that gives an estimate that is not
+/// converged: its error is then a lower bound. An estimate from samples that are independent, or are assumed
+/// to be, says so.
 ///
 /// A precision in the format sets the number of decimals of the mean and the error. Without a precision, the
 /// error has two significant digits. A note on the basis of the error follows in words.

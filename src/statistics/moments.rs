@@ -21,7 +21,7 @@ impl Moments {
         let before = value - self.mean;
         self.mean += before * weight / self.weight;
         let squares = weight * before * (value - self.mean);
-        // Both factors have one sign, but for rounding among numbers that are nearly equal.
+        // Both factors have the same sign, except for rounding among numbers that are nearly equal.
         self.squares += if squares < 0.0 { 0.0 } else { squares };
     }
 }

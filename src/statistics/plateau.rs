@@ -39,8 +39,8 @@ impl BlockError {
     }
 }
 
-/// Returns the error of the smallest blocks for which it no longer grows, and that error raised as
-/// [`EXCESS`] says, or `None` if the error cannot be trusted. The levels are for sizes 1, 2, 4, ….
+/// Returns the error of the smallest blocks for which it no longer grows, and that error raised by the share
+/// that [`EXCESS`] gives, or `None` if the error cannot be trusted. The levels are for sizes 1, 2, 4, ….
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];

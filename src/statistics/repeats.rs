@@ -18,10 +18,10 @@ impl Estimate {
     /// ```
     ///
     /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
-    /// way. But the scatter of two or three runs may be small by chance; then the errors of the runs count.
-    /// The estimate has converged if the estimates of all runs have, if there are at least eight runs, or if
-    /// the runs together have 120 independent samples by this error, as many as one run needs.
-    /// Runs without samples are left out.
+    /// way. The scatter of two or three runs, however, may be small by chance; the errors of the runs then
+    /// count. The estimate has converged if the estimates of all runs have, if there are at least eight runs,
+    /// or if the runs together have 120 independent samples by this error, as many as one run needs. Runs
+    /// without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};

@@ -13,7 +13,7 @@ const TIME: &str = "time";
 
 /// Reads a table whose first line names the columns.
 ///
-/// Commas, semicolons, tabs or spaces divide the cells, whichever of them the first line has. A line that
+/// Commas, semicolons, tabs or spaces separate the cells, whichever of them the first line has. A line that
 /// begins with `#` is a comment, except before the names.
 pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut lines = text.lines()?;
@@ -55,7 +55,7 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     Ok(table)
 }
 
-/// Returns the places of the columns that have the same value in all rows of a state.
+/// Returns the indices of the columns that have the same value in all rows of a state.
 fn common(columns: &[Column]) -> Vec<usize> {
     let is_common = |column: &Column| {
         [TIME, "frame", "step", "timestep"].iter().any(|name| column.name.eq_ignore_ascii_case(name))

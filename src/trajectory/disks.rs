@@ -116,7 +116,7 @@ fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f6
     Err(contradiction(what, &format!("{one} and {other}"), line))
 }
 
-/// Creates the error of columns that tell different things.
+/// Creates the error of columns that contradict each other.
 fn contradiction(what: &str, found: &str, line: usize) -> ReadError {
     ReadError::unexpected(line, what, "the same in all columns that tell it", found)
 }
@@ -267,7 +267,7 @@ impl Row<'_> {
             _ => None,
         };
         let Some(angle) = self.get(Angle, 0) else { return Ok(half.map_or(0.0, |half| 2.0 * half)) };
-        // An angle of many turns has few digits in a turn, but the sine and cosine of its writer.
+        // An angle of many turns keeps few digits within a turn, but its sine and cosine are the writer's.
         let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);

@@ -11,7 +11,7 @@ use crate::observable::ObserverError;
 
 /// An error in recording a trajectory.
 ///
-/// The file keeps its whole frames.
+/// The file keeps its complete frames.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
@@ -105,7 +105,7 @@ impl RecordError {
 
 /// An error in reading disks from a file.
 ///
-/// Lines are counted from 1. In a file of GSD, which has no lines, they are the disks.
+/// Lines are counted from 1. In a GSD file, which has no lines, they are the disks.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 ///
@@ -244,7 +244,7 @@ impl ReadError {
         Self::Unexpected { line, what, requirement: requirement.into(), found }
     }
 
-    /// Creates the error of a file of GSD.
+    /// Creates the error of a GSD file.
     pub(super) fn gsd(reason: impl Into<String>) -> Self {
         Self::Gsd { reason: reason.into() }
     }

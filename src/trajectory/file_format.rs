@@ -28,9 +28,9 @@ enum Form {
 
 /// GSD, the binary format of HOOMD-blue.
 ///
-/// Readers go to any frame at once. A frame has half of the bytes of [`ExtendedXyz`], with numbers in single
-/// precision, so it is for analysis: a run cannot start from it as if it had not stopped. The name of the
-/// file must not end in `.gz`.
+/// Readers can go directly to any frame. A frame has half of the bytes of [`ExtendedXyz`], with numbers in
+/// single precision, so it is for analysis: a run that starts from it does not continue with the same bits.
+/// The name of the file must not end in `.gz`.
 ///
 /// | chunk | |
 /// |---|---|
@@ -75,9 +75,9 @@ pub struct Gsd;
 /// A series of VTK's files, for ParaView.
 ///
 /// A file such as `run.pvd` holds the times. A new folder beside it, here `run`, holds two files for each
-/// frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the edges of the box
-/// with the walls in it, such as the parts of a vessel, where they are at this time. Its name must end in
-/// `.pvd`.
+/// frame. The first has the disks, as [`State::write_vtk`](super::State::write_vtk) writes them. The second
+/// has the edges of the box and the walls in it, such as the parts of a vessel, at their present positions.
+/// The name given to the recorder must end in `.pvd`.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

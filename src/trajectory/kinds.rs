@@ -4,7 +4,7 @@ use super::ReadError;
 use super::lines::as_whole;
 use super::table::Table;
 
-/// Returns the numbers of the kinds that names stand for: the names themselves, or else their places in
+/// Returns the numbers of the kinds that names stand for: the names themselves, or else their positions in
 /// order, which are the same for all frames with these names.
 pub(super) fn of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     let names = table.names();

@@ -176,7 +176,7 @@ pub(super) fn whole<T: FromStr>(what: &str, text: &str, line: usize) -> Result<T
 pub(super) fn as_whole<T: FromStr>(text: &str) -> Option<T> {
     let of_float = || {
         let number = text.trim().parse::<f64>().ok()?;
-        // Above, not every whole number is a float.
+        // Above this bound, not every whole number is a float.
         let is_whole = number.fract() == 0.0 && number.abs() < LARGEST_ID as f64;
         is_whole.then(|| (number as i64).to_string())?.parse().ok()
     };

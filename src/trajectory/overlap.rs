@@ -41,7 +41,7 @@ impl Class {
     }
 }
 
-/// Returns the numbers of a square as a key. The sum makes one zero of both.
+/// Returns the numbers of a square as a key. Adding 0 turns −0 into 0.
 fn key(square: DVec2) -> [u64; 2] {
     [(square.x + 0.0).to_bits(), (square.y + 0.0).to_bits()]
 }
@@ -56,17 +56,18 @@ pub(super) struct Overlap {
     pub(super) share: f64,
     /// Number of all overlaps.
     pub(super) count: usize,
-    /// True if all overlaps are counted. Disks on one heap overlap too many times for that.
+    /// True if all overlaps are counted. Disks that lie on one heap have too many overlaps for that.
     pub(super) is_counted: bool,
 }
 
-/// Largest number of overlaps per disk that are counted. Disks that overlap little have three each at most.
+/// Largest number of overlaps per disk that are counted. Disks that overlap only a little have at most three
+/// each.
 const MOST: usize = 8;
 
 /// Returns the deepest overlap beyond this share of the sum of radii, if there is one.
 ///
-/// The disks come in the order of their sizes, the largest first, and each looks among those that came
-/// before. As long as these overlap little, a square holds only a few of them.
+/// The disks are taken in the order of their sizes, the largest first, and each is compared with the disks
+/// before it. As long as these overlap little, a square holds only a few of them.
 pub(super) fn deepest(disks: &[Disk], domain: Option<&Domain>, least: f64) -> Option<Overlap> {
     let shifts: Vec<DVec2> = domain.map_or_else(|| vec![DVec2::ZERO], |domain| domain.images().collect());
     let mut order: Vec<usize> = (0..disks.len()).collect();

@@ -19,8 +19,8 @@ use crate::quantity::non_negative;
 /// or a table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the
 /// feature `gzip`, the file may be compressed.
 ///
-/// Columns count by their names, in any order and case. A position and a radius are needed; without the
-/// others, a disk is as from [`Disk::new`](crate::Disk::new).
+/// Columns are recognized by their names, in any order and case. A position and a radius are needed; without
+/// the others, a disk has the defaults of [`Disk::new`](crate::Disk::new).
 ///
 /// | property | names |
 /// |---|---|
@@ -40,7 +40,7 @@ use crate::quantity::non_negative;
 /// [`State::notes`] lists everything that the reader ignores or changes.
 ///
 /// # Examples
-/// A state of soft disks, whose contacts overlap, made a start of hard ones:
+/// The example turns a state of soft disks, whose contacts overlap, into a start for hard disks:
 /// ```
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::trajectory::Reader;
@@ -128,9 +128,9 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This makes a start of soft disks, and of files with few digits. [`State::shrunk`] tells by how much.
-    /// With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Those of more than half the
-    /// sum of the radii always are. Masses stay.
+    /// This turns states of soft disks, and files with few digits, into starts. [`State::shrunk`] says by how
+    /// much. With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Overlaps of more than
+    /// half the sum of the radii always are. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -139,7 +139,7 @@ impl Reader {
 
     /// Returns the same reader, with this mass per area for the disks of a file without masses.
     ///
-    /// A file of GSD leaves out masses that are all 1; [`State::notes`] tells if the density counts.
+    /// A GSD file leaves out masses that are all 1; [`State::notes`] says whether the density was used.
     ///
     /// # Errors
     /// If it is not in `[1e-30, 1e30]`.

@@ -23,9 +23,9 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 /// the file and does not write them twice. If they differ, the file is of another run, and the error says so.
 /// If the process died in the middle of a frame, the next frame overwrites the incomplete one.
 ///
-/// The recorder continues with the first beat after the last frame of the file. If the run is later than that
-/// beat, as from a checkpoint that is newer than the file, the run ends with an error, since frames would be
-/// missing. If you want the gap, give `times` a first time after it ([`SampleTimes::starting_at`]).
+/// The recorder continues with the first sampling time after the last frame of the file. If the run is later
+/// than that, as from a checkpoint that is newer than the file, the run ends with an error, since frames
+/// would be missing. To accept the gap, give `times` a first time after it ([`SampleTimes::starting_at`]).
 ///
 /// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///
@@ -116,8 +116,8 @@ impl Recorder {
 
     /// Returns the same recorder with its clock in the state after the last frame of the file.
     ///
-    /// A clock that begins anew would take a beat just after the start of the run for a beat on the start,
-    /// and leave it out. Then a run in pieces that was killed between two of them would lack a frame.
+    /// A clock that begins anew would take a sampling time just after the start of the run for one at the
+    /// start, and leave it out. A run in pieces that was killed between two of them would then lack a frame.
     fn going_on(mut self) -> Self {
         if let Some(&last) = self.times().last() {
             self.clock.start_at(last);

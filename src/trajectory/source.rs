@@ -11,7 +11,7 @@ use super::{csv, extended_xyz, gsd, lammps_data, lammps_dump};
 /// Bytes by which the format is recognized.
 const HEAD: u64 = 1 << 14;
 
-/// Returns the frames of a file. One of GSD is not read whole.
+/// Returns the frames of a file. A GSD file is not read whole.
 pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
     let failed = |source| ReadError::Io { line: 1, source };
     let mut head = Vec::new();

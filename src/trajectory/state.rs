@@ -102,7 +102,7 @@ impl State {
         self.shrunk
     }
 
-    /// Returns sentences about all that the reader ignored or changed.
+    /// Returns sentences about everything that the reader ignored or changed.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = self.notes.clone();
         if !self.kind_names.is_empty() {
@@ -123,7 +123,7 @@ impl State {
         notes
     }
 
-    /// Returns the names of kinds with their numbers, of many kinds only the first.
+    /// Returns the names of kinds with their numbers; if there are many kinds, only the first ones.
     fn numbered_names(&self) -> String {
         let names = self.kind_names.iter().enumerate().take(MOST_NAMES);
         let mut names: Vec<String> = names.map(|(number, name)| format!("{name} {number}")).collect();
@@ -134,7 +134,7 @@ impl State {
     }
 }
 
-/// Most names of kinds in a note.
+/// Largest number of names of kinds in a note.
 const MOST_NAMES: usize = 8;
 
 /// Returns the rectangle around these disks.

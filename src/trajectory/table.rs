@@ -25,7 +25,7 @@ pub(super) struct Table {
     names: HashMap<String, usize>,
     /// The names that the file gives to the numbers of kinds, from 0 on.
     pub(super) kind_names: Vec<String>,
-    /// Types count from 1, and a density is that of a sphere.
+    /// True if types count from 1, and densities are densities of spheres.
     pub(super) is_of_lammps: bool,
     /// True if this crate wrote the file. The crate always writes a last line break, so a file without a last
     /// line break is incomplete.

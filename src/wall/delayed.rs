@@ -1,4 +1,4 @@
-//! A motion that begins late.
+//! A motion that begins at a given time.
 
 use super::starting_at::{late, late_bounds};
 use super::{AccelerationBounds, Motion, WallMotion, WallState};

@@ -119,8 +119,8 @@ impl Approach {
 /// the wall never enters. The search then follows it from piece to piece.
 ///
 /// # Searches that do not come to an end
-/// A search invents no touch. It returns [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
-/// gap is known to be open:
+/// A search never reports a touch that does not happen. It returns [`NotBefore`](FirstTouch::NotBefore) with
+/// the time up to which the gap is known to be open:
 /// - After 256 steps. The caller may resume the search from that time.
 /// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends
 ///   before it begins, or where a number is not finite. A search that starts there gets no further. A run
@@ -141,7 +141,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
         return touch_at(touch);
     }
     for _ in 0..MOST_STEPS {
-        // A time that is not a number is not in time either.
+        // The test is also false for a time that is not a number.
         if !is_in_time(time) {
             return if time.is_nan() { FirstTouch::NotBefore(approach.time) } else { FirstTouch::NONE };
         }
@@ -169,13 +169,13 @@ struct Search<'a, M: ?Sized> {
 struct Look {
     gap: f64,
     rate: f64,
-    /// Lower bound of the gap's acceleration until `until`.
+    /// Lower bound on the gap's acceleration until `until`.
     pull: f64,
     /// True if the bound is the acceleration itself.
     exact: bool,
     tolerance: f64,
-    /// End of the piece. It is not later than the time of the look if floating-point times cannot tell the
-    /// pieces apart.
+    /// End of the piece. It is not later than the present time of the search if floating-point times cannot
+    /// tell the pieces apart.
     until: f64,
     /// True if state, bounds and reach of the wall are finite.
     finite: bool,
@@ -253,7 +253,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns the end of a bounce that begins at `start`, or `None` if it rises above rounding.
     ///
-    /// The gap itself does not show when such a bounce is over. But the bounce is so short that the
+    /// The gap itself does not show when such a bounce is over. However, the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
     /// the bounce is over when the gap closes as fast as it opened. Any earlier, and bounces would lose speed
     /// that no rule takes. Any later, and each bounce would go deeper into the wall than the last.
@@ -275,7 +275,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns the mean acceleration of the gap while it falls through its rounding, within the piece.
     ///
-    /// The acceleration comes from the change of the rate, since the motion only gives bounds of the
+    /// The acceleration comes from the change of the rate, since the motion only gives bounds on the
     /// acceleration.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
         let fall = (-2.0 * first.tolerance / first.pull).sqrt();

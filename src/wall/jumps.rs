@@ -2,7 +2,7 @@
 
 use super::WallMotion;
 
-/// Returns whether the motion jumps at the end of a piece: its displacement then differs from the one to
+/// Returns whether the motion jumps at the end of a piece: its displacement then differs from the value to
 /// which its velocity shortly before the end leads.
 pub(super) fn seen<M: WallMotion + ?Sized>(motion: &M) -> bool {
     const PIECES: usize = 1000;

@@ -25,8 +25,8 @@ const LAST: f64 = 1.0 / (1u64 << 20) as f64;
 /// Length below which a piece may be an artifact of rounding, relative to its phase and the period.
 const SHORT: f64 = 1e-9;
 
-/// Allowed difference between the displacement and the integral of the velocity, relative to the way, and the
-/// number of samples in a piece near which the acceleration may jump.
+/// Allowed difference between the displacement and the integral of the velocity, relative to the distance
+/// moved, and the number of samples in a piece near which the acceleration may jump.
 const EXACT: f64 = 1e-8;
 const JUMPS: u32 = 8;
 

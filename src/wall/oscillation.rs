@@ -21,7 +21,7 @@ impl Oscillation {
         };
         positive("period", oscillation.period())?;
         positive("peak acceleration", amplitude * angular_frequency * angular_frequency)?;
-        // Also in the form in which arcs have it: the square of a period may vanish.
+        // The arcs divide by the square of the period, which may vanish.
         finite("peak acceleration", amplitude / (oscillation.period() * oscillation.period()))?;
         Ok(oscillation)
     }

@@ -7,7 +7,7 @@ use crate::{Fingerprint, ParameterError};
 /// A motion whose phase counts from a given start instead of time 0.
 ///
 /// A base that replaces another between runs can in this way begin at its own phase 0, without a jump. The
-/// start is no delay: before it, the wall goes through the phases before 0.
+/// start is not a delay: before it, the wall goes through the phases before 0.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, StartingAt, WallMotion};
@@ -92,8 +92,8 @@ pub(super) fn late_bounds(motion: &Motion, phase: f64, lead: f64) -> Acceleratio
     AccelerationBounds::new(bounds.until - lead, bounds.min, bounds.max)
 }
 
-/// Returns the phase of a motion that is ahead by `lead`. Where the sum was rounded to just before the end of
-/// a piece, but the phase belongs to the next piece, this is where the next piece begins.
+/// Returns the phase of a motion that is ahead by `lead`. If the sum was rounded to just before the end of a
+/// piece, but the phase belongs to the next piece, the result is the start of the next piece.
 pub(super) fn late(motion: &Motion, phase: f64, lead: f64) -> f64 {
     let mut late = phase + lead;
     for _ in 0..PIECES {

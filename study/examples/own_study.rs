@@ -1,7 +1,8 @@
 //! A custom study: a rule, a boundary and a sample that the library does not have, swept over two axes.
 //!
-//! Rough grains in a hot round drum that turns. How fast do they turn with it, for each loss and spin?
-//! After a stop or a kill, the same command continues; several of them at the same time share the work.
+//! Rough grains in a hot round drum that turns. The study measures how fast they turn with it, for each loss
+//! and spin. After a stop or a kill, the same command continues; several of them at the same time share the
+//! work.
 //!
 //! ```text
 //! cargo run --release --example own_study
@@ -39,7 +40,7 @@ impl CollisionRule for Viscous {
         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
         self.friction.impulse(contact, contact.normal_impulse(restitution))
     }
-    // With this number and that of the drum, a study notices by itself that rule or walls have changed.
+    // With this fingerprint and the drum's, a study notices by itself that rule or walls have changed.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("Viscous").number(self.loss))
     }
@@ -84,7 +85,7 @@ impl Boundary for Drum {
 /// The numbers that are kept of each sample.
 #[derive(Serialize, Deserialize)]
 struct Flow {
-    /// Angular momentum of a disk about the middle, its own spin included.
+    /// Angular momentum of a disk about the middle, including its spin.
     angular_momentum: f64,
     collisions: u64,
 }

@@ -14,11 +14,11 @@
 //! }
 //! ```
 //!
-//! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
-//! and waiting, ramp and value of those values that were not finished, whether there are tables of all, and
-//! about how many seconds of one processor the finished values took and the others will take.
-//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units and
-//! the meanings of all columns.
+//! `status --json` prints one object: the number of ramps; the indices of the ramps that are done, running,
+//! begun and waiting; the ramp and the index of each value that was not finished; whether there are tables of
+//! all values; and about how many seconds of one processor the finished values took and the others will take.
+//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units and the
+//! meanings of all columns.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -90,8 +90,8 @@ type Failure = Box<dyn Error>;
 
 /// Runs the command line of a program, with plans of this experiment.
 ///
-/// The command `new` writes the plan that `example` returns. `diff` copies runs, so rule and boundary must be
-/// `Clone`.
+/// The command `new` writes the plan that `example` returns. `diff` copies runs, so the rule and the boundary
+/// must be `Clone`.
 pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,
 ) -> ExitCode {
@@ -131,8 +131,8 @@ fn say(line: &str) -> Result<(), Failure> {
     told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
 }
 
-/// Evaluates the result of writing output. A closed pipe is no error, since its reader has seen enough: the
-/// result is then false. A full disk is one.
+/// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
+/// the result is then false. A full disk is an error.
 fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),

@@ -15,7 +15,7 @@ use thiserror::Error;
 /// The error of an experiment that cannot be built or changed.
 ///
 /// `?` makes it from the errors of both packages, of input and output, and from texts;
-/// [`new`](Self::new) from any other. It shows its cause, and `?` takes it into any error.
+/// [`new`](Self::new) from any other. It shows its cause, and `?` converts it into any error type.
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;
@@ -235,7 +235,7 @@ pub enum StudyError {
         /// The description of the damage.
         reason: String,
     },
-    /// A record belongs to another plan, so somebody has changed the record or the plan.
+    /// A record belongs to another plan, so the record or the plan has been changed.
     #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]
     Foreign {
         /// The file.

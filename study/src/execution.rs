@@ -18,8 +18,8 @@ use control::{Control, Summary};
 use queue::Queue;
 use session::Session;
 
-/// Shortest and longest time between two checks of the work of other processes. It doubles from look to look,
-/// since a process that waits must not burden a file system that others need.
+/// Shortest and longest time between two checks of the work of other processes. It doubles from check to
+/// check, since a process that waits must not burden a file system that others need.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
 
 /// Largest number of blocks of other processes that one check tries to take over.
@@ -34,8 +34,8 @@ impl<E: Experiment> Study<E> {
     /// is interrupted returns with all work saved. The next run continues from there, with the same result.
     ///
     /// # Errors
-    /// If plan or code of the study have changed, files cannot be read or written, or a value cannot be
-    /// started.
+    /// If the plan or the code of the study has changed, files cannot be read or written, or a value cannot
+    /// be started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
         let ramps = self.plan().ramp_count();
         self.run_blocks(0..ramps, blocks(ramps), control)

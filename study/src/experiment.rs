@@ -127,7 +127,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ///
     /// Values of different code must not be mixed, so a study with another revision is refused.
     /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment, changes
-    /// by itself with every edit of that file, also of a comment. `Fingerprint::of("Cooling 2")` changes when
+    /// by itself with every edit of that file, even of a comment. `Fingerprint::of("Cooling 2")` changes when
     /// you raise the number: do so whenever rule, walls, disks, observer or sample give other numbers than
     /// before. Code in other files, and in other crates, is covered only if you add it with
     /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the
@@ -148,8 +148,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the disks at the start.
     ///
-    /// A plan can ask for any number of them: refuse one that no memory holds before you make a vector of
-    /// that length.
+    /// A plan can ask for any number of them: refuse a number that does not fit into memory, before you make
+    /// a vector of that length.
     ///
     /// # Errors
     /// If they do not fit.
@@ -279,7 +279,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the parameters are valid.
     ///
-    /// A plan calls this before anything runs, for all values, or for a spread of 1024 if there are more.
+    /// A plan calls this before anything runs, for all values, or for a selection of 1024 if there are more.
     /// A run calls it for each value that it begins.
     ///
     /// # Errors
@@ -302,7 +302,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the contents of a file can belong to these parameters.
     ///
-    /// The study has checked the checksum, the place and the time before. Many records keep no state.
+    /// The study has already checked the checksum, the ramp and the value, and the time. Many records keep no
+    /// state.
     ///
     /// # Errors
     /// If they cannot, with the reason.

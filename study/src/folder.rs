@@ -111,8 +111,8 @@ impl Folder {
         Ok(())
     }
 
-    /// Returns whether the folder holds a study. A plan alone is not a study: somebody may keep plans there,
-    /// among other files. A study has a lock beside its plan from the first moment, soon a README, and then
+    /// Returns whether the folder holds a study. A plan alone is not a study: a user may keep plans there,
+    /// among other files. A study has a lock beside its plan from the beginning, soon a README, and then
     /// ramps. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(LOCK).metadata().is_ok_and(|lock| is_lock(&lock));
@@ -164,7 +164,7 @@ impl Folder {
         whole::write(&self.provenance_file(), provenance.text().as_bytes())
     }
 
-    /// Writes the README of the folder, if it is missing or cut short. An edited one stays.
+    /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
     fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
         match fs::read(&path) {

@@ -28,7 +28,7 @@ pub(super) const OF_TABLES: [(&str, &str); 15] = [
     ),
 ];
 
-/// Returns the meaning of a column of a table of a plan; empty if the experiment tells none.
+/// Returns the meaning of a column of a table of a plan; empty if the experiment gives none.
 pub(super) fn of_column<E: Experiment>(plan: &Plan<E>, table: &str, column: &str) -> String {
     let whole_name = |name: &str| plan.varied().zip(&plan.varied).find(|(short, _)| *short == name);
     let parameter = |name: &str| whole_name(name).and_then(|(_, whole)| find(E::meanings(), whole));

@@ -85,8 +85,8 @@ impl<E: Experiment> Study<E> {
     /// two. The list is empty if the program was allowed to continue anyway.
     ///
     /// The study's finished values stay unchanged. Each record keeps the mark of the code that made it, which
-    /// the column `made_by` of `values.csv` shows: values on both sides of the change can be distinguished,
-    /// and you decide whether they can be compared.
+    /// the column `made_by` of `values.csv` shows. Values on both sides of the change can thus be
+    /// distinguished, and you decide whether they can be compared.
     ///
     /// # Errors
     /// If the folder holds no study, or cannot be read or written.

@@ -204,11 +204,12 @@ impl<E: Experiment> Study<E> {
     /// values again. Returns whether there were failed values.
     ///
     /// The same code fails again, with the same bytes: call this for code whose changes were
-    /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process does
-    /// is left alone.
+    /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process is
+    /// running is left alone.
     ///
     /// # Errors
-    /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or written.
+    /// If there is no such ramp, the plan or the code of the study has changed, or files cannot be read or
+    /// written.
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
         self.check_ramp(ramp)?;
         self.check_unchanged()?;
@@ -228,7 +229,7 @@ impl<E: Experiment> Study<E> {
     /// Returns the processor seconds that the finished values took, and an estimate for the other values, if
     /// these are alike. The estimate is NaN before a value is finished.
     ///
-    /// Both are estimates: of a value that was interrupted, the last piece counts alone.
+    /// Both are estimates: for a value that was interrupted, only the last piece counts.
     ///
     /// # Errors
     /// If files cannot be read.
@@ -279,7 +280,7 @@ impl<E: Experiment> Study<E> {
         let entries = self.store.refreshed()?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        // Making walls takes longer than reading a small record, so only a spread of records is compared.
+        // Making walls takes longer than reading a small record, so only a selection of records is compared.
         let stride = 1 + entries.all().count() / MOST_TRIED;
         for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();

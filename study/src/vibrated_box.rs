@@ -277,8 +277,8 @@ impl Experiment for VibratedBox {
         found.ok().map(|found| found.regime().to_string())
     }
 
-    /// Returns false for the size of the box, which must hold its disks, and for a frequency, with which the
-    /// base would jump.
+    /// Returns false for the size of the box, which must hold its disks, and for a frequency, a change of
+    /// which would make the base jump.
     fn can_be_ramped(parameter: &str) -> bool {
         let name = parameter.rsplit('.').next().unwrap_or(parameter);
         let fixed = ["disks", "width", "height", "sides", "angular_frequency", "slip", "initial_temperature"];

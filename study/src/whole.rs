@@ -25,7 +25,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
 /// file system.
 pub(crate) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     // Without this check, a late process that is killed here would leave its draft in a complete study, from
-    // which nobody removes drafts any more.
+    // which no process removes drafts any more.
     if path.exists() {
         return Ok(false);
     }

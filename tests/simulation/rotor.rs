@@ -97,8 +97,8 @@ fn disks_turn_a_free_drum() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Rolling friction acts on the spin relative to the drum, whose inertia resists it, too: the angular momentum
-/// of all is kept, and no collision gains energy.
+/// Rolling friction acts on the spin relative to the drum, whose inertia resists it, too. The total angular
+/// momentum is conserved, and no collision gains energy.
 #[test]
 fn rolling_friction_slows_disks_and_drum() -> Result<(), Box<dyn std::error::Error>> {
     let drum = Rotor { rim: Brick::circle(DVec2::ZERO, RADIUS)?, spin: 0.4 };

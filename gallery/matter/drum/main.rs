@@ -5,7 +5,7 @@
 //! (H. Oba and M. Otsuki, arXiv:2407.19466). The faster the drum turns, the steeper the surface is. The angle
 //! depends on the Froude number `Ω²R/g` (A. Brucks et al., Phys. Rev. E 75, 032301 (2007)).
 //!
-//! Not as in a real drum: grains lie on each other by collisions, not by lasting contacts. Collisions slower
+//! Unlike in a real drum, grains lie on each other by collisions, not by lasting contacts. Collisions slower
 //! than 0.1 lose nothing (`ElasticBelow`), so grains keep a little heat, and the angle depends on the remedy:
 //! if slow collisions have no friction, it is 6° less. There are no avalanches with rests between them, since
 //! the drum must turn fast, once in 50 to 200 times the time in which a grain falls half its diameter. These

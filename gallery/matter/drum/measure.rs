@@ -42,7 +42,7 @@ impl Slope {
     }
 }
 
-/// Tells whether two other grains are near.
+/// Returns whether two other grains are near.
 fn lies(disk: &Disk, disks: &[Disk]) -> bool {
     let near = |other: &&Disk| {
         let reach = 1.2 * (disk.radius() + other.radius());
@@ -99,7 +99,7 @@ impl Depths {
         layers.map(|(layer, (count, sum))| (height(layer), sum / *count as f64)).collect()
     }
 
-    /// Returns the angular velocity of the grains at the rim about the axis, relative to that of the drum.
+    /// Returns the angular velocity of the grains at the rim about the axis, relative to the drum's.
     pub(crate) fn grip(&self, rate: f64) -> f64 {
         self.at_rim.1 / (self.at_rim.0 as f64 * rate)
     }

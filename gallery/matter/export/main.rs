@@ -119,7 +119,7 @@ fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordE
     names.map(|name| Recorder::create(folder.join(name), ByEnding, times)).collect()
 }
 
-/// Begins a file that was not there.
+/// Creates a file, which must not exist yet.
 fn new(path: &Path) -> std::io::Result<File> {
     named(path, File::create_new(path))
 }
@@ -175,7 +175,7 @@ fn all_of(snapshot: &Snapshot<'_>) -> Value {
         "left": domain.left,
         "right": domain.right,
         "bottom": domain.bottom,
-        // Of an open box, it is null.
+        // For an open box, it is null.
         "top": domain.top,
         "periodic": [domain.periodic_sides, domain.periodic_ends],
         "floor": snapshot.edges().bottom,

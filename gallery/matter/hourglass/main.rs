@@ -4,8 +4,8 @@
 //! the last grain, gravity points the other way, which turns the glass over. The mean diameter of the grains
 //! is 0.95 and their largest 1, their mass is 1, and so is gravity; `q = 0.1`, `κ = 0.3`.
 //!
-//! What is seen: the flow does not depend on how many grains are left above, unlike that of a liquid. That is
-//! why hourglasses measure time.
+//! The flow does not depend on how many grains are left above, unlike the flow of a liquid. That is why
+//! hourglasses measure time.
 //!
 //! Grains that lie on each other would collide ever faster. `LeastRebound` stops that: no surfaces part more
 //! slowly than 0.05, so a heap trembles a little. `--compare` shows what other remedies do.
@@ -49,7 +49,7 @@ struct Arguments {
     /// Seed of places and velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Most collisions for each way of the grains, in millions.
+    /// Largest number of collisions for each passage of the grains, in millions.
     #[arg(long, default_value_t = 100.0, value_parser = positive)]
     collisions: f64,
     /// Runs the glass under each remedy for rest, too, and prints what it costs.
@@ -66,7 +66,7 @@ struct Arguments {
 const SETTLING: f64 = 20.0;
 const FRAME: f64 = 0.5;
 
-/// Latest end of a way, if the neck is blocked.
+/// Latest end of a passage, if the neck is blocked.
 const END: f64 = 1000.0;
 
 type Run = Simulation<BoxedRule, Vessel>;
@@ -89,7 +89,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     write(arguments, &glass, &ways).map_err(Failure::run)
 }
 
-/// Least speed at which surfaces part: far below that of the flow, so that it does not depend on it.
+/// Least speed at which surfaces part: far below the speed of the flow, so that the flow does not depend on
+/// it.
 const LEAST: f64 = 0.05;
 
 fn friction() -> Result<Frictional, ParameterError> {
@@ -149,7 +150,7 @@ struct Frame {
     disks: Vec<Disk>,
 }
 
-/// The way of the grains through the neck.
+/// The passage of the grains through the neck.
 struct Way {
     frames: Vec<Frame>,
     ended: RunEnd,

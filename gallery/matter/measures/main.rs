@@ -145,7 +145,7 @@ fn collide<R: CollisionRule>(run: &mut Simulation<R>, per_disk: u64) -> Result<(
     run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ()).map(|_| ())
 }
 
-/// What is drawn of the gas in the bulk.
+/// The data of the gas in the bulk that are drawn.
 struct Bulk {
     pairs: Sampled<PairCorrelation>,
     velocities: Sampled<VelocityDistribution>,
@@ -225,7 +225,7 @@ fn while_it_cools(
     let mut velocities =
         Sampled::new(VelocityDistribution::new(3.0, 30)?.about_mean(), SampleTimes::every(1.0)?);
     for seed in 0..u64::from(gases) {
-        // So dilute that the box is too small for vortices.
+        // The gas is so dilute that the box is too small for vortices.
         let gas = Gas { packing: 0.008, seed: arguments.seed + seed };
         let container = Container::periodic(gas.side(), gas.side())?;
         let mut run = gas.settled(container, Smooth::from_restitution(r)?)?;

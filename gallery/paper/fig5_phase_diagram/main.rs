@@ -12,7 +12,7 @@
 //!
 //! The example writes `fig5_phase_diagram.svg` and `.png`, `points.csv` and `transitions.csv`, which the
 //! example `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that
-//! was done and draws it. The same command then goes on.
+//! was done and draws it. The same command then continues.
 
 mod picture;
 mod plan;
@@ -43,7 +43,7 @@ struct Arguments {
     /// The same as `--size quick`.
     #[arg(long, conflicts_with = "size")]
     quick: bool,
-    /// Draw what is there, and do no more: also while another process does.
+    /// Draws the finished points and computes nothing, even while another process does.
     #[arg(long)]
     draw: bool,
     /// Draws the points of a table, such as docs/reproduction has, and computes nothing.

@@ -77,7 +77,7 @@ const WIDTH: f64 = 850.0;
 const PANEL: f64 = 600.0;
 const HEIGHT: f64 = 430.0;
 
-/// Bars are pale, so that nobody takes them for the lines.
+/// Bars are pale, so that they are not taken for the lines.
 const BAR: Look = Look::line("#b4b9bf", "");
 
 /// Draws the picture.
@@ -88,7 +88,7 @@ pub(crate) fn draw(diagram: &Diagram) -> Result<Sheet, ParameterError> {
     sheet.header(MARGINS[0], diagram.title, &[diagram.notes]);
     write_legend(&mut sheet, top + 30.0, diagram.states.iter().any(|state| state.down));
     let place = Place { x: 0.0, y: top, width: PANEL, height: HEIGHT };
-    // Twice: the bars lie below the lines.
+    // The panel is begun twice, so that the bars lie below the lines.
     let panel = sheet.panel(place, MARGINS, Vec::new(), layout(diagram.gravity));
     add_bars(&mut sheet, &panel, diagram.crossings);
     let mut plots = iso_lines(diagram.gravity)?;
@@ -163,16 +163,16 @@ fn add_states(sheet: &mut Sheet, panel: &Panel, states: &[State]) {
     }
 }
 
-/// Tells whether all next states in friction lie on one side of this one in the order of regimes, and all in
-/// inelasticity as well. It is drawn as it is, but no line goes around a single run.
+/// Returns whether all next states in friction lie on one side of this one in the order of regimes, and all
+/// in inelasticity as well. It is drawn as it is, but no line goes around a single run.
 fn is_island(state: &State, states: &[State]) -> bool {
     let place = |state: &State| (state.friction, state.inelasticity);
     let turned = |state: &State| (state.inelasticity, state.friction);
     one_sided(state, states, place) && one_sided(state, states, turned)
 }
 
-/// Tells whether the next states on either side along the first of two coordinates have regimes that are all
-/// above, or all below, this one's.
+/// Returns whether the next states on either side along the first of two coordinates have regimes that are
+/// all above, or all below, this one's.
 fn one_sided(state: &State, states: &[State], place: impl Fn(&State) -> (f64, f64)) -> bool {
     let (along, across) = place(state);
     let others = || states.iter().filter(|other| place(other).1 == across);
@@ -188,7 +188,7 @@ fn one_sided(state: &State, states: &[State], place: impl Fn(&State) -> (f64, f6
 }
 
 impl Crossing {
-    /// Tells whether the state is one of the two between which this transition lies.
+    /// Returns whether the state is one of the two between which this transition lies.
     fn borders(&self, state: &State) -> bool {
         // The neighbors were computed from their middle.
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b.abs();

@@ -12,7 +12,7 @@ pub(crate) enum Size {
     Quick,
     /// All frictions and inelasticities, 6000 oscillations each: six minutes on one core.
     Coarse,
-    /// The paper's: 100 000 oscillations each, all ramps up and down: hours, about three on one core.
+    /// The paper's: 100 000 oscillations each, all ramps up and down: about three hours on one core.
     Full,
 }
 
@@ -55,7 +55,7 @@ const FRICTIONS: [f64; 26] = [
 
 const FEW_FRICTIONS: [f64; 8] = [0.005, 0.015, 0.04, 0.07, 0.15, 0.3, 1.0, 3.0];
 
-/// A study in a folder of its own.
+/// A study in a separate folder.
 pub(crate) struct Part {
     pub(crate) folder: &'static str,
     pub(crate) plan: Plan<VibratedBox>,

@@ -1,4 +1,5 @@
-//! Which number governs the transitions of the paper's Fig. 5? Its Table I, from ramps at the paper's length.
+//! The number that governs the transitions of the paper's Fig. 5: its Table I, from ramps at the paper's
+//! length.
 //!
 //! The example reads the tables of ramps that `docs/reproduction/*/run` has made, and averages along each
 //! transition line: the paper's ⟨dE⟩ of a gas of equal temperatures, the same with the ratio of temperatures
@@ -64,9 +65,9 @@ struct Arguments {
 enum Question {
     /// Which number governs the transitions?
     Lines,
-    /// What if the walls lose nothing along the normal, or only the base does?
+    /// Table I if the walls lose nothing along the normal, or if only the base loses nothing.
     Walls,
-    /// What if states get their names by other criteria?
+    /// The lines under other criteria for the names of states.
     Criteria,
     /// What else moves the transitions?
     Dependences,
@@ -192,7 +193,7 @@ fn write_crossings(crossings: &[(&Ramp, Crossing)], results: &Results) -> Result
     let mut table = results.table("transition_lines", &columns)?;
     for (ramp, at) in crossings {
         let along = if ramp.along_friction { "friction" } else { "inelasticity" };
-        // The half width of a friction is that of its logarithm times the friction.
+        // The half width of a friction is the half width of its logarithm, times the friction.
         let half_width = at.half_width * if ramp.along_friction { at.friction } else { 1.0 };
         let numbers: Vec<f64> = GOVERNING.iter().map(|number| number.at(at)).collect::<Result<_, _>>()?;
         let rounded =

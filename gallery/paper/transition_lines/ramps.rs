@@ -205,9 +205,9 @@ impl Ramp {
 
     /// Returns the transitions on this ramp.
     ///
-    /// Each leg is looked at alone, since bisected values are visited on one leg only. Coexistence begins
+    /// Each leg is examined alone, since bisected values are visited on one leg only. Coexistence begins
     /// where the first of the legs shows it, and ends where the last of them does; the other transitions lie
-    /// in the middle of what the legs show. Middles of frictions are those of their logarithms.
+    /// in the middle of what the legs show. Middles of frictions are taken from their logarithms.
     pub(crate) fn crossings(&self) -> Result<Vec<Crossing>, Box<dyn Error>> {
         let mut seen = Vec::new();
         for leg in ["up", "down"] {
@@ -253,7 +253,7 @@ impl Ramp {
         let first = &self.observations[0];
         let (friction, inelasticity) =
             if self.along_friction { (middle.exp(), first.inelasticity) } else { (first.friction, middle) };
-        // The values on both sides have this distance but for rounding.
+        // The values on both sides have this distance, up to rounding.
         let is_near = |seen: &&Observation| (self.value(seen) - middle).abs() <= half_width * (1.0 + 1e-9);
         let near: Vec<&Observation> = self.observations.iter().filter(is_near).collect();
         let mean =

@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     /// Inelasticity q = (1 - r)/2 along the normal, in [0, 0.5].
     #[arg(long, default_value_t = 0.0, value_parser = non_negative)]
     pub(crate) inelasticity: f64,
-    /// Inelasticity along the tangent, in [0, 1]; that along the normal unless given.
+    /// Inelasticity along the tangent, in [0, 1]; equal to the normal one unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) tangential_inelasticity: Option<f64>,
     /// Static friction κ.
@@ -48,16 +48,16 @@ pub(crate) struct Arguments {
     /// Dynamic friction, at most the static one; equal to it unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) dynamic_friction: Option<f64>,
-    /// Friction of all walls, static and dynamic; that of the disks unless given.
+    /// Friction of all walls, static and dynamic; the disks' unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) wall_friction: Option<f64>,
-    /// Inelasticity of all walls, normal and tangential; that of the disks unless given.
+    /// Inelasticity of all walls, normal and tangential; the disks' unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) wall_inelasticity: Option<f64>,
-    /// Inelasticity of the base along the normal; that of the walls unless given.
+    /// Inelasticity of the base along the normal; the walls' unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) base_inelasticity: Option<f64>,
-    /// Inelasticity of the base along the tangent; that of the walls unless given.
+    /// Inelasticity of the base along the tangent; the walls' unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) base_tangential_inelasticity: Option<f64>,
     /// Base.
@@ -116,7 +116,7 @@ impl Base {
 }
 
 impl Arguments {
-    /// Checks what no flag alone can tell.
+    /// Checks the flags against each other.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         let (every, oscillations, thermal) = (self.every, self.oscillations(), self.base == Base::Thermal);
         let late = format!("--every {every}: no sample is taken in {oscillations} oscillations");
@@ -131,7 +131,7 @@ impl Arguments {
         made.map_or(Ok(()), |(_, message)| Err(Failure::usage(message)))
     }
 
-    /// Returns true if the base has an inelasticity that is not that of the walls.
+    /// Returns true if the base has another inelasticity than the walls.
     pub(crate) fn has_own_base(&self) -> bool {
         self.base_inelasticity.or(self.base_tangential_inelasticity).is_some()
     }
@@ -154,7 +154,7 @@ impl Arguments {
         self.temperature.unwrap_or(1.0)
     }
 
-    /// Returns the height that is measured and drawn: that of the lid, or five times the width.
+    /// Returns the height that is measured and drawn: up to the lid, or five times the width.
     pub(crate) fn shown(&self) -> f64 {
         if self.open { 5.0 * self.width } else { self.height }
     }

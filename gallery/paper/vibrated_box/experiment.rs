@@ -24,7 +24,7 @@ pub(crate) type Sample = <Quantities as Observable>::Value;
 /// collisions in this time, so samples between would see most velocities again.
 const FRESH: u64 = 5;
 
-/// Samples of the profile of heights, which only tells where the layer is densest.
+/// Samples of the profile of heights, which only shows where the layer is densest.
 const PROFILES: u64 = 50;
 
 /// The results of one run.
@@ -100,7 +100,7 @@ fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
     })
 }
 
-/// Returns one rule for collisions of disks, and one for those with walls.
+/// Returns one rule for collisions of disks, and one for collisions with walls.
 fn rule(arguments: &Arguments) -> Result<BoxedRule, ParameterError> {
     let Arguments { inelasticity, friction, .. } = *arguments;
     let tangential = arguments.tangential_inelasticity.unwrap_or(inelasticity);

@@ -138,7 +138,7 @@ impl Brick {
         if is_free { distance } else { -distance }
     }
 
-    /// Returns the unit vector from the nearest point of the brick to a place: the normal of a
+    /// Returns the unit vector from the nearest point of the brick to a position: the normal of a
     /// [`Surface`](crate::boundary::Surface) for a disk that touches there.
     pub fn normal(&self, place: DVec2) -> DVec2 {
         self.nearest(place).normal

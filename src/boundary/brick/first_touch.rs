@@ -109,7 +109,7 @@ impl Brick {
         Some(from + opens + touch)
     }
 
-    /// Returns the largest growth with which the search still finds the first touch of a disk.
+    /// Returns by how much a disk may grow at most, so that the search still finds its first touch.
     pub(in crate::boundary) fn most_growth(&self, radius: f64) -> f64 {
         match self.shape {
             Shape::Segment(_) => f64::INFINITY,
@@ -125,7 +125,7 @@ impl Brick {
         }
     }
 
-    /// Returns the radius of the brick toward a disk at this place. It is negative from inside an arc, and
+    /// Returns the radius of the brick toward a disk at this position. It is negative from inside an arc, and
     /// infinite for a segment or a corner, which has no radius.
     pub(in crate::boundary) fn radius_at(&self, place: DVec2) -> f64 {
         match self.shape {

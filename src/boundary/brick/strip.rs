@@ -9,13 +9,13 @@ use crate::roots::first_descent_of_quartic;
 
 impl Brick {
     /// Returns the first time, not later than `wait`, at which a disk is in the strip of a brick that moves
-    /// to and fro: within its radius of some place of the brick from `-stroke` to `stroke`. The time may be
-    /// too early, but never too late.
+    /// to and fro: within its radius of some position of the brick from `-stroke` to `stroke`. The time may
+    /// be too early, but never too late.
     ///
     /// The strip is the band along the brick that is as wide as the stroke across it, and longer than the
-    /// brick by the stroke at both ends. A rectangle around the brick in all its places would be too large:
-    /// for a side at 45 degrees, disks would be in it all of their time, and the search would follow them
-    /// from piece to piece of a motion that can never touch them.
+    /// brick by the stroke at both ends. A rectangle around the brick in all its positions would be too
+    /// large. For a side at 45 degrees, disks would always be in it, and the search would follow them from
+    /// piece to piece of a motion that can never touch them.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         path: &Path,

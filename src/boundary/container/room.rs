@@ -22,8 +22,8 @@ impl Container {
         room
     }
 
-    /// Returns the rectangle of the container with each wall displaced inward by this way, periodic where the
-    /// container has no walls.
+    /// Returns the rectangle of the container with each wall displaced inward by this distance, periodic
+    /// where the container has no walls.
     pub(super) fn rectangle(&self, inward: impl Fn(&Plane) -> f64) -> Domain {
         let way = |wall| self.index(wall).map_or(0.0, |index| inward(&self.planes[index]));
         let DVec2 { x, y } = self.corner;

@@ -51,7 +51,7 @@ impl Container {
     ///
     /// Side walls move along their normals; floor and lid slide.
     ///
-    /// Motions along the vertical stay, so the floor or the box can move vertically, too.
+    /// Vertical motions that were set before are kept, so the floor or the box can move vertically, too.
     ///
     /// # Errors
     /// If the motion gives numbers that are not finite, as for [`with_motion`](Self::with_motion), or jumps,
@@ -74,7 +74,7 @@ impl Container {
     ///
     /// Floor and lid move along their normals; the sides slide.
     ///
-    /// Motions along the horizontal stay.
+    /// Horizontal motions that were set before are kept.
     ///
     /// # Errors
     /// The same as for [`shaken_sideways`](Self::shaken_sideways), with the walls exchanged.

@@ -1,10 +1,11 @@
 //! The check of free areas by the gaps between disks and walls.
 //!
-//! A region is halved until the gaps decide about each cell of it. A wall that is farther from the middle of
-//! a cell than its corners does not reach into the cell, since the gap grows by no more than the disk moves.
-//! In a small cell whose middle and corners have the gaps to one straight wall, the wall is straight up to
-//! `BEND`, and the free share has a closed form. Cells at corners of the free area, at thin walls and at
-//! tight arcs are halved further. The last cells, if still nothing is known of them, count as uncertain.
+//! A region is halved until the gaps decide whether each of its cells is free. A wall that is farther from
+//! the middle of a cell than its corners does not reach into the cell, since the gap grows by no more than
+//! the disk moves. In a small cell whose middle and corners have the gaps to one straight wall, the wall is
+//! straight up to `BEND`, and the free share has a closed form. Cells at corners of the free area, at thin
+//! walls and at tight arcs are halved further. The smallest cells count as uncertain if they are still
+//! undecided.
 
 use glam::DVec2;
 
@@ -27,9 +28,9 @@ const BEND: f64 = 0.01;
 
 /// Largest error of an area, relative to the region.
 ///
-/// A bent wall deviates from its straight line by the square of the way along it. The mean of this square is
-/// subtracted, so the errors of the cells have both signs and a zero mean: at most 1e-3 of a cell, in some
-/// hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
+/// A bent wall deviates from its straight line by the square of the distance along it. The mean of this
+/// square is subtracted, so the errors of the cells have both signs and a zero mean: at most 1e-3 of a cell,
+/// in about a hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
 const SLACK: f64 = 2e-5;
 
 /// Checks the free areas of the domain and of a random region.

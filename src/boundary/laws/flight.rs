@@ -36,7 +36,7 @@ struct Meeting {
     is_grazing: bool,
 }
 
-/// Checks consecutive flights of a disk. Each wall that the disk touches turns it back.
+/// Checks consecutive flights of a disk. Each wall that the disk touches reflects it.
 pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize) -> Result<(), Violation> {
     let mut flight = first;
     for number in 0..flights {
@@ -56,7 +56,7 @@ pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize
     Ok(())
 }
 
-/// Checks a flight, and returns its touch with a wall that turns the disk back.
+/// Checks a flight, and returns its touch with a wall that reflects the disk.
 fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting>, Violation> {
     let until = flight.time() + longest(trial, flight);
     let found = trial.first_touch(flight, until)?;
@@ -103,13 +103,13 @@ fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
 
 /// Returns the duration of a flight that moves no farther than `way`, whatever the direction of its
 /// acceleration:
-/// |v| t + |a| t² / 2 is at most this way.
+/// |v| t + |a| t² / 2 is at most this distance.
 fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     let (way, speed) = (way.max(0.0), velocity.abs());
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
-/// Returns whether the flight ends at a sink. It may take a disk out without a touch, when the center
+/// Returns whether the flight ends at a sink, which may take a disk out without a touch, when the center
 /// arrives.
 fn is_absorbed(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
     let place = flight.position(touch.time);
@@ -246,8 +246,8 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
     bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
 }
 
-/// Returns whether two surfaces are the same up to the rounding of late times, which is a place on a wall
-/// that moves.
+/// Returns whether two surfaces are the same up to the rounding of late times: on a wall that moves, an error
+/// of the time is an error of the position.
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();
     let slack = SAME * (one.velocity.length() + trial.speed * late);

@@ -26,7 +26,7 @@ const SLOPE: f64 = 0.2;
 const EXACT: f64 = 5e-8;
 const SAME: f64 = 1e-6;
 
-/// Checks the surface that a disk touches at this place.
+/// Checks the surface that a disk touches at this position.
 pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let surface = trial.boundary.surface(wall, place, time);
@@ -98,14 +98,14 @@ impl Around<'_, '_> {
         Ok(())
     }
 
-    /// Checks that the velocity along the normal is the rate at which the gap closes at this place.
+    /// Checks that the velocity along the normal is the rate at which the gap closes at this position.
     fn check_velocity(&self, surface: &Surface<'_>) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
         let speed = surface.velocity.dot(surface.normal);
         let scale = speed.abs().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
         let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
-        // A step is the largest distance that the wall moves. No question is about a time before the origin.
+        // A step is the largest distance that the wall moves. No query is about a time before the origin.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_rate = *time < 2.0 * step / scale || self.has_slope(speed / scale, step, slack, depth);
         require!(PART, "velocity", is_rate;

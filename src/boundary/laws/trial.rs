@@ -108,7 +108,7 @@ impl<'a> Trial<'a> {
         Err(Violation::new(PART, "progress", sentence))
     }
 
-    /// Returns the wall that a disk with a radius larger by `more` overlaps at this place, and the depth.
+    /// Returns the wall that a disk with a radius larger by `more` overlaps at this position, and the depth.
     pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<Overlap> {
         self.boundary.overlap(&Probe::new(place, self.radius + more, time).with_kind(self.kind))
     }
@@ -123,8 +123,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Checks that overlaps have named each wall that was touched often. At single touches, another wall may
-    /// be as deep.
+    /// Checks that overlaps have named each wall that was touched often. At a single touch, another wall may
+    /// be equally deep.
     pub(super) fn check_names(&self) -> Result<(), Violation> {
         let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
         let wall = unnamed.unwrap_or_default();
@@ -133,7 +133,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Checks that `may_touch` and `may_meet` are true for every region that contains the place of a touch.
+    /// Checks that `may_touch` and `may_meet` are true for every region that contains the position of a
+    /// touch.
     pub(super) fn check_regions(&self, touch: Touch, place: DVec2) -> Result<(), Violation> {
         for size in REGIONS.map(|size| size * self.radius) {
             let [low, high] = [0.0, size].map(|size| DVec2::splat(size + self.rounding()));

@@ -21,7 +21,7 @@ struct Joint {
 impl Joint {
     /// Returns whether a disk can touch the corner.
     fn is_exposed(&self) -> bool {
-        // Disks are on the left of a brick, so a left turn is a turn toward the disks. A free end, or a place
+        // Disks are on the left of a brick, so a left turn is a turn toward the disks. A free end, or a point
         // where more than two bricks meet, counts as exposed: an unnecessary point costs a little time, but a
         // missing point would let disks through.
         match (self.coming.as_slice(), self.going.as_slice()) {
@@ -59,7 +59,7 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
 /// Returns whether all borders between free and occupied regions lie on bricks: all bricks are thin, or no
 /// brick is thin and the bricks form closed lines.
 ///
-/// At the free end of other bricks, the nearest of them decides on which side a place is.
+/// At the free end of other bricks, the nearest of them decides on which side a position is.
 pub(super) fn are_closed(bricks: &[Brick]) -> bool {
     let mut more_starts: HashMap<[u64; 2], i32> = HashMap::new();
     let walls = || bricks.iter().filter(|brick| !brick.is_point());

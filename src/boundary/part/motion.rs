@@ -13,11 +13,11 @@ impl Part {
     /// Returns the same part with a motion along a direction. Replaces an earlier motion along a direction.
     ///
     /// The vector `direction` can have any length except 0. A part that also [turns](Self::with_rotation)
-    /// moves along the same direction at all times, and takes the point about which it turns along.
+    /// moves along the same direction at all times, and the point about which it turns moves with it.
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`check_finite`](crate::wall::check_finite) looks at. Also if the motion jumps, as a
+    /// that [`check_finite`](crate::wall::check_finite) examines. If the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
     /// would jump. A part that turns has no such side, so no motion of it may jump.
     pub fn with_motion(
@@ -34,7 +34,7 @@ impl Part {
     /// earlier rotation.
     ///
     /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
-    /// and the displacement $`z`$, the place $`r`$ of the part as built is at the time $`t`$ in
+    /// and the displacement $`z`$, the point that was built at $`r`$ is, at the time $`t`$, at
     ///
     /// ```math
     /// c + z(t)\,e + R(\omega t)\,(r - c),\qquad\text{at the velocity}\quad
@@ -47,7 +47,7 @@ impl Part {
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
     /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn.
-    /// Also if the part has a motion that jumps.
+    /// If the part has a motion that jumps.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};
@@ -81,8 +81,8 @@ impl Part {
     /// Returns the same part with a motion whose phase counts from this absolute time instead of 0.
     ///
     /// A moving part that is added to a run should start at the present time. It is then where it was built,
-    /// if its motion has no displacement at phase 0. The start is no delay: before it, the part goes through
-    /// the phases before 0.
+    /// if its motion has no displacement at phase 0. The start is not a delay: before it, the part goes
+    /// through the phases before 0.
     ///
     /// # Errors
     /// If the time is not finite.

@@ -303,7 +303,7 @@ impl Travel {
 /// components of the path refer to axes that do not turn.
 ///
 /// The third derivative of the path there is $`-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp`$. A bound
-/// of it, times a third of the time, is an acceleration that bounds the error.
+/// on it, times a third of the time, is an acceleration that bounds the error.
 fn turning_path(place: DVec2, velocity: DVec2, pull: DVec2, angular_velocity: f64, wait: f64) -> Path {
     let turning = angular_velocity;
     let acceleration = pull - 2.0 * turning * velocity.perp() - turning * turning * place;

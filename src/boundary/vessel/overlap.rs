@@ -1,8 +1,8 @@
 //! Overlaps with the parts of a vessel.
 //!
-//! The nearest brick of a part decides whether a place is behind the part. If the disk reaches a brick of the
-//! part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away, a
-//! table decides: it lists, for each cell of the index, the parts that fill the cell.
+//! The nearest brick of a part decides whether a position is behind the part. If the disk reaches a brick of
+//! the part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away,
+//! a table decides: it lists, for each cell of the index, the parts that fill the cell.
 
 use glam::DVec2;
 
@@ -85,8 +85,8 @@ impl Vessel {
 
     /// Returns the cells that hold no brick of a part and are behind it.
     ///
-    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is, so a cell
-    /// is examined only if its left and lower neighbors do not decide.
+    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is. A cell is
+    /// therefore examined only if its left and lower neighbors do not decide.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick =

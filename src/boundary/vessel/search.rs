@@ -10,14 +10,14 @@ use crate::boundary::part::{Travel, Turning};
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
-/// a round more. The engine reads the clock every 256 events, so a limit of its time is kept.
+/// one round more. The engine reads the clock every 256 events, so it still keeps a limit of wall-clock time.
 const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the others have their turn.
 ///
 /// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
-/// touches it first. An arm that turns has such a brick at its back. The rounds keep it from taking all the
-/// steps.
+/// touches it first. A turning arm has such a brick on its trailing side. The rounds keep it from taking all
+/// the steps.
 const STEPS_IN_A_ROUND: u32 = 16;
 
 /// Gap below which surfaces count as touching, relative to the lengths whose difference the gap is.
@@ -55,7 +55,7 @@ impl Vessel {
         let mut moving: Vec<Entry> = Vec::new();
         let mut last = None;
         for entry in self.index.near(low, high) {
-            // A brick that lies in several cells comes several times, mostly in a row. A second search of a
+            // A brick that lies in several cells appears several times, mostly in a row. A second search of a
             // brick at rest costs time and changes nothing.
             if last.replace(entry) == Some(entry) {
                 continue;
@@ -94,7 +94,7 @@ impl Vessel {
         Touch::new(time, entry.wall as usize + self.container.wall_count())
     }
 
-    /// Searches for the first touch of the bricks `moving`, in rounds, up to `until` or the touch of another
+    /// Searches for the first touch of the `moving` bricks, in rounds, up to `until` or the touch of another
     /// wall.
     fn search(
         &self,
@@ -162,7 +162,7 @@ impl Vessel {
         distances.fold(f64::INFINITY, f64::min) - flight.radius()
     }
 
-    /// Returns the surface of a brick that a disk at this place touches.
+    /// Returns the surface of a brick that a disk at this position touches.
     pub(super) fn surface_of_brick(&self, brick: usize, position: DVec2, time: f64) -> Surface<'_> {
         let wall = &self.walls[brick];
         let placed = &self.parts[wall.part];
@@ -190,9 +190,9 @@ impl Vessel {
 /// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
 /// there, until the gap is within rounding. It never steps over a touch.
 ///
-/// A fast part has many pieces of motion during a flight. But a disk can touch the part only in the strip
-/// that the part sweeps, and the part sweeps all of the strip within a period. The search therefore goes
-/// straight to the time at which the disk enters the strip, and is over a few pieces later.
+/// A fast part has many pieces of motion during a flight. A disk, however, can touch the part only in the
+/// strip that the part sweeps, and the part sweeps all of the strip within a period. The search therefore
+/// goes straight to the time at which the disk enters the strip, and is over a few pieces later.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,
@@ -241,7 +241,7 @@ impl Search<'_> {
     }
 
     /// Returns whether a turning brick is out of the disk's reach at this time. Most bricks of a turning part
-    /// are, even where the circles on which they turn are near.
+    /// are out of reach, even where the circles on which they turn are near.
     fn is_out_of_reach(&self, time: f64) -> bool {
         let travel = self.placed.part.travel();
         let Some(Turning { about, angular_velocity, .. }) = travel.frame() else { return false };

@@ -57,8 +57,8 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
 /// closing speed, and partners that have just collided. The partners are, alternately, disks of kinds 0 and 1
 /// and straight walls, with radii up to the extremes that the engine accepts.
 ///
-/// Mild contacts come first, such as two disks of mass 1 that meet at speed 1. So if a rule fails at a mild
-/// contact, its error shows numbers that are easy to read.
+/// Mild contacts come first, such as two disks of mass 1 that meet at speed 1, so the error of a rule that
+/// fails at one of them shows numbers that are easy to read.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;
@@ -71,8 +71,8 @@ pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
     mild_contacts().chain(extreme_contacts())
 }
 
-/// Returns contacts of ordinary speeds with mild partners only. Among the extreme contacts, partners take
-/// turns, so each pair of partners, mild or not, meets all speeds and masses.
+/// Returns contacts of ordinary speeds with mild partners only. The extreme contacts cycle through the
+/// partners, so each pair of partners, mild or not, meets all speeds and masses.
 ///
 /// The disks are rings of mass 1: their tangential mass, 0.25, reads better than a sixth.
 fn mild_contacts() -> impl Iterator<Item = Contact> {

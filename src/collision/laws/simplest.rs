@@ -3,7 +3,7 @@
 use crate::collision::Contact;
 use crate::{Kind, Violation};
 
-/// Returns the violation at the simplest contact that still breaks the same law.
+/// Returns the violation at the simplest contact at which the rule still breaks the same law.
 pub(super) fn simplest(
     contact: Contact,
     violation: Violation,
@@ -62,7 +62,7 @@ fn like(contact: Contact, other: &Contact) -> Contact {
         .with_spin(other.relative_spin(), other.spin_inertia(), other.spin_response())
 }
 
-/// Returns the number with its first digit.
+/// Returns the number, rounded to one digit.
 fn rounded(number: f64) -> f64 {
     format!("{number:.0e}").parse().unwrap_or(number)
 }

@@ -33,7 +33,7 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
         Ok(Self { boundary, room })
     }
 
-    /// Returns the normal and the place of each side of the rectangle. Where the rectangle is periodic, it
+    /// Returns the normal and the position of each side of the rectangle. Where the rectangle is periodic, it
     /// has no sides.
     fn sides(&self) -> impl Iterator<Item = (DVec2, f64)> {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.room;

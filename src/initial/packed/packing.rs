@@ -10,7 +10,7 @@ use crate::initial::{PlacementError, placed_at_random, with_maxwellian_velocitie
 use crate::observable::{Collision, stop_when};
 use crate::{Disk, ParameterError, Simulation};
 
-/// Area fraction at which the disks begin to grow. It is so low that random places are found fast, for any
+/// Area fraction at which the disks begin to grow. It is so low that random positions are found fast, for any
 /// mix of radii.
 const START: f64 = 0.35;
 
@@ -18,7 +18,7 @@ const START: f64 = 0.35;
 /// suggests.
 const SMALLER: f64 = 0.7;
 
-/// Number of attempts to find random places.
+/// Number of attempts to find random positions.
 const ATTEMPTS: i32 = 8;
 
 /// Number of collisions per disk between two steps of growth. With fewer, packing is faster, and jams at a
@@ -131,8 +131,8 @@ impl<'a> Packing<'a> {
     }
 }
 
-/// Returns the disks in motion at random places, with this scale of their radii. The largest disks are placed
-/// first.
+/// Returns the disks in motion at random positions, with this scale of their radii. The largest disks are
+/// placed first.
 fn placed<B: Boundary + ?Sized>(
     room: &Enclosure<B>,
     full: &[Disk],
@@ -158,7 +158,8 @@ fn placed<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns a radius, at most this one, with which a disk at this place overlaps no wall; 0 if there is none.
+/// Returns a radius, at most this one, with which a disk at this position overlaps no wall; 0 if there is
+/// none.
 fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
     let probe = Probe::new(place, radius, 0.0);
     let Some(overlap) = room.overlap(&probe) else { return radius };

@@ -8,7 +8,7 @@ pub(super) const PLAYERS: usize = 32;
 #[repr(align(64))]
 pub(super) struct Times(pub(super) [f64; PLAYERS]);
 
-/// Stands for a seat where no player is left out.
+/// The seat to name if no player is left out.
 pub(super) const NO_SEAT: usize = PLAYERS;
 
 /// Returns the earliest time, and the first seat with this time. The players in two seats are left out: they

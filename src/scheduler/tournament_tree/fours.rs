@@ -24,7 +24,7 @@ pub(super) struct Fours {
 }
 
 impl Entry {
-    /// Returns the earlier of two entries. Of equal times, the smaller disk wins.
+    /// Returns the earlier of two entries. At equal times, the smaller disk wins.
     #[inline]
     fn earlier(self, other: Self) -> Self {
         // To compare the two as pairs would become a branch on some processors. The sum cannot overflow,

@@ -1,9 +1,9 @@
 //! A tournament in matches of 32, for processors that compare several times at once.
 //!
 //! The runner-up is known before the winner's event is carried out. The next event can therefore begin while
-//! the processor is still busy with the winner's new time, which is known last of all: the one question left
-//! is whether the winner stays first, and its branch is nearly always predicted. A tournament without the
-//! runner-up has to wait for the new time, and is slower than that in matches of four.
+//! the processor is still busy with the winner's new time, which is known last. Only the branch on whether
+//! the winner stays first depends on that time, and it is nearly always predicted. A tournament without the
+//! runner-up has to wait for the new time, and is slower than the tournament in matches of four.
 
 use std::hint::select_unpredictable;
 
@@ -28,7 +28,7 @@ struct Player {
 impl Player {
     const NOBODY: Self = Self { disk: NOTHING_DUE.0, due: NOTHING_DUE.1 };
 
-    /// Returns whether this player comes first. Of equal times, the smaller disk does.
+    /// Returns whether this player comes first. At equal times, the smaller disk does.
     #[inline(always)]
     fn is_before(self, other: Self) -> bool {
         select_unpredictable(self.disk < other.disk, self.due <= other.due, self.due < other.due)
@@ -71,7 +71,7 @@ impl Match {
 
 /// A tournament of two or more rounds, for at least one disk.
 ///
-/// The seats on the winner's way through the rounds are out of date: nobody reads them before the winner has
+/// The seats on the winner's way through the rounds are out of date: they are not read before the winner has
 /// left them.
 #[derive(Debug, Clone)]
 pub(super) struct Wide<const ROUNDS: usize> {
@@ -160,7 +160,7 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         !player.is_before(self.runner_up)
     }
 
-    /// Makes the runner-up the winner. The `player` who has won until now is due later than that.
+    /// Makes the runner-up the winner. The `player` who was the winner is due later than the runner-up.
     #[inline(always)]
     fn replace_winner(&mut self, player: Player, earliest: impl Earliest) {
         let winner = self.runner_up;

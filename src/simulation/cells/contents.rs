@@ -80,8 +80,8 @@ impl Contents {
         }
     }
 
-    /// Returns the room that the disks of `cells` cells need. Behind the largest number of them, there is
-    /// room for the rest of a window.
+    /// Returns the room that the disks of `cells` cells need. Even after the largest number of disks, there
+    /// is room for the rest of a window.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {
         cells * SLOTS + self.crowds.room() + WINDOW
@@ -113,7 +113,7 @@ impl Contents {
         [0, step, 2 * step].iter().fold(count, |count, cell| self.gather_cell(first + cell, found, count))
     }
 
-    /// Appends the disks of consecutive cells to `found`, behind its first `count` entries. Returns the new
+    /// Appends the disks of consecutive cells to `found`, after its first `count` entries. Returns the new
     /// count.
     #[inline]
     pub(super) fn gather_run(&self, first: usize, cells: usize, found: &mut [u32], count: usize) -> usize {
@@ -121,7 +121,7 @@ impl Contents {
         blocks.iter().fold(count, |count, block| self.gather_block(block, found, count))
     }
 
-    /// Appends the disks of one cell to `found`, behind its first `count` entries. Returns the new count.
+    /// Appends the disks of one cell to `found`, after its first `count` entries. Returns the new count.
     #[inline(always)]
     pub(super) fn gather_cell(&self, cell: usize, found: &mut [u32], count: usize) -> usize {
         self.gather_block(&self.blocks[cell], found, count)

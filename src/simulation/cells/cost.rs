@@ -87,8 +87,8 @@ impl Gridded {
         Self { group, density: count as f64 / area, home, cell }
     }
 
-    /// Returns the width of the square of a smaller group's homes into which a disk of this group looks, and
-    /// the width of the hole in that square.
+    /// Returns the width of the square of a smaller group's homes that a disk of this group searches, and the
+    /// width of the hole in that square.
     fn reach(&self, smaller: &Self) -> (f64, f64) {
         let width = self.group.class.largest + smaller.group.class.largest + self.cell + smaller.home;
         let touching = self.group.class.smallest + smaller.group.class.smallest;

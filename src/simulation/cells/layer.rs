@@ -21,7 +21,7 @@ use super::reach::{Homes, Reach};
 use super::size_class::SizeClass;
 use crate::boundary::{Boundary, Domain, Region};
 
-/// Largest number of homes per disk. More would cost time, since searches look into empty homes, too.
+/// Largest number of homes per disk. More would cost time, since searches also visit empty homes.
 const HOMES_PER_DISK: f64 = 4.0;
 
 /// Number of homes that is always allowed.

@@ -20,7 +20,7 @@
 //! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
 //! class, cell and home are the same. A large disk needs both: from anywhere in a home of its size it could
 //! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
-//! many to look into.
+//! many to search.
 //!
 //! A pair must find each other from both sides, whichever of the two is searched for. The large disk searches
 //! the homes within its reach. The small disk cannot look up: the cells above it that reach its home are too
@@ -243,7 +243,7 @@ impl Layers {
 }
 
 /// Returns whether a disk in its home and a disk of a larger class in its cell are less than half a period
-/// apart as long as they are within each other's reach. Then they keep meeting at the same image.
+/// apart as long as they are within each other's reach. In that case, they keep meeting at the same image.
 fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) -> bool {
     let touching = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a + 1].largest + classes[b + 1].largest);
     let half = 0.5 * domain.periods();

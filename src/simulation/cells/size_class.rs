@@ -15,8 +15,8 @@ pub(in crate::simulation) struct SizeClass {
 }
 
 impl SizeClass {
-    /// Returns the class for which cells are made if there are no disks. Any cells will do that the domain
-    /// has room for, also where it is periodic.
+    /// Returns the class for which cells are made if there are no disks. Any cells for which the domain has
+    /// room will do, even where it is periodic.
     pub(super) fn of_nobody(domain: &Domain) -> Self {
         let any = 0.125 * domain.width().min(domain.height());
         Self { largest: any, smallest: any, count: 0 }

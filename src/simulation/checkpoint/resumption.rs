@@ -31,8 +31,8 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// counters.
     ///
     /// The rule and the boundary are code, so the caller gives them again. The same rule and boundary give
-    /// the same future. Others are refused, unless they are given on purpose. Only two parts that both have
-    /// no fingerprint (closures, for example) cannot be distinguished. [`Checkpoint`] has an example.
+    /// the same future. Others are refused, unless the caller allows them. Only two parts that both have no
+    /// fingerprint (closures, for example) cannot be distinguished. [`Checkpoint`] has an example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
         Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }

@@ -15,7 +15,7 @@ impl Checkpoint {
     /// Writes the checkpoint and the observers of its run to one file, completely or not at all.
     ///
     /// Numbers keep their bits, infinities and NaN, too, and state and observers cannot come from different
-    /// moments. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
+    /// times. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
     /// measure, a tuple of several, or a custom type.
     ///
     /// [`Series`]: crate::observable::Series
@@ -61,8 +61,8 @@ impl Checkpoint {
     /// Reads a checkpoint and the observers of its run from a file of [`write_with`](Self::write_with).
     ///
     /// # Errors
-    /// If the file cannot be read, is no such file, is of another version, was cut or changed, or has other
-    /// observers. The error names the file.
+    /// If the file cannot be read, is not such a file, is of another version, was cut or changed, or has
+    /// other observers. The error names the file.
     pub fn read_with<O: DeserializeOwned>(path: impl AsRef<Path>) -> Result<(Self, O), CheckpointError> {
         read(path.as_ref(), |bytes| decoded(opened(SEAL, bytes)?))
     }

@@ -11,8 +11,8 @@ use crate::{Disk, ParameterError};
 /// Rescaling: at each time of a clock, all velocities about their mean, and all spins, are multiplied by one
 /// factor, so that the translational temperature is $`T = \tfrac12\langle m v'^2\rangle`$.
 ///
-/// Under a rule without a speed scale, this changes nothing but the unit of time: a gas that is rescaled is
-/// one that cools, with the same $`T_r/T`$ and cumulants, and never becomes slow.
+/// Under a rule without a speed scale, this changes nothing but the unit of time: a rescaled gas has the same
+/// $`T_r/T`$ and cumulants as a gas that cools, but never becomes slow.
 ///
 /// ```
 /// use granular_edmd::observable::{SampleTimes, Temperatures};

@@ -25,7 +25,7 @@ pub enum BuildError {
         start: f64,
         /// Distance to the next floating-point number.
         spacing: f64,
-        /// Time in which a typical disk moves some tens of diameters.
+        /// Time in which a typical disk moves tens of diameters.
         epoch: f64,
     },
     /// The boundary's domain is not a rectangle with finite sides and a finite bottom.
@@ -63,7 +63,8 @@ pub enum BuildError {
         /// Depth of the overlap.
         depth: f64,
     },
-    /// A disk fills a hollow of a wall, up to rounding. Rounding alone would decide whether it gets into it.
+    /// A disk fills a hollow of a wall, up to rounding. Rounding alone would decide whether the disk gets
+    /// into the hollow.
     #[error(
         "disk {disk} of radius {} is just as large as the hollow of the wall {wall:?}: make one of them larger",
         Readable(*.radius)

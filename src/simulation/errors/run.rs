@@ -127,7 +127,7 @@ pub enum RunError {
         time: f64,
         /// Distance to the next floating-point number.
         spacing: f64,
-        /// Time in which a typical disk moves some tens of diameters.
+        /// Time in which a typical disk moves tens of diameters.
         epoch: f64,
     },
     /// An observer asks for a sample at a time that is not a number, or that is not later than the last
@@ -143,8 +143,8 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// A kick of a driving failed: it gives an impossible motion, or its time is too late for the digits of a
-    /// number.
+    /// A kick of a driving failed: it gives an impossible motion, or its time is too late for floating-point
+    /// numbers to resolve.
     #[error("a kick failed at time {}", Rounded(*.time))]
     Driving {
         /// The present.
@@ -152,8 +152,8 @@ pub enum RunError {
         /// The cause.
         source: Box<BuildError>,
     },
-    /// An inlet cannot continue: its next opening is too late for the digits of a number, or there are no ids
-    /// left.
+    /// An inlet cannot continue: its next opening is too late for floating-point numbers to resolve, or there
+    /// are no ids left.
     #[error("an inlet failed at time {}", Rounded(*.time))]
     Inlet {
         /// The present.

@@ -93,7 +93,7 @@ fn exit_under_pull(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64,
 /// that pulls down.
 ///
 /// There are three ways: up to the edge above, up and down again through the edge below, or straight down.
-/// The code selects numbers and does not branch: the way that a disk takes is a coin toss, and a
+/// The code selects numbers and does not branch: the path that a disk takes is a coin toss, and a
 /// misprediction would cost more than all three roots. Each root has the form in which nothing cancels: a
 /// distance over a sum of speeds if the disk goes straight to the edge, and a sum of speeds over gravity if
 /// it turns back.

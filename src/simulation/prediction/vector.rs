@@ -66,7 +66,7 @@ mod tests {
         [collision_due.to_bits(), exit_due.to_bits(), partner, counted, exit, 0]
     }
 
-    /// The test predicts some million pairs with the instructions of each level.
+    /// The test predicts about a million pairs with the instructions of each level.
     #[test]
     fn all_levels_find_the_same_partners() {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);

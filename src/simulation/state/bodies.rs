@@ -38,7 +38,7 @@ impl Trajectory {
     }
 }
 
-/// The rotation of a disk, which only collisions touch.
+/// The rotation of a disk, which only collisions change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Spin {
@@ -321,7 +321,7 @@ impl Bodies {
     pub(in crate::simulation) fn set_gravity(&mut self, gravity: Gravity, offset: f64) {
         let gained = (gravity.downward() - self.gravity.downward()) * offset;
         let pushed = (gravity.rightward() - self.gravity.rightward()) * offset;
-        // The new flight leads to the same place and velocity under the new gravity.
+        // The new flight leads to the same position and velocity under the new gravity.
         for particle in &mut self.particles {
             particle.trajectory.velocity.y += gained;
             particle.trajectory.position.y -= 0.5 * gained * offset;

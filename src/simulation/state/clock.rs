@@ -54,7 +54,7 @@ impl Clock {
         self.origin + self.now
     }
 
-    /// Returns the largest difference between the present and the time up to which a run was to go.
+    /// Returns the largest difference between the present and the time up to which a run was to advance.
     pub(in crate::simulation) fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * (self.origin.abs() + self.now.abs())
     }
@@ -87,9 +87,9 @@ impl Clock {
     /// Returns the largest offset, not after the present, by which the epoch can move without any rounding.
     ///
     /// Late origins have fewer digits than offsets. If the epoch moved to the present itself, its origin
-    /// would be rounded. A moving wall would then jump by its way in the rounded time, sometimes into a disk.
-    /// The difference of two close numbers is exact, so this offset moves the origin exactly to a
-    /// floating-point number, and the rest stays in the offset of the present.
+    /// would be rounded. A moving wall would then jump by the distance that it moves in the rounded time,
+    /// sometimes into a disk. The difference of two close numbers is exact, so this offset moves the origin
+    /// exactly to a floating-point number, and the rest stays in the offset of the present.
     pub(in crate::simulation) fn exact_offset(&self) -> f64 {
         let nearest = self.time();
         // At times beyond twice the origin, the difference below need not be exact. Times are then no coarser

@@ -31,8 +31,8 @@ impl Exit {
     pub(in crate::simulation) const EDGES: [[Self; 2]; 2] =
         [[Self::Left, Self::Right], [Self::Down, Self::Up]];
 
-    /// Returns the columns to the right and the rows up. They are computed, since a branch would be a coin
-    /// toss between four ways.
+    /// Returns the step to the neighbor cell: columns to the right, and rows up. The numbers are computed,
+    /// since a branch would be a coin toss between four ways.
     #[inline]
     pub(in crate::simulation) fn direction(self) -> (i32, i32) {
         let right = i32::from(self == Self::Right) - i32::from(self == Self::Left);
@@ -77,7 +77,7 @@ impl Forecast {
         wall: 0,
     };
 
-    /// Returns whether the collision comes first. Of equal times, the collision wins, since disks come before
+    /// Returns whether the collision comes first. At equal times, the collision wins, since disks come before
     /// walls and cells.
     #[inline]
     pub(in crate::simulation) fn is_collision(&self) -> bool {

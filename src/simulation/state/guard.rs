@@ -16,10 +16,10 @@ pub(in crate::simulation) const EVENTS_PER_HORIZON: u64 = 255;
 /// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]
 /// more for each disk.
 ///
-/// A typical disk goes, or falls, some tens of diameters in an epoch. The bounds are far above the rates of
-/// dense flows, and of packings with up to about 1e4 collisions for each diameter that a disk goes. They are
-/// far below the rates of matter that comes to rest without a remedy. At the bounds, an epoch of a thousand
-/// disks still takes minutes and not days.
+/// A typical disk moves, or falls, tens of diameters in an epoch. The bounds are far above the rates of dense
+/// flows, and of packings with up to about 1e4 collisions for each diameter that a disk moves. They are far
+/// below the rates of matter that comes to rest without a remedy. At the bounds, an epoch of a thousand disks
+/// still takes minutes and not days.
 const MOST_EVENTS: f64 = (1_u64 << 27) as f64;
 const MOST_EVENTS_PER_DISK: f64 = (1_u64 << 22) as f64;
 

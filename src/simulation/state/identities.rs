@@ -10,7 +10,7 @@ use crate::{Disk, ParameterError};
 pub(in crate::simulation) struct Identities {
     /// Empty as long as the ids are 1, 2, 3, …: most runs need no memory for them.
     ids: Vec<u64>,
-    /// The largest id so far, also of disks that were removed.
+    /// The largest id so far, including the ids of removed disks.
     last: u64,
 }
 
@@ -39,7 +39,7 @@ impl Identities {
         self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
     }
 
-    /// Adds a disk after these `count` ones. One without an id gets one after all that were ever given.
+    /// Adds a disk after these `count` ones. A disk without an id gets an id above all ids given so far.
     pub(super) fn push(&mut self, count: usize, id: u64) {
         let id = if id == 0 { self.last + 1 } else { id };
         self.last = self.last.max(id);

@@ -15,8 +15,8 @@ const FASTER: f64 = 16.0;
 pub(in crate::simulation) const FARTHEST: f64 = FASTER * DIAMETERS;
 
 impl Bodies {
-    /// Returns the length of an epoch. A typical disk goes, or falls, some tens of diameters in it, and no
-    /// disk goes more than [`FASTER`] times as far.
+    /// Returns the length of an epoch. A typical disk moves, or falls, tens of diameters in it, and no disk
+    /// moves more than [`FASTER`] times as far.
     pub(in crate::simulation) fn epoch_length(&self) -> f64 {
         let squares = || self.particles.iter().map(|particle| particle.trajectory.velocity.length_squared());
         let typical = (squares().sum::<f64>() / self.len() as f64).sqrt();
@@ -33,7 +33,7 @@ impl Bodies {
 
     /// Returns whether a disk of this velocity moves no farther in an epoch of this length than is allowed.
     ///
-    /// A collision can make a disk faster than all disks were when the epoch began. Its place at the epoch
+    /// A collision can make a disk faster than all disks were when the epoch began. Its position at the epoch
     /// would be so far away that it would lack digits.
     #[inline]
     pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {

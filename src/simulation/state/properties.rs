@@ -61,8 +61,8 @@ impl Properties {
         }
     }
 
-    /// Adds a disk after these `count` ones. Only the first one that differs costs a time that grows with
-    /// their number.
+    /// Adds a disk after these `count` ones. Only the first disk that differs from the others costs a time
+    /// that grows with the number of disks.
     pub(super) fn push(&mut self, count: usize, disk: &Disk) {
         if let Self::Same { model, .. } = *self {
             if is_alike(disk, &model) {
@@ -93,8 +93,8 @@ impl Properties {
     /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
     ///
     /// If there is a disk more than [`LARGEST_RATIO`] times as large, the result is the diameter of the
-    /// largest disk over that ratio. In a domain with room for such a disk, positions have so few digits
-    /// after the point that fine dust gains nothing from shorter epochs.
+    /// largest disk over that ratio. A domain with room for such a disk is so large that positions have few
+    /// digits after the point, so fine dust would gain nothing from shorter epochs.
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same { model, .. } => 2.0 * model.radius(),

@@ -159,7 +159,7 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// Returns whether a name is one of these, in any case. A single letter has its case, since a `T` is a
+/// Returns whether a name is one of these, in any case. The case of a single letter counts, since `T` is a
 /// temperature.
 fn is_one_of(name: &str, known: &[&str]) -> bool {
     known.iter().any(|known| *known == name || known.len() > 1 && known.eq_ignore_ascii_case(name))

@@ -1,4 +1,4 @@
-//! A file of GSD by any program: its names, its index, and its chunks.
+//! A GSD file by any program: its names, its index, and its chunks.
 
 use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom};

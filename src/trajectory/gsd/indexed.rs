@@ -1,4 +1,4 @@
-//! A file of GSD: a header, an index of chunks, their names, and the chunks.
+//! A GSD file: a header, an index of chunks, their names, and the chunks.
 
 use std::fs::File;
 use std::io;
@@ -91,8 +91,8 @@ impl Indexed {
         Ok(())
     }
 
-    /// Removes from the index everything that a cut has torn, before other bytes are written at the same
-    /// positions.
+    /// Removes from the index everything that was lost when the file was cut, before other bytes are written
+    /// at the same positions.
     fn mend(&mut self, file: &mut Growing<Locked>) -> io::Result<()> {
         let rest = vec![0; self.room * ENTRY - self.entries.len()];
         file.medium.write_at(self.location + self.entries.len() as u64, &rest)?;
@@ -114,8 +114,8 @@ impl Indexed {
 
     /// Reads the index of a file, and returns the times of its whole frames.
     ///
-    /// Each index but the first lies after the frames of the previous index, which stays unchanged. So a file
-    /// that lost its last index has the frames of the one before.
+    /// Each index but the first lies after the frames of the previous index, which stays unchanged. A file
+    /// that lost its last index therefore has the frames of the previous index.
     fn read(&mut self, file: &File) -> io::Result<Vec<f64>> {
         let (size, head) = (file.metadata()?.len(), read_at(file, 0, HEADER as u64)?);
         let last = (number(&head, 8), number(&head, 16));
@@ -195,8 +195,7 @@ impl Layout for Indexed {
     }
 }
 
-/// Checks that a file has the version that this crate writes, and that the size of its index is one that this
-/// crate makes.
+/// Checks that a file has the version that this crate writes, and an index of a size that this crate makes.
 fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     if head == header(location, room) && (room / ROOM as u64).is_power_of_two() {
         return Ok(());

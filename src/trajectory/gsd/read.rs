@@ -17,7 +17,7 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
-/// Chunks with a meaning.
+/// The chunks whose meaning is known.
 const KNOWN: [&str; 21] = [
     "configuration/box",
     "configuration/dimensions",
@@ -42,7 +42,7 @@ const KNOWN: [&str; 21] = [
     "particles/velocity",
 ];
 
-/// Returns whether a file that begins with these bytes is a file of GSD.
+/// Returns whether a file that begins with these bytes is a GSD file.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
 }
@@ -97,7 +97,8 @@ impl<R: Read + Seek> View<'_, R> {
         }
     }
 
-    /// Returns a chunk with a row for each disk. One of the first frame does not count for other disks.
+    /// Returns a chunk with a row for each disk. A chunk of the first frame does not count if it has another
+    /// number of rows.
     fn rows(&mut self, name: &str, rows: usize, columns: usize) -> Result<Option<Chunk>, ReadError> {
         let is_own = self.archive.chunk(self.frame, name)?.is_some();
         let Some(chunk) = self.find(name)? else { return Ok(None) };
@@ -186,7 +187,7 @@ impl<R: Read + Seek> View<'_, R> {
                 let square = 0.25 * sizes[row] * sizes[row];
                 let by_density = || density.map_or(1.0, |density| density * PI * square);
                 let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
-                // Rounding does not make a homogeneous disk another one.
+                // Rounding must not turn a homogeneous disk into another.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
                 let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
                 if is_other { moment / unit } else { homogeneous }
@@ -248,8 +249,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters: those of the shapes if the file has shapes, or else its diameters, which are
-    /// by the settings, or else 1, where it has none.
+    /// Returns the diameters of the disks: from the shapes if the file has shapes; otherwise from its
+    /// diameters or, if it has none, from the settings, or else 1.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {

@@ -192,7 +192,7 @@ fn id(row: &str, line: usize) -> Result<u64, ReadError> {
     whole("id", row.split_whitespace().next().unwrap_or_default(), line)
 }
 
-/// Returns the columns of the style that the comment behind `Atoms` names, and whether it names the style
+/// Returns the columns of the style that the comment after `Atoms` names, and whether it names the style
 /// `sphere`. The comment may list the names of the columns after the style. LAMMPS writes the style `hybrid`
 /// without names.
 fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {

@@ -23,7 +23,7 @@ pub(in crate::trajectory) fn frames<'a>(
 #[derive(Default)]
 struct Head {
     time: Option<(String, usize)>,
-    /// The words behind `BOX BOUNDS`, and the three lines below.
+    /// The words after `BOX BOUNDS`, and the three lines below.
     bounds: Option<(String, [(String, usize); 3])>,
 }
 
@@ -62,7 +62,7 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
     }
 }
 
-/// Divides an item into its name and the words behind it.
+/// Divides an item into its name and the words after it.
 fn name_and_rest(item: &str) -> [&str; 2] {
     let mut with_words = ["BOX BOUNDS", "ATOMS"].into_iter();
     let found = with_words.find_map(|name| Some([name, item.strip_prefix(name)?.trim()]));

@@ -10,7 +10,7 @@ use crate::{Fingerprint, ParameterError};
 /// can come to the other stop, once: it then swings less far than to the first.
 const MOST_PIECES: usize = 4;
 
-/// Part of a spring's period for which one bound of the acceleration is taken.
+/// Part of a spring's period for which one bound on the acceleration is taken.
 const PARTS: f64 = 16.0;
 
 /// The motion of a piston since the last impact. Phases are offsets from the time origin, since a piston has
@@ -184,7 +184,7 @@ impl Swing {
     /// The angle of the turning point is $`\varphi`$, with $`\tan\varphi = b/a`$. The crossing is before it
     /// by $`\arccos(h/C)`$. Written as an arc tangent, the difference is exact for a piston that has just
     /// left the stop: an arc cosine near 1 would lose half of the digits, and the piston would come to the
-    /// stop at once.
+    /// stop immediately.
     fn rises_through(&self, height: f64) -> Option<f64> {
         let square = (self.a - height) * (self.a + height) + self.b * self.b;
         if square.is_nan() || square <= 0.0 {

@@ -42,9 +42,9 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// The samples of $`(\Psi_1, \Psi_2)`$ are divided into [distinct clusters](distinct_clusters). The names
 /// follow from these clusters and the [`thermal_noise`] $`\sigma`$:
 ///
-/// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
-///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
-///    $`|\langle\Psi_2\rangle| < 0.03`$.
+/// 1. A run as a whole is **collapsed** if two conditions hold. First, its height profile has a compact
+///    layer, of packing fraction above 0.60, on a gas of less than half of that. Second, its two-roll flow
+///    has died, $`|\langle\Psi_2\rangle| < 0.03`$.
 /// 2. A cluster shows **no roll** if its center is at most $`3\sigma`$ from the origin. It is collapsed
 ///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
 ///    layer.
@@ -165,8 +165,8 @@ impl StateCriteria {
     /// profile. Without it no state is collapsed.
     ///
     /// # Errors
-    /// If there is no sample, a sample is not finite or above 1e100 in size, or the noise is negative or not
-    /// finite.
+    /// If there is no sample, a sample is not finite or above 1e100 in magnitude, or the noise is negative or
+    /// not finite.
     pub fn classify(
         &self,
         samples: &[ConvectionOrder],

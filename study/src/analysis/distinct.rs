@@ -31,8 +31,8 @@ const DISTINCT: f64 = 4.0;
 /// however sharp they are.
 ///
 /// # Errors
-/// If there is no point, a coordinate is not finite or above 1e100 in size, or the noise is negative or not
-/// finite.
+/// If there is no point, a coordinate is not finite or above 1e100 in magnitude, or the noise is negative or
+/// not finite.
 ///
 /// ```
 /// use granular_edmd_study::analysis::distinct_clusters;

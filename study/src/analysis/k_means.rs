@@ -65,7 +65,7 @@ impl KMeans {
     /// If there are fewer distinct points than requested clusters, there are fewer clusters.
     ///
     /// # Errors
-    /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
+    /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in magnitude.
     pub fn fit(&self, points: &[DVec2]) -> Result<Clusters, ParameterError> {
         check(points, self.clusters)?;
         // Sums of sorted points round alike, so the bits do not depend on the order in which points are
@@ -126,8 +126,8 @@ fn uniform(generator: &mut Xoshiro256PlusPlus) -> f64 {
     ((generator.next_u64() >> 12) as f64 + 0.5) * SCALE
 }
 
-/// Returns the center nearest to a point, and its squared distance. Of equally near centers the first one
-/// counts.
+/// Returns the center nearest to a point, and its squared distance. If several centers are equally near, the
+/// first one counts.
 fn nearest(point: DVec2, centers: &[DVec2]) -> (usize, f64) {
     let distances = centers.iter().map(|&center| point.distance_squared(center)).enumerate();
     distances.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })

@@ -130,8 +130,8 @@ fn merge(
         |(value, regime)| Ok(Seen { value: finite("control value", value)?, least: regime, most: regime });
     let mut all = observations.into_iter().map(check).collect::<Result<Vec<_>, ParameterError>>()?;
     all.sort_by(|a, b| a.value.total_cmp(&b.value));
-    // By hysteresis, runs at one value may end in different regimes. Its entry keeps the lowest and the
-    // highest, and a line between these two does not count as crossed there.
+    // By hysteresis, runs at one value may end in different regimes. The entry of the value keeps the lowest
+    // and the highest, and a line between these two does not count as crossed there.
     all.dedup_by(|next, kept| {
         let same = next.value == kept.value;
         if same {

@@ -85,11 +85,11 @@ pub(super) enum Command {
     /// state before one of them.
     ///
     /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
-    /// the wall, place of the disk, speeds of closing and of slip before, impulse on the disk, change of
+    /// the wall, position of the disk, speeds of closing and of slip before, impulse on the disk, change of
     /// energy.
     Replay(super::replay::Wishes),
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
-    /// from its place in the other run than a tolerance.
+    /// from its position in the other run than a tolerance.
     Diff(super::diff::Wishes),
     /// Prints completions for a shell, or with `man` a page of the manual.
     Completions {

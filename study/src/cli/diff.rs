@@ -27,7 +27,7 @@ pub(super) struct Wishes {
     /// File from which the second run starts; `--start` belongs to the first.
     #[arg(long)]
     other_start: Option<PathBuf>,
-    /// Distance beyond which a disk is away from its place in the other run.
+    /// Distance beyond which a disk is away from its position in the other run.
     #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
     tolerance: f64,
 }

@@ -83,7 +83,8 @@ impl<E: Experiment> Source<E> {
         }
     }
 
-    /// Runs until a time or a number of all collisions, whichever is first. Returns false if a signal came.
+    /// Runs until a time or a number of all collisions, whichever is first. Returns false if a signal
+    /// arrived.
     pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<bool, RunError> {
         while !is_stopped() {
             let left = number.saturating_sub(self.run.counters().collisions());

@@ -23,7 +23,8 @@ pub(super) fn is_stopped() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
-/// Makes Ctrl-C and SIGTERM stop a study. A second signal ends the process at once; only saved work is kept.
+/// Makes Ctrl-C and SIGTERM stop a study. A second signal ends the process immediately; only saved work is
+/// kept.
 pub(super) fn listen() -> Result<(), ctrlc::Error> {
     ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {

@@ -100,7 +100,7 @@ impl<'a> Control<'a> {
     /// Returns the same control, which ends each value that takes more than this wall-clock time, with
     /// [`Outcome::Limited`](crate::Outcome::Limited).
     ///
-    /// It depends on the machine which values end in this way. It counts as one that failed: its record stays
+    /// The values that end in this way depend on the machine. Such a value counts as failed: its record stays
     /// until [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result
     /// everywhere is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a
     /// value that was interrupted counts from its resumption.

@@ -9,7 +9,7 @@ use crate::seed::anywhere;
 /// Blocks that wait, and blocks of other processes.
 ///
 /// Processes begin at random blocks and continue in order from there, so they seldom meet, and each runs
-/// the blocks ahead of it. One that meets another goes to a new place.
+/// the blocks ahead of it. A process that meets another moves to a new random block.
 #[derive(Debug)]
 pub(super) struct Queue(Mutex<Blocks>);
 
@@ -30,7 +30,7 @@ impl Queue {
         self.blocks().waiting.pop_front()
     }
 
-    /// Notes that another process has a block, and goes to another place in the queue.
+    /// Notes that another process has a block, and moves to another block of the queue.
     pub(super) fn leave(&self, ramps: Range<usize>) {
         let mut blocks = self.blocks();
         blocks.elsewhere.push_back(ramps);

@@ -219,7 +219,7 @@ impl<E: Experiment> Record<E> {
 
     /// Returns the counters of the value, settling included.
     ///
-    /// The largest overlap is that since the start of the ramp.
+    /// The largest overlap counts from the start of the ramp.
     pub const fn counters(&self) -> &Counters {
         &self.contents.counters
     }
@@ -230,7 +230,8 @@ impl<E: Experiment> Record<E> {
         self.contents.state.as_ref()
     }
 
-    /// Returns the walls at the end of the value. One that was not finished ends where it began.
+    /// Returns the walls at the end of the value. A value that was not finished ends with the walls with
+    /// which it began.
     pub(crate) fn last_boundary(&self, last: &Interval) -> Result<E::Boundary, ExperimentError> {
         match self.outcome().reason() {
             Some(_) => self.experiment.boundary(),
@@ -238,8 +239,8 @@ impl<E: Experiment> Record<E> {
         }
     }
 
-    /// Returns the name of the part, rule or walls, that differs from the part with which the value was run.
-    /// Rules and walls without fingerprints cannot be distinguished.
+    /// Returns the name of the part (the rule or the walls) that differs from the part with which the value
+    /// was run. Rules and walls without fingerprints cannot be distinguished.
     pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {

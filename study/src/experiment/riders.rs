@@ -11,7 +11,7 @@ use crate::ExperimentError;
 
 /// A [`Driving`] that a study saves with an unfinished value, and restores with it.
 ///
-/// Every driving that serde writes and reads is one.
+/// Every driving that serde writes and reads implements this trait.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a driving that can be saved",
     note = "implement `simulation::Driving`, and derive `Serialize` and `Deserialize`"

@@ -85,8 +85,8 @@ impl Search<'_> {
     /// next value that they need.
     ///
     /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to
-    /// the direction from which the ramp came. The first of several transitions is narrowed first: all states
-    /// but the near one count as beyond it.
+    /// the direction from which the ramp came. The first of several transitions is narrowed first: every
+    /// state but the near one counts as beyond the transition.
     fn between(&mut self, mut near: usize, far: usize) -> Result<(), Step> {
         if self.seen[far].state.is_none() {
             return Ok(());

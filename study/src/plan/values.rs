@@ -45,8 +45,8 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
         }
     }
 
-    /// Returns the indices of the values that are tried. Those of a list are in any order, so they include
-    /// the smallest and the largest: what an experiment takes is most often a range.
+    /// Returns the indices of the values that are tried. The values of a list are in any order, so the
+    /// indices include the smallest and the largest value: an experiment usually accepts a range.
     pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
         let number = |index: &usize| self.at(*index).into().number().unwrap_or(0.0);
         let order = |one: &usize, other: &usize| number(one).total_cmp(&number(other));

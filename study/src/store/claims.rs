@@ -1,4 +1,4 @@
-//! Claims, which decide by locks on a fixed number of files which process runs which ramps.
+//! Claims: locks on a fixed number of files decide which process runs which ramps.
 
 use std::fs::{File, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};

@@ -7,8 +7,8 @@ use super::log::{HEAD, Piece};
 pub(crate) struct Head {
     pub(crate) ramp: usize,
     pub(crate) value: usize,
-    /// If a value has two records, the record of the higher edition counts. Equal ones have the same
-    /// contents.
+    /// If a value has two records, the record of the higher edition counts. Records of equal editions have
+    /// the same contents.
     pub(crate) edition: u16,
     pub(crate) marks: Marks,
     /// Wall-clock seconds that the value took; NaN if it was taken over.
@@ -42,7 +42,7 @@ impl Marks {
 impl Head {
     pub(super) fn bytes(&self) -> [u8; HEAD] {
         let mut bytes = [0; HEAD];
-        // A plan has at most a million values, and a refinement some thousands more in each ramp.
+        // A plan has at most a million values, and a refinement adds some thousands in each ramp.
         bytes[..4].copy_from_slice(&(self.ramp as u32).to_le_bytes());
         bytes[4..8].copy_from_slice(&(self.value as u32).to_le_bytes());
         bytes[8..10].copy_from_slice(&self.edition.to_le_bytes());
@@ -123,7 +123,7 @@ impl Entries {
         self.0.dedup_by_key(|entry| entry.place());
     }
 
-    /// Returns the entry of a value, also of a value that counts as unfinished.
+    /// Returns the entry of a value, even if the value counts as unfinished.
     pub(super) fn latest(&self, ramp: usize, value: usize) -> Option<Entry> {
         let place = self.0.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
         Some(self.0[place])

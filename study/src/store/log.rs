@@ -216,7 +216,7 @@ mod tests {
     }
 
     /// However a log is cut, its complete pieces stay, and the next piece follows them. Whatever byte is
-    /// changed, no other piece is lost, and none is read as what it is not.
+    /// changed, no other piece is lost, and no piece is read with wrong contents.
     #[test]
     fn whole_pieces_survive_cuts_and_damage() {
         let path = std::env::temp_dir().join(format!("granular-edmd-pieces-{}", std::process::id()));

@@ -73,7 +73,7 @@ impl Writer {
         self.log.sync().map_err(StudyError::io("write", &self.path))
     }
 
-    /// Adds a line. Lines that cannot be written are no reason to lose work, so a failure is ignored.
+    /// Adds a line. A failure is ignored, since a line that cannot be written must not cost the work.
     pub(super) fn note(&mut self, line: &str) {
         let whole = if self.is_whole { Ok(self.lines.file()) } else { to_last_line_end(self.lines.file()) };
         self.is_whole = whole.and_then(|mut end| end.write_all(format!("{line}\n").as_bytes())).is_ok();

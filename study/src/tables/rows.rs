@@ -65,7 +65,7 @@ impl Row {
     }
 }
 
-/// Adds the text of a cell. One without a number is empty, which every reader of tables takes for a
+/// Adds the text of a cell. A cell without a number is empty, which every reader of tables takes for a
 /// missing value; the text `NaN` spoils the means of some.
 fn write_cell(row: &mut String, value: &Scalar) {
     match value {

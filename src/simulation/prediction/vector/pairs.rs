@@ -63,7 +63,7 @@ impl Search {
         }
     }
 
-    /// Predicts the collisions with four more disks, and keeps the earlier collision in each lane. Of equal
+    /// Predicts the collisions with four more disks, and keeps the earlier collision in each lane. At equal
     /// times, the smaller partner wins.
     #[target_feature(enable = "avx512vl")]
     #[inline]
@@ -155,7 +155,7 @@ fn by_fours(candidates: &mut [u32], count: usize, disk: usize) -> &[[u32; LANES]
     candidates[..count.next_multiple_of(LANES)].as_chunks().0
 }
 
-/// See [`search`](plain::search). Disks of different sizes are left to it.
+/// See [`search`](plain::search). Disks of different sizes are left to that function.
 #[target_feature(enable = "avx512vl")]
 #[inline]
 pub(in crate::simulation::prediction) fn search(
@@ -184,7 +184,7 @@ pub(in crate::simulation::prediction) fn search(
     search.earliest()
 }
 
-/// See [`search_both`](plain::search_both). Disks of different sizes are left to it.
+/// See [`search_both`](plain::search_both). Disks of different sizes are left to that function.
 #[target_feature(enable = "avx512vl")]
 #[inline]
 pub(in crate::simulation::prediction) fn search_both(
