@@ -337,9 +337,11 @@ pub trait Boundary {
     /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
     /// it; where walls occupy part of the domain, they refuse to measure without it. As long as the
     /// [points](Self::wall_point) of all walls stay where they are, they may reuse the area. It is `None`
-    /// unless implemented.
+    /// unless implemented. A boundary that leaves different areas to the matter of different kinds does not
+    /// know it.
     ///
-    /// Containers, vessels and obstacles know it to 1e-10, whatever overlaps. The exceptions are
+    /// Containers, vessels and obstacles know it to 1e-10, whatever overlaps, unless a part with an inside is
+    /// [for some kinds only](Part::only_for). The exceptions are
     /// obstacles that lie in a curved wall, and parts whose lines end inside the container with disks on one
     /// side only. There, pieces below a sixteenth of their surroundings may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {

@@ -121,6 +121,11 @@ impl Part {
     /// Returns the same part for disks of these kinds only: all others pass through it, as through a sieve or
     /// a membrane.
     ///
+    /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
+    /// same for all kinds. Its vessel then knows no [`area`](super::Boundary::area), and stresses, densities
+    /// and profiles are refused unless they have a region to which no wall comes. A line of two-sided bricks,
+    /// such as a [`polyline`](Self::polyline), takes no area.
+    ///
     /// ```
     /// use granular_edmd::prelude::*;
     ///
@@ -186,6 +191,16 @@ impl Part {
     #[inline]
     pub(super) fn stops(&self, kind: Kind) -> bool {
         self.kinds.is_empty() || self.kinds.contains(&kind)
+    }
+
+    /// Returns whether there are places behind the part, where no disk can be.
+    pub(super) fn has_back(&self) -> bool {
+        !self.takes_centers() && self.all_bricks().any(|brick| !brick.is_two_sided() && !brick.is_point())
+    }
+
+    /// Returns whether the places behind the part are free for some kinds of disks, and for others not.
+    pub(super) fn is_full_for_some(&self) -> bool {
+        !self.kinds.is_empty() && self.has_back()
     }
 
     /// Returns whether the part treats disks differently from a plain wall, so that it replaces the section

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use granular_edmd::boundary::{Boundary, Brick, Container, Obstacles, Part, Probe, Region, Vessel, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Sinusoidal;
-use granular_edmd::{Disk, ParameterError};
+use granular_edmd::{Disk, Kind, ParameterError};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
@@ -230,5 +230,32 @@ fn heaps_of_parts_by_chance() -> Result<(), Failure> {
         let layers: f64 = (0..10).filter_map(|k| vessel.area(&layer(k), 0.3, 0.4)).sum();
         is(&vessel, &everywhere(&vessel), 0.3, 0.4, layers);
     }
+    Ok(())
+}
+
+/// A block that only some disks see leaves them less room than the others. A thin wall takes no area.
+#[test]
+fn an_inside_for_some_kinds_has_no_area_for_all() -> Result<(), Failure> {
+    let corners = || points([(3.0, 2.0), (9.0, 2.0), (9.0, 7.0), (3.0, 7.0)]);
+    let boxed = |part: Part| Vessel::new(Container::closed(12.0, 9.0)?).with("part", part);
+    let area = |vessel: &Vessel, radius| vessel.area(&everywhere(vessel), radius, 0.0);
+    let middle = DVec2::new(6.0, 4.0);
+    let back = Part::new([Brick::segment(middle, DVec2::new(9.0, 4.0))?])?;
+    for part in [Part::block(corners())?, Part::polygon(corners())?, Part::peg(middle, 1.0)?, back] {
+        for kind in [Kind::DEFAULT, Kind::new(1)] {
+            let vessel = boxed(part.clone().only_for([kind]))?;
+            assert_eq!((area(&vessel, 0.0), area(&vessel, 0.5)), (None, None), "{part:?}");
+            assert_eq!(
+                Obstacles::new(vessel, [Disk::new(DVec2::ONE, 0.2)?]).area(&square(middle, 9.0), 0.0, 0.0),
+                None
+            );
+        }
+        assert!(area(&boxed(part)?, 0.0).is_some());
+    }
+    // Disks may be behind a line that takes their centers.
+    let sink = boxed(Part::block(corners())?.absorbing_centers().only_for([Kind::new(1)]))?;
+    assert_eq!(area(&sink, 0.0), Some(108.0));
+    let sieve = boxed(Part::polyline(corners())?.only_for([Kind::new(1)]))?;
+    whole(&sieve, 108.0, 88.0);
     Ok(())
 }

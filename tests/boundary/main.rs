@@ -2,6 +2,7 @@
 //! fingerprints.
 
 mod areas;
+mod checks;
 mod container;
 mod contract;
 mod fast_parts;

@@ -18,3 +18,4 @@ mod stress_and_velocities;
 mod table;
 mod tables;
 mod transport;
+mod walls_by_kind;

@@ -33,31 +33,32 @@ const BEND: f64 = 0.01;
 /// in about a hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
 const SLACK: f64 = 2e-5;
 
-/// Checks the free areas of the domain and of a random region.
+/// Checks the free areas of the domain and of a random region, for centers of disks and for matter.
 pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> Result<(), Violation> {
     let (low, high) = trial.rectangle();
     let any = |random: &mut Random| DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));
     let (one, other) = (any(random), any(random));
     for region in [Region::new(low, high), Region::new(one.min(other), one.max(other))] {
-        check_area(trial, &region, time)?;
+        check_area(trial, &region, trial.radius, time)?;
+        check_area(trial, &region, 0.0, time)?;
     }
     Ok(())
 }
 
-fn check_area(trial: &Trial<'_>, region: &Region, time: f64) -> Result<(), Violation> {
-    let Some(area) = trial.boundary.area(region, trial.radius, time) else { return Ok(()) };
+fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Result<(), Violation> {
+    let Some(area) = trial.boundary.area(region, radius, time) else { return Ok(()) };
     let (mut found, mut uncertain) = (0.0, 0.0);
     let whole =
         Cell { middle: 0.5 * (region.min + region.max), half: 0.5 * (region.max - region.min), halvings: 0 };
     let mut cells = vec![whole];
     while let Some(cell) = cells.pop() {
-        match cell.free_share(trial, time) {
+        match cell.free_share(trial, radius, time) {
             Some(share) => found += share * cell.area(),
             None if cell.halvings < MOST => cells.extend(cell.halves()),
             None => uncertain += cell.area(),
         }
     }
-    let (radius, slack) = (trial.radius, SLACK * region.area());
+    let slack = SLACK * region.area();
     require!(PART, "area", (found - slack..=found + uncertain + slack).contains(&area);
         "the area for centers of disks of radius {radius:?} in {region:?} at {time:?} is {area:?}, but \
          {found:?} is free");
@@ -88,12 +89,12 @@ impl Cell {
     }
 
     /// Returns the share of the cell in which the center of a disk is free, or `None` if it is unknown.
-    fn free_share(&self, trial: &Trial<'_>, time: f64) -> Option<f64> {
+    fn free_share(&self, trial: &Trial<'_>, radius: f64, time: f64) -> Option<f64> {
         let reach = self.half.length();
         // The distance to the nearest wall, up to `seen`; negative inside a wall.
         let gap = |x: f64, y: f64, seen: f64| {
             let place = self.middle + DVec2::new(x, y) * self.half;
-            let found = trial.boundary.overlap(&Probe::new(place, trial.radius + seen, time));
+            let found = trial.boundary.overlap(&Probe::new(place, radius + seen, time));
             seen - found.map_or(0.0, |found| found.depth)
         };
         let middle = gap(0.0, 0.0, reach);

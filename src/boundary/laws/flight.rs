@@ -251,9 +251,12 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();
     let slack = SAME * (one.velocity.length() + trial.speed * late);
-    let numbers = |seen: &Surface<'_>| (seen.radius, seen.mass, seen.tangential_mass, seen.kind);
+    let numbers = |seen: &Surface<'_>| (seen.mass, seen.tangential_mass, seen.kind);
+    // The difference of two straight walls, which have infinite radii, is NaN.
+    let has_other_radius = (one.radius - other.radius).abs() > SAME * late * one.radius.abs();
     one.normal.distance(other.normal) <= 100.0 * SAME * late
         && one.velocity.distance(other.velocity) <= slack
+        && (one.radius == other.radius || !has_other_radius)
         && numbers(one) == numbers(other)
 }
 

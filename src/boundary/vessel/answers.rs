@@ -91,7 +91,8 @@ impl Boundary for Vessel {
     }
 
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
-        Some(self.free_area(region, radius, time))
+        let depends_on_kind = self.parts.iter().any(|placed| placed.part.is_full_for_some());
+        (!depends_on_kind).then(|| self.free_area(region, radius, time))
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

@@ -73,8 +73,7 @@ impl Vessel {
     pub(super) fn filled_cells(&self) -> Vec<Vec<u32>> {
         let mut filled = vec![Vec::new(); self.index.len()];
         for (number, placed) in self.parts.iter().enumerate() {
-            let has_back = placed.part.all_bricks().any(|brick| !brick.is_two_sided() && !brick.is_point());
-            if placed.part.travel().is_at_rest() && !placed.part.takes_centers() && has_back {
+            if placed.part.travel().is_at_rest() && placed.part.has_back() {
                 for cell in self.cells_filled_by(number, placed) {
                     filled[cell].push(number as u32);
                 }

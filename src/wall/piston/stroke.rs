@@ -13,6 +13,9 @@ const MOST_PIECES: usize = 4;
 /// Part of a spring's period for which one bound on the acceleration is taken.
 const PARTS: f64 = 16.0;
 
+/// Largest speed at a stop that counts as none, relative to the speed of the motion.
+const GRAZE: f64 = 1e-7;
+
 /// The motion of a piston since the last impact. Phases are offsets from the time origin, since a piston has
 /// no period that would keep the digits of late times.
 #[derive(Debug, Clone)]
@@ -185,9 +188,14 @@ impl Swing {
     /// by $`\arccos(h/C)`$. Written as an arc tangent, the difference is exact for a piston that has just
     /// left the stop: an arc cosine near 1 would lose half of the digits, and the piston would come to the
     /// stop immediately.
+    ///
+    /// An oscillation that turns at the height, up to rounding, does not rise through it. One that is there
+    /// and rises does.
     fn rises_through(&self, height: f64) -> Option<f64> {
         let square = (self.a - height) * (self.a + height) + self.b * self.b;
-        if square.is_nan() || square <= 0.0 {
+        let may_turn = height > 0.0 && (self.a < height || self.b <= 0.0);
+        let least = if may_turn { GRAZE * height } else { 0.0 };
+        if square.is_nan() || square <= least * least {
             return None;
         }
         let angle = libm::atan2(self.b, self.a) - libm::atan2(square.sqrt(), height);
@@ -242,19 +250,21 @@ fn piece(piston: &Piston, start: f64, displacement: f64, velocity: f64) -> Piece
 }
 
 /// Returns the time until a piece that is not held comes to a stop.
+///
+/// A piston that turns at a stop, up to rounding, does not come to it. Rounding would decide, and would change
+/// the time of the arrival, and so all that follows, by its root.
 fn wait(piston: &Piston, piece: &Piece) -> f64 {
     let Piece { displacement, velocity, .. } = *piece;
     let (above, below) = (piston.highest - displacement, displacement - piston.lowest);
     let never = f64::INFINITY;
     if piston.stiffness == 0.0 {
         let pull = piston.force / piston.mass;
-        let up = first_descent(above, -velocity, -pull).unwrap_or(never);
-        return up.min(first_descent(below, velocity, pull).unwrap_or(never));
+        let arrives = |wait: &f64| (velocity + pull * wait).abs() > GRAZE * velocity.abs();
+        let up = first_descent(above, -velocity, -pull).filter(arrives).unwrap_or(never);
+        return up.min(first_descent(below, velocity, pull).filter(arrives).unwrap_or(never));
     }
     let (swing, frequency) = (piece.swing(piston), piston.square_of_frequency().sqrt());
-    // A piston that leaves a stop from rest swings back to the stop and turns there, without an impact.
-    let leaves = |gap: f64| gap <= 0.0 && velocity == 0.0;
-    let up = swing.rises_through(piston.highest - swing.middle).filter(|_| !leaves(above));
-    let down = swing.mirrored().rises_through(swing.middle - piston.lowest).filter(|_| !leaves(below));
+    let up = swing.rises_through(piston.highest - swing.middle);
+    let down = swing.mirrored().rises_through(swing.middle - piston.lowest);
     up.unwrap_or(never).min(down.unwrap_or(never)) / frequency
 }
