@@ -69,7 +69,6 @@ use crate::observable::{Mark, Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
-use builder::fit;
 use cells::Cells;
 use lookahead::Lookahead;
 use state::{Bodies, Clock, Ledger};
@@ -280,6 +279,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets gravity from now on.
     ///
+    /// The time origin of the walls becomes the present, so that their
+    /// [`state`](crate::boundary::Boundary::state) is the present one.
+    ///
     /// # Errors
     /// If gravity is not finite, or a component is above 1e60 in magnitude. If disks would fall so fast that
     /// times as late as the present are too coarse. The simulation then stays unchanged.
@@ -300,19 +302,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// Moving walls are where their motions are at the present time. A wall that jumps in this way causes a
-    /// [`Warning`].
+    /// [`Warning`]. A [`Piston`](crate::wall::Piston) begins now, at its start.
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation
     /// then stays unchanged.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
-        boundary.set_time_origin(self.clock.origin);
-        traffic::check_inlets(&boundary, &self.inlets)?;
-        let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
-        self.count_jumps(&boundary);
-        (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
-        self.ledger.has_source = true;
-        self.marks[1] = Mark::new();
+        (self.wall_count, self.cells) = self.admit(&mut boundary)?;
+        self.boundary = boundary;
         self.predict_all();
         Ok(())
     }

@@ -11,7 +11,7 @@ use super::plane::Plane;
 use super::vector::finite_point;
 use super::{Thermal, Wall, WallError};
 use crate::collision::CollisionRule;
-use crate::quantity::positive;
+use crate::quantity::{accept, positive};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
 
@@ -125,7 +125,8 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) examines.
+    /// phases that [`check_finite`](crate::wall::check_finite) examines. If the opposite wall is a piston that
+    /// could meet this one.
     pub fn with_motion(
         mut self,
         wall: Wall,
@@ -133,6 +134,7 @@ impl Container {
     ) -> Result<Self, WallError> {
         let plane = self.plane_mut(wall)?;
         plane.set_motion(Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?);
+        self.check_stops()?;
         Ok(self)
     }
 
@@ -142,12 +144,16 @@ impl Container {
     /// which other disks meet the wall. Each impact therefore costs a pass over all disks, and new
     /// predictions for the flights that may meet the wall.
     ///
+    /// Only the stops of a piston keep it from the opposite wall: the walls do not notice each other.
+    ///
     /// # Errors
-    /// If the container has no such wall, or the motion of the piston has numbers that are not finite.
+    /// If the container has no such wall, or the motion of the piston has numbers that are not finite. If its
+    /// highest stop is beyond the nearest place of the opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));
         let motion = motion.map_err(|violation| WallError::Motion { wall, violation })?;
         self.plane_mut(wall)?.set_motion(motion);
+        self.check_stops()?;
         Ok(self)
     }
 
@@ -240,6 +246,17 @@ impl Container {
         Ok(self)
     }
 
+    /// Checks that no piston can pass through the opposite wall.
+    fn check_stops(&self) -> Result<(), ParameterError> {
+        for piston in &self.planes {
+            let Some(stroke) = piston.motion.stroke() else { continue };
+            let gap = self.planes.iter().find_map(|plane| piston.least_gap(plane));
+            let (name, rule) = ("highest stop of a piston", "before the nearest place of the opposite wall");
+            accept(gap.is_none_or(|gap| gap >= 0.0), name, rule, stroke.reach().1)?;
+        }
+        Ok(())
+    }
+
     fn plane_mut(&mut self, wall: Wall) -> Result<&mut Plane, WallError> {
         self.planes.iter_mut().find(|plane| plane.wall == wall).ok_or(WallError::Missing { wall })
     }
@@ -269,6 +286,7 @@ crate::gate::from_file! {
             plane.set_motion(read.motion);
             (plane.conduct, plane.kind, plane.slide) = (read.conduct, read.kind, read.slide);
         }
+        container.check_stops()?;
         Ok(container.shifted(corner)?)
     }, Box<dyn std::error::Error>
 }

@@ -101,6 +101,12 @@ impl Plane {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
 
+    /// Returns the least distance to a wall that faces this one; `None` for any other wall.
+    pub(super) fn least_gap(&self, other: &Self) -> Option<f64> {
+        let faces = self.normal == -other.normal;
+        faces.then(|| -(self.place + other.place) - self.highest - other.highest)
+    }
+
     /// Returns how far the wall can move inward; for a piston, its displacement at the start.
     pub(super) fn advance(&self) -> f64 {
         self.motion.stroke().map_or(self.highest, Stroke::first_displacement).max(0.0)

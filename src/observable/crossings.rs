@@ -20,6 +20,9 @@ use crate::{Disk, ParameterError};
 /// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
 /// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count.
 ///
+/// On the line of a wall that [absorbs centers](crate::boundary::Part::absorbing_centers), rounding decides
+/// whether a disk that is absorbed there counts: take [`Arrivals`](super::Arrivals) for it.
+///
 /// ```
 /// use granular_edmd::observable::{Crossings, SampleTimes};
 /// use granular_edmd::prelude::*;

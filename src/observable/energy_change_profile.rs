@@ -36,6 +36,9 @@ impl EnergyChangeLayer {
 
 /// The energy change per disk–disk collision by height, with the temperatures there.
 ///
+/// A collision counts in the layer that has the center of its first disk, and not the contact, which is up to
+/// a radius above or below.
+///
 /// It allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on average.
 /// Errors come from blocks of the collisions and of the disks in a layer, in the order in which they are
 /// seen; none are taken as independent.

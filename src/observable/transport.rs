@@ -42,7 +42,8 @@ type Moments = [DVec2; MOMENTS];
 /// ```
 ///
 /// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
-/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible.
+/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible,
+/// also with couples that keep the energy.
 /// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
 ///
 /// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
@@ -144,12 +145,12 @@ impl Mover {
         of_tensor(mass * velocity, velocity, self.energy() * velocity)
     }
 
-    /// Changes the motion by an impulse, and returns the change of the energy. Both partners get the same
-    /// sense of rotation from a tangential impulse, since they are on opposite sides of the contact.
-    fn kick(&mut self, impulse: DVec2, tangential: f64) -> f64 {
+    /// Changes the motion by an impulse and a couple, and returns the change of the energy. Both partners get
+    /// the same sense of rotation from a tangential impulse, since they are on opposite sides of the contact.
+    fn kick(&mut self, impulse: DVec2, tangential: f64, couple: f64) -> f64 {
         let before = self.energy();
         self.velocity += impulse / self.mass;
-        self.angular_velocity -= tangential * self.radius / self.moment_of_inertia;
+        self.angular_velocity -= (tangential * self.radius + couple) / self.moment_of_inertia;
         self.energy() - before
     }
 }
@@ -333,8 +334,8 @@ impl Observer for TransportCoefficients {
             let (name, lost) = ("energy lost in a collision", -collision.energy_change);
             self.fault = Some(ParameterError::new(name, "0 for transport coefficients", lost));
         }
-        let gained = first.kick(kick, impulse.tangential());
-        let lost = second.kick(-kick, impulse.tangential());
+        let gained = first.kick(kick, impulse.tangential(), impulse.couple());
+        let lost = second.kick(-kick, impulse.tangential(), -impulse.couple());
         for mover in [&first, &second] {
             add(&mut self.rates, &mover.rates(), 1.0);
         }

@@ -1,6 +1,7 @@
 //! Exchange of the rule, boundary or scheduler for another one, which may have another type.
 
 use super::builder::fit;
+use super::cells::Cells;
 use super::traffic::check_inlets;
 use super::{BuildError, Simulation};
 use crate::boundary::Boundary;
@@ -44,15 +45,26 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls.
     pub fn with_boundary<T: Boundary>(mut self, mut boundary: T) -> Result<Simulation<R, T, S>, BuildError> {
-        boundary.set_time_origin(self.clock.origin);
-        check_inlets(&boundary, &self.inlets)?;
-        let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
-        self.count_jumps(&boundary);
-        (self.wall_count, self.cells, self.marks[1]) = (wall_count, cells, Mark::new());
-        self.ledger.has_source = true;
+        (self.wall_count, self.cells) = self.admit(&mut boundary)?;
         let mut simulation = self.exchanged(|rule, _, scheduler| (rule, boundary, scheduler));
         simulation.predict_all();
         Ok(simulation)
+    }
+
+    /// Prepares the run and other walls for each other, and returns the number of the walls, and cells for
+    /// them. Walls that react begin at the time origin, so the origin moves to the present.
+    pub(super) fn admit(&mut self, boundary: &mut impl Boundary) -> Result<(usize, Cells), BuildError> {
+        let by = if boundary.state().is_empty() { 0.0 } else { self.clock.exact_offset() };
+        boundary.set_time_origin(self.clock.origin + by);
+        check_inlets(boundary, &self.inlets)?;
+        let fitted = fit(boundary, &self.disks(), self.clock.now - by)?;
+        if by > 0.0 {
+            self.shift_epoch(by);
+        }
+        self.count_jumps(boundary);
+        self.ledger.has_source = true;
+        self.marks[1] = Mark::new();
+        Ok(fitted)
     }
 
     /// Exchanges parts, and leaves everything else unchanged.

@@ -259,16 +259,24 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Changes a simulation from the parameters of the previous value to these.
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
-    /// fingerprint stay unchanged.
+    /// fingerprint stay unchanged. Walls that react, such as a [`Piston`](granular_edmd::wall::Piston), keep
+    /// their places and velocities at this moment, whatever their start is in these parameters.
     ///
     /// # Errors
-    /// If the disks do not fit into the walls.
+    /// If the disks do not fit into the walls, or the new walls cannot take over the present state of walls
+    /// that react: there are more or fewer, or a piston is beyond its new stops.
     fn change(&self, simulation: &mut Run<Self>) -> Result<(), ExperimentError> {
         simulation.set_rule(self.rule()?);
-        let boundary = self.boundary()?;
+        let mut boundary = self.boundary()?;
         let is_same =
             boundary.fingerprint().is_some_and(|new| Some(new) == simulation.boundary().fingerprint());
         if !is_same {
+            if !simulation.boundary().state().is_empty() {
+                // This makes the present the time origin, and the state the present one.
+                simulation.set_gravity(self.gravity())?;
+                boundary.set_time_origin(simulation.time());
+                boundary.set_state(&simulation.boundary().state())?;
+            }
             simulation.set_boundary(boundary)?;
         }
         if self.gravity() != simulation.gravity() {

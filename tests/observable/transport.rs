@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
-use granular_edmd::collision::{CollisionRule, Elastic, Rough, Smooth};
+use granular_edmd::collision::{CollisionRule, Contact, Elastic, Impulse, Rough, Smooth, from_fn};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, TransportCoefficients};
 use granular_edmd::simulation::{Inlet, Limits, RunError, WhiteNoise};
@@ -43,6 +43,23 @@ fn a_gas_that_is_not_elastic_or_has_walls_is_refused() -> Result {
     let error = refusal(gas(Elastic, peg)?)?;
     assert!(error.contains("time of a collision with a wall must be never"), "{error}");
     gas(Rough::from_inelasticity(0.0, 0.0)?, empty()?)?.run_until(200.0, &mut coefficients()?)?;
+    Ok(())
+}
+
+/// A couple that turns the relative spin around keeps the energy. The motions that the observer follows by
+/// the impulses and couples of the collisions must be those of the disks at each sample, or the run is
+/// refused.
+#[test]
+fn elastic_couples_are_followed() -> Result {
+    let turning = from_fn(|contact: &Contact| {
+        let couple = 2.0 * contact.relative_spin() * contact.spin_inertia();
+        Impulse::new(contact.normal_impulse(1.0), 0.0).with_couple(couple)
+    });
+    let mut gas = gas(turning, empty()?)?;
+    gas.map_disks(|index, disk| disk.with_angular_velocity(if index % 2 == 0 { 5.0 } else { -3.0 }))?;
+    let mut transport = coefficients()?;
+    gas.run_until(400.0, &mut transport)?;
+    assert!(transport.shear_viscosity().mean() > 0.0 && transport.thermal_conductivity().mean() > 0.0);
     Ok(())
 }
 

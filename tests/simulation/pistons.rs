@@ -7,7 +7,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, CollisionCounts, Partner, Snapshot, on_collision};
 use granular_edmd::simulation::Limits;
-use granular_edmd::wall::Piston;
+use granular_edmd::wall::{BiParabolic, Piston};
 use granular_edmd::{Disk, Simulation, initial};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
@@ -165,5 +165,60 @@ fn a_slow_compression_heats_as_the_inverse_volume() -> Outcome {
     println!("heated by {ratio}, adiabatically by {expected}");
     // The energy of 200 disks at one time is that of the adiabat within the pressure's noise of one crossing.
     assert!((ratio / expected - 1.0).abs() < 0.02, "{ratio} {expected}");
+    Ok(())
+}
+
+/// Walls with a mass must not pass through each other, in whatever order they are set, also from a file.
+#[test]
+fn pistons_that_could_meet_the_opposite_wall_are_refused() -> Outcome {
+    let piston = |highest| Piston::new(1.0, [-1.0, highest]);
+    let both = |left, right| -> Outcome<Container> {
+        let container = Container::closed(12.0, 9.0)?.with_piston(Wall::Left, piston(left)?)?;
+        Ok(container.with_piston(Wall::Right, piston(right)?)?)
+    };
+    for (left, right) in [(0.0, 12.0), (8.0, 4.0), (9.0, -0.5)] {
+        both(left, right)?;
+    }
+    for (left, right) in [(9.0, 9.0), (8.0, 4.1)] {
+        let error = both(left, right).unwrap_err().to_string();
+        let expected = "highest stop of a piston must be before the nearest place of the opposite wall";
+        assert!(error.starts_with(expected), "{error}");
+    }
+    let floor = Container::closed(12.0, 9.0)?.with_piston(Wall::Floor, piston(9.5)?).unwrap_err();
+    assert!(floor.to_string().contains("highest stop"), "{floor}");
+    let shaken = Container::closed(12.0, 9.0)?.with_piston(Wall::Lid, piston(9.0)?)?;
+    assert!(shaken.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?).is_err());
+    let open = Container::open(12.0)?.with_piston(Wall::Floor, piston(1e9)?)?;
+    open.with_motion(Wall::Left, BiParabolic::new(0.1, 10.0)?)?;
+    Ok(())
+}
+
+/// At whatever time of a run the walls are set, a piston then begins at its start.
+#[test]
+fn a_piston_that_is_set_during_a_run_begins_then() -> Outcome {
+    let piston = Piston::new(5.0, [-30.0, 30.0])?.with_force(0.5)?.with_start(2.0, -0.75)?;
+    let with_piston = Container::closed(10.0, 40.0)?.with_piston(Wall::Lid, piston)?;
+    for time in [0.0, 0.3, 5.2, 1234.5] {
+        let disks = [Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::new(1.0, 0.7))?];
+        let run = || Simulation::builder(Elastic, Container::closed(10.0, 40.0)?).disks(disks).build();
+        let (mut first, mut second) = (run()?, run()?);
+        first.run_until(time, &mut ())?;
+        second.run_until(time, &mut ())?;
+        let mut runs = vec![second.with_boundary(with_piston.clone())?];
+        #[cfg(feature = "serde")]
+        runs.push(
+            Simulation::resume(&first.checkpoint(), Elastic, with_piston.clone())
+                .with_another_boundary()
+                .build()?,
+        );
+        first.set_boundary(with_piston.clone())?;
+        runs.push(first);
+        for run in runs {
+            let (displacement, velocity) = lid(&run.snapshot(), 40.0);
+            assert!((displacement - 2.0).abs() < 1e-12, "{time}: {displacement}");
+            assert!((velocity + 0.75).abs() < 1e-12, "{time}: {velocity}");
+            assert_eq!(run.time(), time);
+        }
+    }
     Ok(())
 }

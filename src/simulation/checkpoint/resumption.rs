@@ -109,10 +109,15 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let saved = &self.checkpoint.0;
         check_numbers(saved, usize::MAX)?;
         let bodies = bodies_of(saved);
-        self.boundary.set_time_origin(saved.clock.origin);
-        let now = saved.clock.now;
-        let (wall_count, cells) = crate::simulation::builder::fit(&self.boundary, &bodies.disks(now), now)?;
+        // Walls that react begin at the time origin.
+        let by = if self.boundary.state().is_empty() { 0.0 } else { saved.clock.exact_offset() };
+        self.boundary.set_time_origin(saved.clock.origin + by);
+        let (now, disks) = (saved.clock.now - by, bodies.disks(saved.clock.now));
+        let (wall_count, cells) = crate::simulation::builder::fit(&self.boundary, &disks, now)?;
         let mut run = self.run(bodies, cells, wall_count);
+        if by > 0.0 {
+            run.shift_epoch(by);
+        }
         run.predict_all();
         Ok(run)
     }

@@ -55,6 +55,19 @@ impl Shape {
         shape
     }
 
+    /// Returns whether the type has a key of this whole name, with dots, or looks at values before it decides.
+    pub(super) fn has(&self, name: &str) -> bool {
+        let (first, rest) = name.split_once('.').map_or((name, None), |(first, rest)| (first, Some(rest)));
+        match self.kind {
+            Kind::Unknown | Kind::Any => true,
+            Kind::List => self.parts.iter().any(|(_, item)| item.has(name)),
+            _ => self
+                .parts
+                .iter()
+                .any(|(part, shape)| *part == first && rest.is_none_or(|rest| shape.has(rest))),
+        }
+    }
+
     fn is_known(&self) -> bool {
         self.kind != Kind::Unknown && self.parts.iter().all(|(_, part)| part.is_known())
     }

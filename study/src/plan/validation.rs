@@ -31,12 +31,12 @@ impl<E: Experiment> Plan<E> {
     pub(super) fn consistent(mut self) -> Result<Self, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
-        columns::check_names::<E>(&self.varied().collect::<Vec<_>>())?;
         self.tree = parameters::tree(&self.experiment)?;
         self.check_count()?;
         self.varied = self.varied().map(|name| whole_name(&self.tree, name)).collect::<Result<_, _>>()?;
         self.check_varied()?;
         self.try_names()?;
+        columns::check_names::<E>(&self.varied().collect::<Vec<_>>())?;
         Ok(self)
     }
 

@@ -13,6 +13,7 @@ mod logs;
 mod mixture;
 mod own;
 mod paths;
+mod pistons;
 mod plans;
 mod processes;
 mod random;

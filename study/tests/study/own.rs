@@ -305,8 +305,12 @@ fn a_parameter_of_the_name_of_a_column_cannot_vary() -> Result<(), AnyError> {
         let ramped = plan.clone().with_ramp(Ramp::new(name, [0.0, 1.0], Course::Up)?);
         assert_eq!([swept, ramped].map(|plan| report(&plan.unwrap_err())), [expected.clone(), expected]);
     }
-    let error = report(&plan.with_axis(Axis::new("height", [0.0, 1.0])?).unwrap_err());
+    let error = report(&plan.clone().with_axis(Axis::new("height", [0.0, 1.0])?).unwrap_err());
     assert_eq!(error, "\"height\" cannot be the name of a column: another one has it");
+    for name in ["repeat", "outcome", "labels.time_error"] {
+        let error = report(&plan.clone().with_axis(Axis::new(name, [0.0, 1.0])?).unwrap_err());
+        assert!(error.contains(&format!("there is no parameter `{name}`")), "{error}");
+    }
     Ok(())
 }
 
