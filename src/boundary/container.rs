@@ -125,8 +125,8 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) examines. If the opposite wall is a piston that
-    /// could meet this one.
+    /// phases that [`check_finite`](crate::wall::check_finite) examines. If the opposite wall is a
+    /// piston that could meet this one.
     pub fn with_motion(
         mut self,
         wall: Wall,

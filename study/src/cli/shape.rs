@@ -55,7 +55,7 @@ impl Shape {
         shape
     }
 
-    /// Returns whether the type has a key of this whole name, with dots, or looks at values before it decides.
+    /// Returns whether the type has a key of this full name, with dots, or examines values before it decides.
     pub(super) fn has(&self, name: &str) -> bool {
         let (first, rest) = name.split_once('.').map_or((name, None), |(first, rest)| (first, Some(rest)));
         match self.kind {
