@@ -151,7 +151,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///     have equal fingerprints, whatever their state and their origin.
 ///
 /// The engine guarantees:
-/// - It sets the origin before any other call, and whenever the epoch of the run moves. It never passes a
+/// - It sets the origin before any other call except for `state`, and whenever the epoch of the run moves. If
+///   the walls are set during a run and have a state, the first origin is the present. It never passes a
 ///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
 ///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
