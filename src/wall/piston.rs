@@ -19,7 +19,8 @@ use crate::{Fingerprint, ParameterError};
 /// between two impacts: a parabola or a sine, without a time step. Each disk that hits the wall changes its
 /// velocity by $`\Delta_n/M`$, as the collision rule says for partners of the masses $`m`$ and $`M`$. The
 /// wall is guided, so it takes any momentum along itself. A stop takes all of the wall's velocity: the wall
-/// rests there as long as the force presses it against the stop.
+/// rests there as long as the force presses it against the stop. A wall that turns at a stop, up to 1e-7 of
+/// its speed, does not touch it.
 ///
 /// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall of it. A checkpoint keeps
 /// the state of the wall, a file of the container only its state at the start.
