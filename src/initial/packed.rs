@@ -30,7 +30,7 @@ const APART: f64 = 1e-9;
 /// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
 ///
 /// The disks are packed in the interior of the boundary, in which walls must not move. Give a container a
-/// piston that falls or is pushed after the disks are packed. To pack disks around a disk that is already
+/// piston that falls fast after the disks are packed. To pack disks around a disk that is already
 /// placed, put that disk into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 ///
 /// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
@@ -40,7 +40,7 @@ const APART: f64 = 1e-9;
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or the
 /// disks do not find room or jam. The error of a jam names the area fraction of the disks in the rectangle of
 /// the interior below the height. If a periodic boundary is too narrow for the engine, or the boundary breaks
-/// its contract, or has a piston that moves before a disk hits it.
+/// its contract, or has a piston that falls among the disks.
 ///
 /// ```
 /// use std::f64::consts::PI;
@@ -75,7 +75,11 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     accept(area > 0.0, "area of the room for the disks", "positive", area)?;
     let wider = |disk: &Disk| Disk::new(disk.position(), disk.radius() * (1.0 + APART));
     let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
-    let packing = grown(&room, &wider, area, seed).map_err(|error| with_full_radius(error, &disks))?;
+    let packing = grown(&room, &wider, area, seed).map_err(|error| match error {
+        // A heavy piston hardly moves before the disks are packed, so only a failure is its fault.
+        PlacementError::Run { .. } => room.check_walls().map_or_else(PlacementError::from, |()| error),
+        error => with_full_radius(error, &disks),
+    })?;
     let packed = disks.iter().zip(packing.places()).map(|(disk, place)| disk.with_position(place));
     Ok(packed.collect::<Result<_, _>>()?)
 }

@@ -101,9 +101,9 @@ fn pistons_that_move_are_added_afterwards() {
     let piston = Piston::new(2.0, [0.0, 25.0]).unwrap().with_start(10.0, 0.0).unwrap();
     let packed = |piston: Piston| {
         let container = Container::closed(16.0, 40.0).unwrap().with_piston(Wall::Lid, piston).unwrap();
-        initial::packed_at_random(&container, disks(vec![0.5; 100]), 40.0, 1)
+        initial::packed_at_random(&container, disks(vec![0.5; 400]), 40.0, 1)
     };
-    assert_eq!(packed(piston).unwrap().len(), 100);
+    assert_eq!(packed(piston).unwrap().len(), 400);
     let error = packed(piston.with_force(40.0).unwrap()).unwrap_err().to_string();
     let expected = "way of the wall \"lid\" in a unit of time must be 0 while disks are packed (add the piston \
                     afterwards), but is 10";

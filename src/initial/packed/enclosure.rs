@@ -28,9 +28,14 @@ impl<B: ?Sized> Clone for Enclosure<'_, B> {
 impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     /// Encloses the interior of the boundary below a height.
     pub(super) fn new(boundary: &'a B, below: f64) -> Result<Self, ParameterError> {
-        let room = cut(boundary.interior(), below)?;
-        (0..boundary.wall_count()).try_for_each(|wall| stands(boundary, wall, &room))?;
-        Ok(Self { boundary, room })
+        Ok(Self { boundary, room: cut(boundary.interior(), below)? })
+    }
+
+    /// Checks that no wall that reacts moves before it is hit.
+    ///
+    /// The interior ends where such a wall is at the start. If it moves far, it comes among the disks.
+    pub(super) fn check_walls(&self) -> Result<(), ParameterError> {
+        (0..self.boundary.wall_count()).try_for_each(|wall| stands(self.boundary, wall, &self.room))
     }
 
     /// Returns the normal and the position of each side of the rectangle. Where the rectangle is periodic, it
@@ -45,8 +50,6 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
 }
 
 /// Checks that a wall that reacts stands still until it is hit.
-///
-/// The interior ends where such a wall is at the start. If it moved, it would come among the disks.
 fn stands<B: Boundary + ?Sized>(boundary: &B, wall: usize, room: &Domain) -> Result<(), ParameterError> {
     let middle = DVec2::new(0.5 * (room.left + room.right), 0.5 * (room.bottom + room.top));
     if boundary.surface(wall, middle, 0.0).mass == f64::INFINITY {
