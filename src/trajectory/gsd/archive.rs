@@ -19,6 +19,8 @@ pub(super) struct Archive<R> {
     entries: Vec<[u8; ENTRY]>,
     /// True if this crate wrote the file.
     pub(super) is_own: bool,
+    /// Numbers of the names that were asked for.
+    asked: BTreeSet<usize>,
 }
 
 /// The numbers of a chunk.
@@ -51,6 +53,7 @@ impl<R: Read + Seek> Archive<R> {
             input,
             names: read_names(&names, version),
             entries: entries.take_while(|entry| number(entry, 16) != 0).collect(),
+            asked: BTreeSet::new(),
             is_own: head[48..].starts_with(b"granular-edmd\0"),
         };
         // Each frame but the first has an entry, so a damaged number cannot ask for any number of frames.
@@ -66,18 +69,20 @@ impl<R: Read + Seek> Archive<R> {
         self.entries.last().map_or(0, |last| number(last, 0).saturating_add(1))
     }
 
-    /// Returns the names of the chunks with rows that the frame or the first frame has.
-    pub(super) fn filled(&self, frame: u64) -> impl Iterator<Item = &str> {
+    /// Returns the names of the chunks with rows in this frame or the first one that were never asked for.
+    pub(super) fn unread(&self, frame: u64) -> impl Iterator<Item = &str> {
         let is_filled =
             move |entry: &&[u8; ENTRY]| [0, frame].contains(&number(*entry, 0)) && number(*entry, 8) > 0;
         let filled = self.entries.iter().filter(is_filled);
         let filled: BTreeSet<usize> = filled.map(|entry| id(entry.as_slice())).collect();
-        filled.into_iter().filter_map(|id| self.names.get(id)).map(String::as_str)
+        let unread = filled.into_iter().filter(|id| !self.asked.contains(id));
+        unread.filter_map(|id| self.names.get(id)).map(String::as_str)
     }
 
     /// Reads a chunk of a frame. Returns `None` if the frame does not have the chunk.
     pub(super) fn chunk(&mut self, frame: u64, name: &str) -> Result<Option<Chunk>, ReadError> {
         let Some(wanted) = self.names.iter().position(|known| known == name) else { return Ok(None) };
+        self.asked.insert(wanted);
         let start = self.entries.partition_point(|entry| number(entry, 0) < frame);
         let mut entries = self.entries[start..].iter().take_while(|entry| number(*entry, 0) == frame);
         let Some(&entry) = entries.find(|entry| id(*entry) == wanted) else { return Ok(None) };

@@ -17,31 +17,6 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
-/// The chunks whose meaning is known.
-const KNOWN: [&str; 21] = [
-    "configuration/box",
-    "configuration/dimensions",
-    "configuration/step",
-    "log/center",
-    "log/domain",
-    "log/gravity",
-    "log/particles/id",
-    "log/periodic",
-    "log/time",
-    "particles/N",
-    "particles/angmom",
-    "particles/diameter",
-    "particles/image",
-    "particles/mass",
-    "particles/moment_inertia",
-    "particles/orientation",
-    "particles/position",
-    "particles/type_shapes",
-    "particles/typeid",
-    "particles/types",
-    "particles/velocity",
-];
-
 /// Returns whether a file that begins with these bytes is a GSD file.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
@@ -134,6 +109,8 @@ impl<R: Read + Seek> View<'_, R> {
     fn table(mut self) -> Result<Table, ReadError> {
         let [count] = self.numbers("particles/N")?.unwrap_or_default();
         let count = count as usize;
+        // Positions show whether the disks lie in a plane, whatever the file says.
+        self.find("configuration/dimensions")?;
         let position = self.rows("particles/position", count, 3)?;
         let Some(position) = position.or_else(|| (count == 0).then(Chunk::default)) else {
             return Err(self.wrong("the chunk `particles/position` is missing"));
@@ -154,7 +131,7 @@ impl<R: Read + Seek> View<'_, R> {
             let is_named = names.iter().any(|name| as_whole::<u16>(name).is_none());
             table.kind_names = if is_named { names } else { Vec::new() };
         }
-        let ignored = self.archive.filled(self.frame).filter(|name| !KNOWN.contains(name));
+        let ignored = self.archive.unread(self.frame);
         table.columns.extend(ignored.map(|name| Column { name: name.to_owned(), slot: None }));
         table.rounding = rounding(&position, center);
         table.notes = self.notes;
