@@ -126,8 +126,9 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    time origin. Along the normal, it is the speed at which the wall moves according to `overlap`, to
 ///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
 ///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
-///    it is hollow, never zero. At a tip or a corner, it may have any other value.
-///    The angular velocity is that of the surface.
+///    it is hollow, never zero. At a tip or a corner, it may have any other value. The angular velocity is
+///    the rate $`\Omega`$ at which these velocities turn the surface: a point at a small distance $`d`$ along
+///    `normal.perp()` moves by $`-\Omega d`$ faster along the normal.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
