@@ -79,8 +79,8 @@ pub enum VesselError {
     },
     /// The motion of a part is so small that it is lost in the rounding of the part's coordinates.
     #[error(
-        "the part \"{name}\" moves to and fro by {}, which is lost in the rounding of its coordinates: that must be \
-         {} at least, or nothing",
+        "the part \"{name}\" moves back and forth by {}, which is lost in the rounding of its coordinates: it must be \
+         at least {}, or 0",
         Rounded(*.stroke), Rounded(*.least)
     )]
     Stroke {

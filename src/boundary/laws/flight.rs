@@ -109,8 +109,8 @@ fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
-/// Returns whether the flight ends at a sink, which may take a disk out without a touch, when the center
-/// arrives.
+/// Returns whether the flight ends at a sink. A sink for centers takes a disk out without a touch, when the
+/// center arrives.
 fn is_absorbed(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
     let place = flight.position(touch.time);
     matches!(trial.boundary.surface(touch.wall, place, touch.time).response, Response::Absorbing)

@@ -111,8 +111,8 @@ impl Along {
     /// bounds.
     fn look(&self, path: &Path, phase: f64, time: f64) -> Look {
         let (state, bounds) = (self.motion.state(time + phase), self.motion.acceleration(time + phase));
-        // The true acceleration differs from the middle by at most half of the range, so the disk grows
-        // least.
+        // The true acceleration differs from the middle by at most half of the range. The disk therefore
+        // grows less than with any other choice.
         let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
         let path = Path {
             place: path.place - self.direction * state.displacement,

@@ -77,8 +77,8 @@ impl Vessel {
         if moving.is_empty() { first } else { self.search(&moving, flight, until, first) }
     }
 
-    /// Returns the flight as seen from a periodic image of a brick; the flight of a point, if the brick takes
-    /// centers.
+    /// Returns the flight as seen from a periodic image of a brick. For a brick that takes centers, it is the
+    /// flight of a point.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
         let is_line = self.parts[self.walls[entry.wall as usize].part].part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
