@@ -69,8 +69,8 @@ impl Inlet {
     ///
     /// Its center is in the rectangle with the corners `places`: first the lower left, then the upper right.
     /// The copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models
-    /// have no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws,
-    /// for example.
+    /// have no meaning. For a distribution of sizes, give a list of disks, for example with radii that
+    /// [`Radii`](crate::initial::Radii) draws.
     ///
     /// # Errors
     /// If there are no models, or the corners are not finite or not in this order.

@@ -79,7 +79,8 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
     let outcome = collide_bodies(rule, normal, since, (&first, &material), (&second, &other));
-    // The pair was resolved in the free-fall frame, where gravity drops out. Observers see the container's.
+    // The pair was resolved in the free-fall frame, where gravity drops out. Observers see velocities in the
+    // container's frame.
     let (fallen, gained) = bodies.fall(offset);
     let collision = Collision {
         time: clock.time(),

@@ -1,5 +1,5 @@
-//! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy.
-//! `state/guard.rs` decides when that is so, and has the defaults.
+//! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy. `state/guard.rs`
+//! decides when a run hardly progresses, and has the defaults.
 
 use super::resolution::{resolve_pair, resolve_wall};
 use super::state::{Clock, Exit, Forecast, Standstill};

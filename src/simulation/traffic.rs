@@ -163,13 +163,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Makes new cells if these do not suit disks of this diameter. Returns whether the domain has room for
-    /// such disks.
+    /// Makes new cells if the present ones do not suit disks of this diameter. Returns whether the domain has
+    /// room for such disks.
     fn make_cells_suit(&mut self, diameter: f64) -> bool {
         self.cells.suit(diameter) || self.renew_cells(self.cells.grid().cell_size(), Some(diameter))
     }
 
-    /// Makes new cells if there are far more or far fewer disks than these suit.
+    /// Makes new cells if there are far more or far fewer disks than the present cells suit.
     fn keep_cells_suitable(&mut self) {
         if self.cells.are_outgrown() {
             self.renew_cells(self.cells.grid().cell_size(), None);
