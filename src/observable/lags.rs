@@ -18,8 +18,8 @@ const MOST_LAGS: usize = 1 << 20;
 /// The last samples of a run, and means over pairs of samples. Every sample is the origin of pairs with later
 /// samples.
 ///
-/// Samples are equally spaced. After a gap, or before another run, it forgets the samples so far and keeps
-/// the means.
+/// Samples are equally spaced. After a gap, or before a run that does not continue the last one, the samples
+/// are forgotten and the means are kept.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Lags<V> {
