@@ -35,9 +35,9 @@ use crate::quantity::non_negative;
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///
-/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns of the same
-/// quantity must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored.
-/// [`State::notes`] lists everything that the reader ignores or changes.
+/// The letter or number of a component may follow the name of the property, as in `vel_x`, `Position.X` or
+/// `velocity:0`. Two columns of the same quantity must agree. Disks keep the order of the file. They must lie
+/// in one plane; its z is ignored. [`State::notes`] lists everything that the reader ignores or changes.
 ///
 /// # Examples
 /// The example turns a state of soft disks, whose contacts overlap, into a start for hard disks:
@@ -130,7 +130,7 @@ impl Reader {
     ///
     /// This turns states of soft disks, and files with few digits, into starts. [`State::shrunk`] says by how
     /// much. With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Overlaps of more than
-    /// half the sum of the radii always are. Masses stay.
+    /// half the sum of the radii are always an error. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -185,7 +185,7 @@ impl Reader {
 
     /// Returns the states of all frames of an input, one after another. The iterator ends after an error.
     ///
-    /// A file is an input as `BufReader::new(File::open(path)?)`.
+    /// For a file, pass `BufReader::new(File::open(path)?)`.
     ///
     /// # Errors
     /// If the input fails at its start, or is of no known format.

@@ -30,7 +30,7 @@ pub struct State {
     pub(super) ignored: Vec<String>,
     pub(super) wrapped: usize,
     pub(super) shrunk: f64,
-    /// Other sentences about the file.
+    /// Other notes about the file, each a sentence.
     pub(super) notes: Vec<String>,
 }
 
@@ -79,8 +79,8 @@ impl State {
         self.gravity
     }
 
-    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. It is the
-    /// alphabetical order, unless the file numbers them.
+    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. This order is
+    /// alphabetical, unless the file numbers the kinds.
     ///
     /// It is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {
