@@ -57,7 +57,7 @@ pub fn random<B: Boundary + ?Sized>(
 /// In all other respects, the function works like [`random`].
 ///
 /// # Errors
-/// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one
+/// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or a disk
 /// finds no position in ten thousand trials.
 ///
 /// ```

@@ -113,7 +113,7 @@ impl<'a> Packing<'a> {
         Ok(())
     }
 
-    /// Returns the radius to which a disk may grow and leave its neighbors room to grow, too; at most its
+    /// Returns the radius to which a disk may grow so that its neighbors keep room to grow, too; at most its
     /// full radius.
     fn free_radius(&self, index: usize, domain: &Domain, squares: &Squares) -> f64 {
         let (disk, full) = (&self.grown[index], self.full[index].radius());
