@@ -127,7 +127,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
 ///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
 ///    it is hollow, never zero. At a tip or a corner, it may have any other value. The angular velocity is
-///    that of the surface.
+///    the surface's.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
@@ -171,7 +171,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than 1e-6 of
 /// its radius. Three things therefore end a run with an error: an early or late touch, a disk that has left
 /// the domain, and a disk that overlaps a wall at the end of a search that found no touch. A missed touch
-/// with a thin wall that disks meet from both sides stays unseen. A touch with a wall that the disk is
+/// with a thin wall that disks meet from both sides goes unnoticed. A touch with a wall that the disk is
 /// leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal that is
 /// not finite is an error of the run.
 ///
@@ -233,7 +233,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a boundary",
     label = "not a boundary",
-    note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a geometry of your own"
+    note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a custom geometry"
 )]
 pub trait Boundary {
     /// Returns the rectangle that holds the centers of all disks at all times.

@@ -94,7 +94,7 @@ impl Disk {
     /// Returns the same disk turned to this angle, in radians, counterclockwise.
     ///
     /// # Errors
-    /// If the angle is not finite. It may be as large as a long run makes it.
+    /// If the angle is not finite. It may be of any magnitude, since it grows in a long run.
     pub fn with_angle(self, angle: f64) -> Result<Self, ParameterError> {
         Ok(Self { angle: finite("angle", angle)?, ..self })
     }

@@ -92,7 +92,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
     message = "`{Self}` is not a scheduler of events",
     label = "this type does not implement `EventScheduler`",
     note = "the default is `scheduler::BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
-    note = "one of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
+    note = "a custom scheduler implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
 )]
 pub trait EventScheduler {
     /// Replaces all disks and times by these times, one for each disk.

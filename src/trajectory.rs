@@ -48,7 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # A format of your own
+//! # Custom formats
 //! In a plain test, [`laws::check`] checks the contract of a format.
 //!
 //! ```

@@ -215,7 +215,8 @@ impl Field<'_> {
         ends.windows(2).map(|ends| self.free_between(ends[0], ends[1], height)).sum()
     }
 
-    /// Returns the free length between two crossings. It bisects for changes of freedom at unknown curves.
+    /// Returns the free length between two crossings. Changes of freedom at unknown curves are found by
+    /// bisection.
     fn free_between(&self, low: f64, high: f64, height: f64) -> f64 {
         if low == high {
             return 0.0;

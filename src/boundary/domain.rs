@@ -10,7 +10,7 @@ use crate::error::Readable;
 /// The rectangle that holds the centers of all disks.
 ///
 /// Its left and right sides may be periodic, and so may its lower and upper ends: a disk that leaves at one
-/// enters at the other.
+/// of them enters at the opposite one.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;

@@ -79,7 +79,7 @@ impl Part {
     /// Observers see the touch as a last collision with the wall ([`Response::Absorbing`]).
     /// [`Arrivals`](crate::observable::Arrivals) counts them, and an [`Inlet`](crate::simulation::Inlet) puts
     /// disks in. A removal takes the same time however many disks there are: the last disk gets the index of
-    /// the one that leaves.
+    /// the removed disk.
     ///
     /// [`Response::Absorbing`]: super::Response::Absorbing
     #[must_use]
@@ -122,9 +122,9 @@ impl Part {
     /// a membrane.
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
-    /// same for all kinds. Its vessel then knows no [`area`](super::Boundary::area), and stresses, densities
-    /// and profiles are refused unless they have a region that no wall reaches. A line of two-sided bricks,
-    /// such as a [`polyline`](Self::polyline), takes no area.
+    /// same for all kinds. Its vessel then does not know the [`area`](super::Boundary::area), and stresses,
+    /// densities and profiles are refused unless they have a region that no wall reaches. A line of two-sided
+    /// bricks, such as a [`polyline`](Self::polyline), takes no area.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

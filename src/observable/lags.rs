@@ -64,7 +64,7 @@ impl<V> Lags<V> {
         self.places = Some(places_in(end));
     }
 
-    /// Adds a sample and its pairs with the earlier ones. It leaves out pairs whose value is NaN.
+    /// Adds a sample and its pairs with the earlier ones. Pairs whose value is NaN are left out.
     pub(super) fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
         let interval = self.sample_times.interval();
         let rounding = self.sample_times.rounding(time);

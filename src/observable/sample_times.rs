@@ -7,8 +7,8 @@ use crate::quantity::{finite, positive};
 /// origin, rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Rounding of both times relative to the interval. Before time 0, for example, the origin may be far larger
-/// than the time, and the time then has the origin's rounding.
+/// Rounding of a start time and of a sampling time, relative to the interval. Before time 0, for example, the
+/// origin may be far larger than the time, and the time then has the origin's rounding.
 const PART: f64 = 1e-9;
 
 /// Smallest ratio of the interval to the time. Rounding then moves a sampling time by a sixteenth of the

@@ -59,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
-    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner that
-    /// the disk overlaps. This may be another wall than the touched one.
+    /// A larger overlap is not kept, so that the next overlap of this size is noticed, too. The error names
+    /// the partner that the disk overlaps. This may be another wall than the touched one.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(

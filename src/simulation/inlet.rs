@@ -15,9 +15,9 @@ use crate::{Disk, Kind, ParameterError};
 ///
 /// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
 /// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it
-/// finds no room waits until the inlet opens again, and the others wait behind it. A disk that enters has a
-/// new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same time
-/// however many disks there are.
+/// finds no room waits until the inlet opens again, and the other disks wait behind it. A disk that enters
+/// has a new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same
+/// time however many disks there are.
 ///
 /// An inlet is a part of the state of a run, and so of its checkpoints, with the disks that wait.
 ///

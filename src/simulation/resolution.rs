@@ -189,8 +189,8 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Returns whether a surface's normal is a unit vector, its velocities are ones that a disk may have, its
-/// radius is neither zero nor NaN, and its masses are positive.
+/// Returns whether a surface's normal is a unit vector, its velocities are possible for a disk, its radius is
+/// neither zero nor NaN, and its masses are positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;

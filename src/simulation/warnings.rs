@@ -280,9 +280,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 }
 
-/// Returns the walls of a boundary by name, each with its index and its position. Of walls of one name, such
-/// as the parts of a gate, the first is enough. The map is sorted, so that the count is the same on every
-/// run.
+/// Returns the walls of a boundary by name, each with its index and its position. If several walls have the
+/// same name, such as the parts of a gate, only the first is listed. The map is sorted, so that the count is
+/// the same on every run.
 fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, (usize, DVec2)> {
     let mut places = BTreeMap::new();
     for wall in 0..boundary.wall_count() {

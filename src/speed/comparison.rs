@@ -131,7 +131,8 @@ impl Comparison {
         })
     }
 
-    /// Returns the time of a collision in the other run over that in the first.
+    /// Returns the ratio of the times per collision: the time of the other run divided by the time of the
+    /// first.
     pub const fn ratio(&self) -> Quartiles {
         self.ratio
     }

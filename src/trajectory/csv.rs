@@ -69,7 +69,7 @@ fn has_name(row: &str, divider: Option<char>, columns: usize) -> bool {
     row.starts_with('"') && has_bare_cell && cells(row, divider).count() == columns + 1
 }
 
-/// Creates the error of a text in none of the formats.
+/// Creates the error of a text that has none of the known formats.
 fn unknown(line: usize, found: &str) -> ReadError {
     let known = "extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose first line names columns \
                  such as x, y and radius";

@@ -49,7 +49,7 @@ impl<'a> Frame<'a> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a format of trajectories",
     label = "a `trajectory::Format` is expected here",
-    note = "take `ExtendedXyz`, `LammpsDump`, or implement `Format` for a format of your own"
+    note = "take `ExtendedXyz`, `LammpsDump`, or implement `Format` for a custom format"
 )]
 pub trait Format {
     /// Writes a frame.

@@ -98,7 +98,7 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
 /// Checks that two motions with different values have different fingerprints, and that two motions with equal
 /// values have the same fingerprint. Motions without a fingerprint are not compared.
 ///
-/// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
+/// The motions are compared at four thousand phases from −1 to 399, and at forty later phases.
 ///
 /// # Errors
 /// If the fingerprints contradict the values.

@@ -21,7 +21,7 @@ const CONTACTS: usize = 300;
 /// with equal results on a thousand flights have the same fingerprint. Boundaries without a fingerprint are
 /// not compared.
 ///
-/// The check sets the time origins of both.
+/// The check sets the time origins of both boundaries.
 ///
 /// # Errors
 /// If the fingerprints contradict the results.

@@ -81,9 +81,9 @@ impl Part {
 
     /// Returns the same part with a motion whose phase counts from this absolute time instead of 0.
     ///
-    /// A moving part that is added to a run should start at the present time. It is then where it was built,
-    /// if its motion has no displacement at phase 0. The start is not a delay: before it, the part goes
-    /// through the phases before 0.
+    /// A moving part that is added to a run should start at the present time. It then has the position in
+    /// which it was built, if its motion has no displacement at phase 0. The start is not a delay: before it,
+    /// the part goes through the phases before 0.
     ///
     /// # Errors
     /// If the time is not finite.

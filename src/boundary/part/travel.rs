@@ -42,7 +42,7 @@ pub(in crate::boundary) struct Turning {
     pub(super) is_round: bool,
 }
 
-/// The phases of both motions of a part, each the time less whole periods.
+/// The phases of both motions of a part. Each phase is the time less whole periods of the motion.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::boundary) struct Phase {
     along: f64,

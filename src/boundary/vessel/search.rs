@@ -13,7 +13,7 @@ use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 /// one round more. The engine reads the clock every 256 events, so it still keeps a limit of wall-clock time.
 const MOST_STEPS: u32 = 256;
 
-/// Largest number of steps of a search for one brick, before the others have their turn.
+/// Largest number of steps of a search for one brick, before the search continues with the next brick.
 ///
 /// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
 /// touches it first. A turning arm has such a brick on its trailing side. The rounds keep it from taking all

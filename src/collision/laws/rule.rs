@@ -186,11 +186,11 @@ impl Promises {
 /// Checks that `rule` keeps its promises, and that it returns the same impulses when it is called again in
 /// other orders.
 ///
-/// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
-/// convex and hollow walls, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
-/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. Each kind
-/// has an ordinary contact with the same kind, with the default kind and with a wall. The page "Validation"
-/// says which planted faults the check finds.
+/// The contacts are all [`hostile_contacts`], and twelve thousand random ones between their extremes: between
+/// disks and with straight, convex and hollow walls, with relative spins, mass ratios up to 10⁶ and infinite
+/// masses, and last collisions at any time. Each is also tried with the partners exchanged and as its mirror
+/// image. Each kind has an ordinary contact with the same kind, with the default kind and with a wall. The
+/// page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken, at the simplest contact that the check finds for the same promise.

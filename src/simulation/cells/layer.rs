@@ -74,8 +74,8 @@ impl LayerLayout {
         Some(layout)
     }
 
-    /// Returns whether there may be twice as many columns and rows. Their number is limited, since each has
-    /// entries in tables.
+    /// Returns whether the numbers of columns and rows may be doubled. They are limited, since each column
+    /// and row has entries in tables.
     fn can_be_finer(&self) -> bool {
         self.doublings < FINEST && self.cells.columns.max(self.cells.rows) < MOST_LINES
     }

@@ -7,8 +7,9 @@
 //! next to each other in memory, so the reach is traversed in runs of rows.
 //!
 //! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back
-//! immediately. Rows are kept as they are counted, so that reach, hole and difference of two reaches are
-//! plain intervals, and are brought back only when a run is handed out, then in two pieces.
+//! immediately. Rows are kept as they are counted, so that a reach, its hole and the difference of two
+//! reaches are plain intervals. They are brought back only when a run is passed to the caller, then in two
+//! pieces.
 
 use super::grid::{Grid, Place};
 

@@ -41,7 +41,7 @@ impl fmt::Display for Remedy {
             }
             Self::FasterDisks => {
                 "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or the rule LeastRebound with a higher speed; for walls of your own see boundary::laws::check"
+                 room, or the rule LeastRebound with a higher speed; for custom walls see boundary::laws::check"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
             Self::WallVelocity => {

@@ -14,7 +14,7 @@ const MOST_PIECES: usize = 4;
 /// Number of parts into which a spring's period is divided; each part has its own bounds on the acceleration.
 const PARTS: f64 = 16.0;
 
-/// Largest speed at a stop that counts as none, relative to the speed of the motion.
+/// Largest speed at a stop that counts as zero, relative to the speed of the motion.
 const GRAZE: f64 = 1e-7;
 
 /// The motion of a piston since the last impact. Phases are offsets from the time origin, since a piston has
