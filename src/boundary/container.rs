@@ -140,8 +140,8 @@ impl Container {
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
     ///
-    /// Initial states are placed where the wall is at the start. An impact of a disk changes the times at
-    /// which other disks meet the wall. Each impact therefore costs a pass over all disks, and new
+    /// Initial states keep clear of the wall at its position at the start. An impact of a disk changes the
+    /// times at which other disks meet the wall. Each impact therefore costs a pass over all disks, and new
     /// predictions for the flights that may meet the wall.
     ///
     /// Only the stops of a piston keep it away from the opposite wall: walls do not collide with each other.

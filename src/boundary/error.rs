@@ -64,7 +64,7 @@ pub enum VesselError {
         /// The name.
         name: String,
     },
-    /// A part extends over more periods of the container than a vessel can repeat it.
+    /// A part extends over more periods of the container than a vessel can handle.
     #[error(
         "the part \"{name}\" extends over {} periods of the container, and {most} are possible: let it end earlier",
         Rounded(*.periods)

@@ -47,7 +47,7 @@ type Moments = [DVec2; MOMENTS];
 /// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
 ///
 /// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
-/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
+/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report this lag and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
 /// One observer measures one gas, in one run or in runs that continue each other. The first interval, as long

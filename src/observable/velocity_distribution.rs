@@ -63,7 +63,7 @@ enum Frame {
 }
 
 impl VelocityDistribution {
-    /// Creates histograms of `bins` bins each: of the components from `-largest` to `largest`, of the
+    /// Creates histograms of `bins` bins each: of the components from `-largest` to `largest`, and of the
     /// speed from 0 to `largest`, in units of the thermal speed.
     ///
     /// # Errors

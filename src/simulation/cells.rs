@@ -2,8 +2,8 @@
 //! cells around it.
 //!
 //! A disk passes to a neighbor cell when it leaves its own cell, which is widened by a margin (`layout.rs`,
-//! `grid.rs`). The function `prediction::cell_exit` gives this time. Then it searches the three cells ahead
-//! (`Cells::ahead`).
+//! `grid.rs`). The function `prediction::cell_exit` gives this time. The disk then searches the three cells
+//! ahead (`Cells::ahead`).
 
 mod block;
 mod cell_size;
@@ -154,7 +154,7 @@ impl Cells {
         self.change(disk, Contents::push);
     }
 
-    /// Removes a disk. The last one takes its index.
+    /// Removes a disk. The last disk takes its index.
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
         self.change(disk, Contents::remove);

@@ -218,7 +218,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     fn count_regime(&mut self, collision: &Collision) {
         let (contact, impulse) = (collision.contact, collision.impulse);
-        // Selections: a branch here would cost 3 % of a dense run, though it is hardly ever taken.
+        // These are selections, since a branch would cost 3 % of a dense run, although it would hardly ever
+        // be taken.
         let by_contact_duration = impulse.regime() == Regime::ContactDuration;
         let since = if by_contact_duration { contact.time_since_last_collision() } else { 0.0 };
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);

@@ -18,7 +18,7 @@ const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
 /// The normal comes from a difference of positions, so its rounding error is ε times the ratio of the
-/// vessel's size to the disks'.
+/// vessel's size to the size of the disks.
 const GRAZING: f64 = 1e-6;
 
 /// The change of a disk's motion in a collision.

@@ -1,9 +1,9 @@
 //! Insertion and removal of single disks during a run.
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
-//! of the removed disk, so no other index changes. Predictions of others that name one of the two are out of
-//! date: their collision count does not match the disk that has this index now. The engine replaces them when
-//! they are due, as for any partner that has collided since.
+//! of the removed disk, so no other index changes. Predictions of other disks that name one of the two
+//! indices are then out of date: their collision count does not match the disk that has this index now. The
+//! engine replaces them when they are due, as for any partner that has collided since.
 
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};

@@ -30,8 +30,8 @@ use crate::{Disk, Gravity};
 /// | `image` | periods that the disk has passed to the right and up, from [`Disk::image`] |
 /// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
-/// ASE, chemfiles, MDAnalysis and OVITO read the columns that they know in the same way. Symbols of elements
-/// are written because ASE accepts nothing else.
+/// ASE, chemfiles, MDAnalysis and OVITO agree on the meaning of the columns that they know. Symbols of
+/// elements are written because ASE accepts nothing else.
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
 /// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the

@@ -18,10 +18,10 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 /// ([`Snapshot::wall_lines`]).
 ///
 /// # Continuing a file
-/// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
-/// the frames after the checkpoint again, with the same bits. The recorder compares them with the frames in
-/// the file and does not write them twice. If they differ, the file is of another run, and the error says so.
-/// If the process died in the middle of a frame, the next frame overwrites the incomplete one.
+/// If the process was killed, resume the run from its checkpoint, and [`append`](Self::append) to its file.
+/// The run makes the frames after the checkpoint again, with the same bits. The recorder compares them with
+/// the frames in the file and does not write them twice. If they differ, the file is of another run, and the
+/// error says so. If the process died in the middle of a frame, the next frame overwrites the incomplete one.
 ///
 /// The recorder continues with the first sampling time after the last frame of the file. If the run is later
 /// than that, as from a checkpoint that is newer than the file, the run ends with an error, since frames

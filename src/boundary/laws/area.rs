@@ -123,7 +123,7 @@ impl Cell {
 /// middle and its change to the sides.
 fn share_beside_line(middle: f64, change: DVec2) -> f64 {
     let across = change.abs().max_element();
-    // A function that hardly changes along a side would cancel below.
+    // For a function that hardly changes along a side, the difference below would lose its digits.
     let along = change.abs().min_element().max(1e-4 * across);
     let square = |from: f64| from.max(0.0) * from.max(0.0);
     let integral = |value: f64| (square(value + across) - square(value - across)) / (4.0 * across);

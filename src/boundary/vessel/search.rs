@@ -209,7 +209,7 @@ enum Step {
 }
 
 impl Search<'_> {
-    /// Searches from a time on, at which there was no touch yet, for a round of steps.
+    /// Searches for one round of steps, from a time up to which there is no touch.
     fn run(&self, from: f64, steps: &mut u32) -> FirstTouch<f64> {
         let mut time = from;
         for _ in 0..STEPS_IN_A_ROUND {

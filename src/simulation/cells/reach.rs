@@ -1,7 +1,7 @@
 //! The homes of another class of disks that a disk may touch from anywhere in its own cell.
 //!
 //! The picture in `layers.rs` shows a reach and its hole. Both are rectangles, so a reach is given by its
-//! columns and its rows, each with the columns or rows of the hole. Both are stored in tables with one entry
+//! columns and its rows, each with the columns or rows of the hole. They are stored in tables with one entry
 //! for each column and row of the disk's own grid. The searches of large disks read them all the time: a
 //! table costs one load, whereas the edges of uneven rows would have to be searched. Homes of a column lie
 //! next to each other in memory, so the reach is traversed in runs of rows.

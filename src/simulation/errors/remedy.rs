@@ -10,7 +10,7 @@ use std::fmt;
 #[non_exhaustive]
 pub enum Remedy {
     /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
-    /// repeated collisions elastic, or let no surfaces part too slowly.
+    /// repeated collisions elastic, or set a least speed at which surfaces part.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,

@@ -214,7 +214,7 @@ fn columns(properties: &str, line: usize) -> Result<Vec<Column>, ReadError> {
         }
         columns.extend(Column::of(name, count));
     }
-    // If another column is the vector of positions, `Z` is the atomic number of ASE.
+    // If another column is the vector of positions, `Z` is ASE's atomic number.
     let is = |column: &Column, name: &str| column.name.eq_ignore_ascii_case(name);
     if columns.iter().any(|column| column.slot == Quantity::Position.slot(0) && !is(column, "x")) {
         columns.iter_mut().filter(|column| is(column, "z")).for_each(|column| column.slot = None);

@@ -119,7 +119,7 @@ impl Stroke {
         Ok(Self::new(self.piston, self.origin, start, displacement, velocity))
     }
 
-    /// Returns a displacement above which the piston stays up to a phase, measured from the last impact.
+    /// Returns a displacement that the piston does not exceed from the last impact to this phase.
     pub(crate) fn highest_until(&self, until: f64) -> f64 {
         let Piece { start, displacement, velocity, .. } = self.pieces[0];
         let elapsed = (until - start).max(0.0);
