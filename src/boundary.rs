@@ -127,7 +127,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
 ///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
 ///    it is hollow, never zero. At a tip or a corner, it may have any other value. The angular velocity is
-///    the surface's.
+///    the rate $`\Omega`$ at which these velocities turn the surface: the velocity along the normal is larger
+///    by $`-\Omega d`$ at a point at a small distance $`d`$ along `normal.perp()`.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by

@@ -52,7 +52,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again immediately if it
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along the normal is
-///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature.
+///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
+///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
 ///   to infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.

@@ -38,7 +38,8 @@ pub struct Surface<'a> {
     /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
     /// radius R with the moment of inertia I.
     pub tangential_mass: f64,
-    /// Angular velocity of a guided wall, counterclockwise.
+    /// Angular velocity of the surface, counterclockwise. For a curved wall with a tangential mass, it is
+    /// ignored: that wall's angular velocity follows from its velocity.
     pub angular_velocity: f64,
 }
 

@@ -55,6 +55,7 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
         around.check_velocity(&surface)?;
         around.check_radius(normal, radius)?;
         around.check_point(&surface)?;
+        around.check_turning(&surface)?;
     }
     let [touched, named] = &mut trial.touches[wall];
     (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
@@ -139,6 +140,35 @@ impl Around<'_, '_> {
                 "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} for \
                  one beside it");
         }
+        Ok(())
+    }
+
+    /// Checks that the angular velocity agrees with the velocities of surface points beside the touch: their
+    /// components along the normal differ by the rotation. At a kink or a tip, it is enough that one side
+    /// agrees. A free drum is not checked, since its angular velocity follows from its velocity.
+    fn check_turning(&self, surface: &Surface<'_>) -> Result<(), Violation> {
+        let Self { wall, place, time, .. } = *self;
+        let (normal, size, turning) = (surface.normal, self.trial.radius, surface.angular_velocity);
+        require!(PART, "angular velocity", turning.is_finite();
+            "wall {wall} turns at {turning:?} at {place:?}, time {time:?}");
+        if surface.tangential_mass.is_finite() && surface.radius.is_finite() {
+            return Ok(());
+        }
+        let step = NEAR * size;
+        let [low, here, high] = [-1.0, 0.0, 1.0].map(|count: f64| {
+            let beside = place + count * step * normal.perp();
+            let other = self.trial.boundary.surface(wall, beside, time);
+            (beside - size * other.normal, other.velocity.dot(normal))
+        });
+        let slack = SAME * (turning.abs() + (self.trial.speed + here.1.abs()) / size);
+        let mut pairs = [(low, high), (low, here), (here, high)].into_iter();
+        let turns = pairs.any(|((from, before), (to, after))| {
+            let along = (to - from).dot(normal.perp());
+            along < 0.5 * step || ((before - after) / along - turning).abs() <= slack
+        });
+        require!(PART, "angular velocity", turns;
+            "wall {wall} has the angular velocity {turning:?}, but its velocities around {place:?}, {time:?}, turn \
+             it otherwise");
         Ok(())
     }
 
