@@ -101,8 +101,8 @@ impl<'a> Surface<'a> {
 
     /// Returns the same surface with this mass against forces along the surface.
     ///
-    /// A curved wall with such a mass m turns about the center of its surface: its moment of inertia is
-    /// $`mR^2`$, and its angular velocity follows from the velocity of the surface.
+    /// A curved wall with the tangential mass m turns about the center of its surface: its moment of inertia
+    /// is $`mR^2`$, and its angular velocity follows from the velocity of the surface.
     #[must_use]
     #[inline]
     pub const fn with_tangential_mass(self, tangential_mass: f64) -> Self {
@@ -111,8 +111,8 @@ impl<'a> Surface<'a> {
 
     /// Returns the same surface of a wall that turns at this angular velocity, counterclockwise.
     ///
-    /// Rolling friction acts on the spin of the disk relative to it. The velocity of the surface does not
-    /// follow from it.
+    /// Rolling friction acts on the spin of the disk relative to this angular velocity. The velocity of the
+    /// surface is given separately.
     ///
     /// ```
     /// use granular_edmd::boundary::Surface;

@@ -7,10 +7,10 @@ use crate::{Disk, Kind, ParameterError};
 
 /// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
 ///
-/// Velocities have the translational temperature, $`T = m\langle v_x^2\rangle`$, and spins the rotational
-/// one, $`T_r = I\langle\omega^2\rangle`$ (Boltzmann's constant is 1: temperatures are energies). Over its
-/// collisions, the closing speed has the flux-weighted density $`(v_n/S)\,e^{-v_n^2/2S}`$, and the slip speed
-/// is an independent normal variable of variance $`V`$, with
+/// Velocities have the translational temperature, $`T = m\langle v_x^2\rangle`$, and spins have the
+/// rotational temperature, $`T_r = I\langle\omega^2\rangle`$ (Boltzmann's constant is 1: temperatures are
+/// energies). Over the collisions of the gas, the closing speed has the flux-weighted density
+/// $`(v_n/S)\,e^{-v_n^2/2S}`$, and the slip speed is an independent normal variable of variance $`V`$, with
 ///
 /// ```math
 /// S = \frac{T}{\mu},\qquad V = \frac{T}{\mu} + T_r\left(\frac1{\mu_t}-\frac1\mu\right),

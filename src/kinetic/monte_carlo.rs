@@ -116,14 +116,14 @@ impl MonteCarlo {
     }
 }
 
-/// Does `work` on every item. The results are in the order of the items.
+/// Applies `work` to every item. The results are in the order of the items.
 #[cfg(feature = "rayon")]
 fn map<T: Send, U: Send>(items: Vec<T>, work: impl Fn(T) -> U + Send + Sync) -> Vec<U> {
     use rayon::prelude::*;
     items.into_par_iter().map(work).collect()
 }
 
-/// Does `work` on every item. The results are in the order of the items.
+/// Applies `work` to every item. The results are in the order of the items.
 #[cfg(not(feature = "rayon"))]
 fn map<T, U>(items: Vec<T>, work: impl Fn(T) -> U) -> Vec<U> {
     items.into_iter().map(work).collect()
