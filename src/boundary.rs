@@ -78,10 +78,9 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// # Times
 /// All times are *offsets* from the absolute time that was last given to
-/// [`set_time_origin`](Self::set_time_origin). Absolute times grow without bound and would lose digits.
-/// Before the first call, the origin is 0. A boundary whose walls do not move may ignore the origin. A
-/// boundary whose walls move reduces it by whole periods to a phase of their motion, as
-/// [`WallMotion`](crate::wall::WallMotion) explains.
+/// [`set_time_origin`](Self::set_time_origin), 0 at first. Absolute times grow without bound and would lose
+/// digits. A boundary whose walls move reduces the origin by whole periods to a phase of their motion, as
+/// [`WallMotion`](crate::wall::WallMotion) explains; others may ignore it.
 ///
 /// # Who asks what, and when
 /// ```text
@@ -133,8 +132,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
 ///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
-///    overlaps none. On a periodic side or end, it is the same for both images of the disk: a wall near one
-///    side acts on disks at the other side.
+///    overlaps none, up to 16 roundings of the absolute time at the closing speed. On a periodic side or end,
+///    it is the same for both images of the disk: a wall near one side acts on disks at the other side.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
@@ -164,8 +163,6 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   the edges of the domain reach to infinity.
 /// - It calls `surface` for a touch that `first_touch` found: with its wall, its time, and the position of
 ///   the disk at that time.
-/// - It calls `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
-///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
