@@ -45,6 +45,8 @@ const UNFINISHED: &str = "unfinished";
 /// The folder of the records of version 0.3.
 const RAMPS: &str = "ramps";
 const LOCK: &str = "lock";
+const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
+    finish it by version 0.3 (`cargo install granular-edmd@0.3 --features cli`), or take a new folder: its tables stay as they are";
 
 /// The folder of a study.
 #[derive(Debug, Clone)]
@@ -106,7 +108,7 @@ impl Folder {
     /// Returns an error if the folder has records of version 0.3, which this version does not read.
     pub(super) fn check_format(&self) -> Result<(), StudyError> {
         if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
-            return Err(StudyError::Outdated { path: self.root.clone() });
+            return Err(StudyError::refused(&self.root, OUTDATED));
         }
         Ok(())
     }
@@ -183,7 +185,8 @@ impl Folder {
         if self.holds_study() {
             return Ok(());
         }
-        Err(StudyError::Occupied { path: self.root.clone(), name: stranger })
+        let reason = format!("holds other files ({stranger}) and no study; choose an empty folder");
+        Err(StudyError::refused(&self.root, reason))
     }
 
     fn stranger(&self) -> Result<Option<String>, StudyError> {

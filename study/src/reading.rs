@@ -112,9 +112,9 @@ impl<E: Experiment> Study<E> {
     }
 
     fn known_point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        let points = self.plan.point_count();
-        if index >= points {
-            return Err(StudyError::NoSuchPoint { point: index, points });
+        let count = self.plan.point_count();
+        if index >= count {
+            return Err(StudyError::Absent { what: "point", index, count });
         }
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
@@ -270,7 +270,7 @@ impl<E: Experiment> Study<E> {
         let folder = folder.as_ref();
         folder::create(folder)?;
         if let Some(path) = tables::files(&self.plan, folder).find(|path| path.exists()) {
-            return Err(StudyError::Taken { path });
+            return Err(StudyError::refused(&path, "exists already; choose another folder for tables"));
         }
         self.tables(folder)
     }

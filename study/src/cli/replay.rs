@@ -74,10 +74,10 @@ impl Wishes {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
         match (self.from, self.disk.filter(|id| !is_there(id))) {
             (Some(from), _) if from.is_nan() || from >= *end => {
-                Err(PlanError::Toml(format!("no time is after {from} and until {end}")))
+                Err(PlanError::Refused(format!("no time is after {from} and until {end}")))
             }
             (_, Some(id)) => {
-                Err(PlanError::Toml(format!("there is no disk {id} among the {} of the run", run.len())))
+                Err(PlanError::Refused(format!("there is no disk {id} among the {} of the run", run.len())))
             }
             _ => Ok(()),
         }
@@ -137,7 +137,7 @@ fn state_before<E: Experiment>(
     let (first, end, show) = (source.run.counters().collisions() + 1, source.end, source.clock());
     if number < first {
         let message = format!("the first collision of this run has the number {first}, not {number}");
-        return Err(PlanError::Toml(message).into());
+        return Err(PlanError::Refused(message).into());
     }
     let ended = source.advance(end, number - 1, show);
     let found = source.run.counters().collisions();
@@ -159,6 +159,6 @@ fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<
     let path = path.unwrap_or(Path::new("-.csv"));
     let Some(ending) = Ending::of(path) else { return Ok(run.checkpoint().to_bytes()?) };
     let text = ending.text(path, &State::of(&run.snapshot())).transpose()?;
-    let advice = || PlanError::Toml(format!("`convert` makes {} of a file in .xyz", path.display()));
+    let advice = || PlanError::Refused(format!("`convert` makes {} of a file in .xyz", path.display()));
     text.ok_or_else(|| advice().into())
 }

@@ -71,7 +71,7 @@ impl<E: Experiment> Source<E> {
             return Ok(Self { run, cycle, end: until });
         }
         let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
-        Err(PlanError::Toml(message).into())
+        Err(PlanError::Refused(message).into())
     }
 
     /// Returns a display of the simulated time, in cycles.

@@ -217,7 +217,7 @@ pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
     check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
 }
 
-fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
+fn check(what: &str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
     for (index, name) in names.iter().enumerate() {
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if name.is_empty() || !name.chars().all(is_plain) {
@@ -230,6 +230,6 @@ fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanE
     Ok(())
 }
 
-fn refused(what: &'static str, name: &str, reason: &str) -> PlanError {
-    PlanError::Name { name: name.to_owned(), what, reason: reason.to_owned() }
+fn refused(what: &str, name: &str, reason: &str) -> PlanError {
+    PlanError::Refused(format!("{name:?} cannot be the name of a {what}: {reason}"))
 }

@@ -75,7 +75,8 @@ impl<E: Experiment> Plan<E> {
         let lengths = self.sweep.iter().map(super::axis::Axis::len).chain([self.value_count(), self.repeats]);
         let count = lengths.map(|length| length as u128).fold(1_u128, u128::saturating_mul);
         if count > MOST_VALUES as u128 {
-            return Err(PlanError::TooMany { count, most: MOST_VALUES });
+            let reason = format!("ramps and values are too many: at most {MOST_VALUES} are possible");
+            return Err(PlanError::Refused(format!("{count} {reason}")));
         }
         Ok(())
     }
