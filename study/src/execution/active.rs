@@ -57,18 +57,6 @@ pub(super) struct Active<'a, E: Experiment> {
     riders: Riders,
 }
 
-/// The reason why a value ends before its last step.
-pub(super) enum Early {
-    /// The observer ends the value.
-    Stopped,
-    /// The value has reached a limit.
-    Limited(String),
-    /// The engine gives up.
-    Run(RunError),
-    /// The experiment cannot prepare a step.
-    Prepare(ExperimentError),
-}
-
 impl<'a, E: Experiment> Value<'a, E> {
     /// Starts the value, or continues it from a record with fewer samples, if the record keeps the state.
     pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
@@ -240,32 +228,42 @@ impl<E: Experiment> Active<'_, E> {
 
     /// Runs the next step, which settles or takes a sample, for at most this wall-clock time. The observer
     /// may end the value during the step. The next call continues a step that takes longer, with the same
-    /// bits. Returns whether the step is done.
-    pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Early> {
+    /// bits. Returns whether the step is done; the error is the outcome of a value that ends early.
+    pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
         self.prepare()?;
-        match self.advance(slice).map_err(Early::Run)? {
-            RunEnd::Time => {
+        let ended = self.advance(slice);
+        let time = self.run.time();
+        match ended {
+            Ok(RunEnd::Time) => {
                 self.work.steps += 1;
                 self.work.is_prepared = false;
                 Ok(true)
             }
-            RunEnd::WallClock => Ok(false),
-            RunEnd::Collisions => {
+            Ok(RunEnd::WallClock) => Ok(false),
+            Ok(RunEnd::Collisions) => {
                 let most = self.value.plan.protocol().most_collisions().unwrap_or(u64::MAX);
-                Err(Early::Limited(format!("it has reached the limit of {most} collisions")))
+                Err(self.limited(format!("it has reached the limit of {most} collisions")))
             }
-            _ => Err(Early::Stopped),
+            Ok(_) => Err(Outcome::Stopped { time }),
+            Err(error @ RunError::Stalled { .. }) => Err(Outcome::Stalled { time, reason: chain(&error) }),
+            Err(error) => Err(Outcome::Failed { time, reason: chain(&error) }),
         }
     }
 
+    /// Returns the outcome of a value that has reached a limit now.
+    pub(super) fn limited(&self, reason: String) -> Outcome {
+        Outcome::Limited { time: self.run.time(), reason }
+    }
+
     /// Calls the experiment's `prepare` for the next step, unless it was called already.
-    fn prepare(&mut self) -> Result<(), Early> {
+    fn prepare(&mut self) -> Result<(), Outcome> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
         }
         let interval: Interval = self.value.plan.protocol().interval(self.work.steps);
         let observer = &mut self.work.measured.observer;
-        self.value.experiment.prepare(&interval, &mut self.run, observer).map_err(Early::Prepare)
+        let prepared = self.value.experiment.prepare(&interval, &mut self.run, observer);
+        prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
     }
 
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
@@ -314,34 +312,16 @@ impl<E: Experiment> Active<'_, E> {
         Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
-    /// Returns the record of a finished value.
-    pub(super) fn record(self) -> Result<Record<E>, StudyError> {
-        let mut end = self.work.start;
-        end.count += self.value.plan.protocol().cycles();
-        let state = self.run.checkpoint();
-        self.into_record(Outcome::Completed, end, state)
-    }
-
-    /// Returns the record of a value that ended early. Unless the observer stopped the value, the next value
-    /// starts from the state in which this value started.
-    pub(super) fn ended(self, early: Early) -> Result<Record<E>, StudyError> {
-        let time = self.run.time();
-        let outcome = match early {
-            Early::Stopped => {
-                let (state, end) = (self.run.checkpoint(), Cycles { since: time, count: 0 });
-                return self.into_record(Outcome::Stopped { time }, end, state);
-            }
-            Early::Limited(reason) => Outcome::Limited { time, reason },
-            Early::Run(error @ RunError::Stalled { .. }) => Outcome::Stalled { time, reason: chain(&error) },
-            Early::Run(error) => Outcome::Failed { time, reason: chain(&error) },
-            Early::Prepare(error) => Outcome::Failed { time, reason: chain(&error) },
-        };
-        let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
-        self.into_record(outcome, start, state)
-    }
-
-    fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Result<Record<E>, StudyError> {
+    /// Returns the record of the value after its last step. A value that stalled, failed or reached a limit
+    /// leaves the next value the state in which it started.
+    pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
         let Self { value, work, run, riders } = self;
+        let (start, cycles) = (work.start, value.plan.protocol().cycles());
+        let (end, state) = match outcome {
+            Outcome::Completed => (Cycles { count: start.count + cycles, ..start }, run.checkpoint()),
+            Outcome::Stopped { time } => (Cycles { since: time, count: 0 }, run.checkpoint()),
+            _ => (start, value.first_state()?.checkpoint()),
+        };
         let driving = riders.saved().map_err(|source| value.cannot_start(source))?;
         let parts = [state.rule(), state.boundary()];
         let state = value.plan.keeps_state(value.origin.value).then_some(state);
