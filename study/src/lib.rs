@@ -93,7 +93,6 @@ pub use plan::axis::Axis;
 pub use plan::protocol::Protocol;
 pub use plan::ramp::{Course, Ramp, Width};
 pub use plan::refinement::Bracket;
-pub use plan::steps::Steps;
 pub use point::Point;
 pub use reading::RampStatus;
 pub use scalar::Scalar;

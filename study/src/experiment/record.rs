@@ -169,11 +169,6 @@ impl<E: Experiment> Record<E> {
         self.contents.origin.seed
     }
 
-    /// Returns the version of this crate that made the record.
-    pub fn version(&self) -> &str {
-        &self.contents.origin.maker.version
-    }
-
     /// Returns the direction from which the ramp came to the value; `None` without a ramp.
     pub const fn leg(&self) -> Option<Leg> {
         self.contents.leg

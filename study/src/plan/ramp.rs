@@ -4,7 +4,7 @@ use granular_edmd::quantity::positive;
 use serde::{Deserialize, Serialize};
 
 use super::values::Values;
-use crate::{Leg, PlanError, Scalar, Steps};
+use crate::{Leg, PlanError, Scalar};
 
 /// The order in which a [`Ramp`] goes through its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -84,11 +84,6 @@ impl Ramp {
         Self { parameter: parameter.into(), values, course, refine: None }.checked()
     }
 
-    /// Creates a ramp of the parameter of this name through values that follow from a rule.
-    pub fn by_rule(parameter: impl Into<String>, steps: Steps, course: Course) -> Self {
-        Self { parameter: parameter.into(), values: Values::Rule(steps), course, refine: None }
-    }
-
     fn checked(self) -> Result<Self, PlanError> {
         self.values.check(&self.parameter)?;
         let Values::List(values) = &self.values else { return Ok(self) };
@@ -119,7 +114,7 @@ impl Ramp {
     }
 
     /// Returns the width to which transitions are bisected, or `None` without bisection.
-    pub const fn refinement(&self) -> Option<Width> {
+    pub(crate) const fn refinement(&self) -> Option<Width> {
         self.refine
     }
 
