@@ -32,7 +32,8 @@ const MOST_DISKS: usize = 1 << 24;
 /// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
 /// disk are the units.
 ///
-/// Disks start on a lattice with Maxwellian velocities. Values are checked where the box enters a
+/// Settings without a method of their own are fields: `experiment.base_inelasticity = Some(0.0)`. Disks start
+/// on a lattice with Maxwellian velocities. Values are checked where the box enters a
 /// [`Plan`](super::Plan).
 ///
 /// ```
@@ -131,34 +132,9 @@ impl VibratedBox {
         Self { inelasticity, tangential_inelasticity: None, ..self }
     }
 
-    /// Returns the same box with this tangential inelasticity $`q_t`$.
-    pub const fn with_tangential_inelasticity(self, tangential: f64) -> Self {
-        Self { tangential_inelasticity: Some(tangential), ..self }
-    }
-
     /// Returns the same box with the friction $`\kappa = \kappa_s = \kappa_d`$.
     pub const fn with_friction(self, friction: f64) -> Self {
         Self { friction, dynamic_friction: None, ..self }
-    }
-
-    /// Returns the same box with this dynamic friction $`\kappa_d`$.
-    pub const fn with_dynamic_friction(self, dynamic: f64) -> Self {
-        Self { dynamic_friction: Some(dynamic), ..self }
-    }
-
-    /// Returns the same box with this inelasticity of the walls, normal and tangential.
-    pub const fn with_wall_inelasticity(self, inelasticity: f64) -> Self {
-        Self { wall_inelasticity: Some(inelasticity), ..self }
-    }
-
-    /// Returns the same box with this inelasticity of the base, normal and tangential.
-    pub const fn with_base_inelasticity(self, inelasticity: f64) -> Self {
-        Self { base_inelasticity: Some(inelasticity), base_tangential_inelasticity: None, ..self }
-    }
-
-    /// Returns the same box with a base of these inelasticities, normal and tangential.
-    pub const fn with_base_inelasticities(self, normal: f64, tangential: f64) -> Self {
-        Self { base_tangential_inelasticity: Some(tangential), ..self.with_base_inelasticity(normal) }
     }
 
     /// Returns the same box under the contact-duration model, [`ContactDuration`].
@@ -175,8 +151,8 @@ impl VibratedBox {
         if normal.or(tangential).or(self.wall_friction).is_none() {
             return Ok(None);
         }
-        let walls = normal.into_iter().fold(self.clone(), Self::with_inelasticity);
-        let walls = tangential.into_iter().fold(walls, Self::with_tangential_inelasticity);
+        let mut walls = normal.into_iter().fold(self.clone(), Self::with_inelasticity);
+        walls.tangential_inelasticity = tangential.or(walls.tangential_inelasticity);
         let walls = self.wall_friction.into_iter().fold(walls, Self::with_friction);
         walls.rule().map(Some)
     }
