@@ -74,22 +74,18 @@ impl Folder {
 
     /// Returns the ramp and value indices of the unfinished values.
     pub(super) fn unfinished(&self) -> Result<HashSet<[usize; 2]>, StudyError> {
-        let files = self.unfinished_files()?;
-        let of = |path: &PathBuf| {
-            let (ramp, value) = path.file_name()?.to_str()?.split_once('-')?;
-            Some([ramp.parse().ok()?, value.parse().ok()?])
-        };
-        Ok(files.iter().filter_map(of).collect())
-    }
-
-    fn unfinished_files(&self) -> Result<Vec<PathBuf>, StudyError> {
         let folder = self.root.join(UNFINISHED);
-        let files = if_there("read", &folder, fs::read_dir(&folder))?.into_iter().flatten();
-        files.map(|file| file.map(|file| file.path()).map_err(StudyError::io("read", &folder))).collect()
+        let mut found = HashSet::new();
+        for file in if_there("read", &folder, fs::read_dir(&folder))?.into_iter().flatten() {
+            let name = file.map_err(StudyError::io("read", &folder))?.file_name();
+            let place = name.to_str().and_then(|name| name.split_once('-'));
+            found.extend(place.and_then(|(ramp, value)| Some([ramp.parse().ok()?, value.parse().ok()?])));
+        }
+        Ok(found)
     }
 
     pub(super) fn make_room_for_unfinished(&self) -> Result<(), StudyError> {
-        create(&self.root.join(UNFINISHED))
+        whole::create(&self.root.join(UNFINISHED))
     }
 
     /// Removes the remaining files of unfinished values once all values are finished.
@@ -133,16 +129,19 @@ impl Folder {
         check: impl FnOnce() -> Result<(), PlanError>,
     ) -> Result<bool, StudyError> {
         self.check_free()?;
-        fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
+        whole::create(&self.root)?;
         let _lock = self.take_lock()?;
-        if !self.plan().exists() {
+        let is_new = !self.plan().exists();
+        if is_new {
             check()?;
         }
         whole::remove_temporaries(&self.root)?;
-        let is_new = whole::publish(&self.plan(), plan.as_bytes())?;
+        if is_new {
+            whole::write(&self.plan(), plan.as_bytes())?;
+        }
         // If a process is killed here, the folder has a plan but no provenance and no records.
-        if !self.root.join(LOGS).exists() {
-            whole::publish(&self.provenance_file(), provenance.text().as_bytes())?;
+        if !self.root.join(LOGS).exists() && !self.provenance_file().exists() {
+            whole::write(&self.provenance_file(), provenance.text().as_bytes())?;
         }
         self.write_about()?;
         Ok(is_new)
@@ -169,44 +168,35 @@ impl Folder {
     /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
     fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
-        match fs::read(&path) {
-            Ok(found) if found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found) => {
-                whole::write(&path, ABOUT.as_bytes())
-            }
-            _ => whole::publish(&path, ABOUT.as_bytes()).map(drop),
+        let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
+        if path.exists() && !fs::read(&path).is_ok_and(is_cut) {
+            return Ok(());
         }
+        whole::write(&path, ABOUT.as_bytes())
     }
 
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
     /// a plan.
     fn check_free(&self) -> Result<(), StudyError> {
-        let Some(stranger) = self.stranger()? else { return Ok(()) };
-        // Another process may have written the plan while the folder was read.
-        if self.holds_study() {
-            return Ok(());
-        }
-        let reason = format!("holds other files ({stranger}) and no study; choose an empty folder");
-        Err(StudyError::refused(&self.root, reason))
-    }
-
-    fn stranger(&self) -> Result<Option<String>, StudyError> {
-        let cannot_read = || StudyError::io("read", &self.root);
         let entries = match fs::read_dir(&self.root) {
             // The folder does not exist. The attempt to create it gives the error, if that fails.
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
-                return Ok(None);
+                return Ok(());
             }
-            entries => entries.map_err(cannot_read())?,
+            entries => entries.map_err(StudyError::io("read", &self.root))?,
         };
         for entry in entries {
-            let entry = entry.map_err(cannot_read())?;
+            let entry = entry.map_err(StudyError::io("read", &self.root))?;
             let name = entry.file_name();
             let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));
-            if !is_lock && !is_temporary(&name) {
-                return Ok(Some(name.to_string_lossy().into_owned()));
+            // Another process may have written the plan while the folder was read.
+            if !is_lock && !is_temporary(&name) && !self.holds_study() {
+                let name = name.display();
+                let reason = format!("holds other files ({name}) and no study; choose an empty folder");
+                return Err(StudyError::refused(&self.root, reason));
             }
         }
-        Ok(None)
+        Ok(())
     }
 
     pub(super) fn read_plan(&self) -> Result<String, StudyError> {
@@ -248,11 +238,6 @@ impl Folder {
         self.write_about()?;
         Ok(lock)
     }
-}
-
-/// Creates a folder, with the folders that contain it.
-pub(super) fn create(folder: &Path) -> Result<(), StudyError> {
-    fs::create_dir_all(folder).map_err(StudyError::io("create", folder))
 }
 
 /// Returns whether a file with the name of a lock is a lock, and thus empty.

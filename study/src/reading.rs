@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
-use super::folder;
 use super::plan::refinement::{Bracket, Seen};
 use super::plan::values::MOST_TRIED;
 use super::store::{Claimed, Entry, Marks};
 use super::tables::{self, Tables};
-use super::whole::damaged;
+use super::whole::{self, damaged};
 use super::{Experiment, Plan, Point, Study, StudyError};
 
 /// Progress of a ramp.
@@ -119,7 +118,8 @@ impl<E: Experiment> Study<E> {
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
         let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
-        Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
+        let records = records.collect::<Result<Vec<_>, _>>()?;
+        Ok((!records.is_empty()).then_some(Point { index, value, records }))
     }
 
     /// Reads, one by one, all values that have a finished repeat, at all points of the grid.
@@ -268,7 +268,7 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::write_tables`], and if the folder has a table of one of these names.
     pub fn write_tables_to(&self, folder: impl AsRef<Path>) -> Result<usize, StudyError> {
         let folder = folder.as_ref();
-        folder::create(folder)?;
+        whole::create(folder)?;
         if let Some(path) = tables::files(&self.plan, folder).find(|path| path.exists()) {
             return Err(StudyError::refused(&path, "exists already; choose another folder for tables"));
         }

@@ -89,7 +89,7 @@ impl Store {
                 Some(file) => Ok(file),
                 none => File::open(&log.path).map(|file| none.insert(file)),
             };
-            (log.path.clone(), file.and_then(|file| read_piece(file, &entry.piece())))
+            (log.path.clone(), file.and_then(|file| read_piece(file, entry)))
         };
         let contents = contents.map_err(StudyError::io("read", &path))?;
         let read = contents.map_err(|_| "its checksum does not match");
@@ -104,9 +104,7 @@ impl Store {
         record: &impl serde::Serialize,
         line: &str,
     ) -> Result<(), StudyError> {
-        let contents = encoded::<T>(record)
-            .map_err(|source| StudyError::Encode { path: self.folder.clone(), source })?;
-        self.push(head, &contents, Some(line))
+        self.push(head, &encoded::<T>(&self.folder, record)?, Some(line))
     }
 
     /// Marks values as unfinished.
@@ -149,10 +147,10 @@ impl State {
         let sorted = self.entries.count();
         for (number, log) in self.logs.iter_mut().enumerate() {
             let entries = &mut self.entries;
-            let show = |piece| Arc::make_mut(entries).push(Entry::new(piece, number as u32));
+            let show = |piece| Arc::make_mut(entries).push(Entry { log: number as u32, ..piece });
             // The file is opened anew each time, since a client of NFS asks for the present length only then.
             let read = Log::each(&log.path, SEAL, log.end, show);
-            let (end, is_damaged) = read.map_err(|error| unreadable(&log.path, error))?;
+            let (end, is_damaged) = read.map_err(|error| failed("read", &log.path, error))?;
             log.end = end;
             log.is_damaged |= is_damaged;
         }
@@ -181,9 +179,10 @@ fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(found)
 }
 
-fn unreadable(path: &Path, error: io::Error) -> StudyError {
+/// Returns the error of a log that cannot be read or written, or is of another format.
+fn failed(action: &'static str, path: &Path, error: io::Error) -> StudyError {
     match error.kind() {
         io::ErrorKind::InvalidData => damaged(path, error.to_string()),
-        _ => StudyError::io("read", path)(error),
+        _ => StudyError::io(action, path)(error),
     }
 }

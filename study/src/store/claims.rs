@@ -9,7 +9,7 @@ use std::time::Duration;
 use granular_edmd::file::Locked;
 
 use crate::StudyError;
-use crate::whole::if_there;
+use crate::whole::{if_there, open_lock};
 
 /// Number of lock files.
 const LOCKS: usize = 256;
@@ -62,7 +62,7 @@ impl Claims {
     /// Claims ramps of one block.
     pub(crate) fn claim(&self, ramps: &Range<usize>) -> Result<Claimed, StudyError> {
         let path = self.file(ramps.start);
-        let file = open(&path)?;
+        let file = open_lock(&path)?;
         match Locked::take(file) {
             Ok(locked) => {
                 let told = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
@@ -120,21 +120,6 @@ fn held(path: &Path) -> Option<Range<usize>> {
         })?;
         Some(first.parse().ok()?..end.parse().ok()?)
     })
-}
-
-/// Opens the file of a lock, and creates its folder if necessary.
-pub(crate) fn open(path: &Path) -> Result<File, StudyError> {
-    let mut options = File::options();
-    options.read(true).write(true).create(true).truncate(false);
-    let opened = options.open(path);
-    let opened = match (&opened, path.parent()) {
-        (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
-            std::fs::create_dir_all(folder).map_err(StudyError::io("create", folder))?;
-            options.open(path)
-        }
-        _ => opened,
-    };
-    opened.map_err(StudyError::io("write", path))
 }
 
 #[cfg(test)]
