@@ -1,7 +1,8 @@
 //! The meanings of the keys of plans, for the command `explain`, its schema, and the comments of a new plan.
 
 use super::shape::Shape;
-use crate::meanings::{OF_TABLES, find, of_error};
+use crate::experiment::columns::OF_TABLES;
+use crate::meanings::{find, of_error};
 use crate::{Column, Experiment, Table};
 
 /// The keys that every plan has, whatever its experiment, by section.

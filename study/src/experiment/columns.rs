@@ -171,22 +171,36 @@ impl<E: Experiment> fmt::Debug for Table<E> {
     }
 }
 
-/// Reserved names: the tables of every study (`TABLES`) and the columns of every table (`PLACE`).
-const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-const PLACE: [&str; 12] = [
-    "ramp",
-    "point",
-    "value",
-    "leg",
-    "repeat",
-    "repeats",
-    "failed",
-    "seed",
-    "made_by",
-    "outcome",
-    "samples",
-    "not_converged",
+/// The columns that the tables of every study have.
+pub(crate) const OF_TABLES: [(&str, &str); 15] = [
+    ("ramp", "Index of the ramp, counted from 0. The repeats of a point are ramps that follow one another."),
+    ("value", "Index of the value in its ramp, counted from 0."),
+    ("leg", "Direction from which the ramp comes to the value: up or down. Empty without a ramp."),
+    ("repeat", "Index of the repeat of the point, counted from 0."),
+    ("point", "Index of the point: all repeats of the same parameters together."),
+    ("repeats", "Number of finished repeats of the point, failed ones among them."),
+    ("failed", "Number of repeats that stalled, failed or reached a limit."),
+    ("seed", "Seed of the ramp, in hexadecimal digits behind a letter."),
+    (
+        "made_by",
+        "Program that made the value: its version, the number of its results, and the revision of the experiment.",
+    ),
+    ("outcome", "`completed`, or `stopped`, `stalled`, `limited` or `failed`."),
+    ("samples", "Number of samples of the value."),
+    ("time", "Time of the sample since the start of the ramp."),
+    ("from_state", "State on the side from which the ramp came to the transition."),
+    ("to_state", "State on the far side of the transition; empty if none is known."),
+    (
+        "not_converged",
+        "Names of the columns whose error is only a lower bound, since they have too few independent samples.",
+    ),
 ];
+
+/// The names of the tables of every study.
+const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
+
+/// The columns of [`OF_TABLES`] that some tables alone have, so that others may have columns of these names.
+const OF_SOME: [&str; 3] = ["time", "from_state", "to_state"];
 
 /// Returns the names of the two columns that follow a column of means: the error, and the number of
 /// independent samples.
@@ -198,7 +212,9 @@ pub(crate) fn error_names(name: &str) -> [String; 2] {
 /// parameters and the built-in columns.
 pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
-    let taken = [PLACE.as_slice(), varied].concat();
+    let names = OF_TABLES.iter().map(|(name, _)| *name);
+    let of_all: Vec<&str> = names.filter(|name| !OF_SOME.contains(name)).collect();
+    let taken = [of_all.as_slice(), varied].concat();
     let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
         columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
     };
@@ -207,7 +223,7 @@ pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
     let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
     let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
     check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
-    let all = [PLACE.as_slice(), &["time"], &errors].concat();
+    let all = [of_all.as_slice(), &["time"], &errors].concat();
     if let Some(name) = varied.iter().find(|name| all.contains(name)) {
         return Err(refused("varied parameter", name, "a column of the tables has it"));
     }
