@@ -197,11 +197,6 @@ impl<E: Experiment> Plan<E> {
         derived_seed(point, (ramp % self.repeats) as u64)
     }
 
-    /// Returns the direction from which a ramp comes to a value; `None` without a ramp.
-    pub fn leg(&self, value: usize) -> Option<Leg> {
-        self.step(value).map(|(leg, _)| leg)
-    }
-
     /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
     pub fn parameters(&self, ramp: usize, value: usize) -> Vec<(&str, Scalar)> {
         if ramp >= self.ramp_count() || value >= self.value_count() {

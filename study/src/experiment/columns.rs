@@ -97,6 +97,17 @@ impl<E: Experiment> Column<E> {
         self.heading.unit()
     }
 
+    /// Returns the headings in the table of values: the mean is followed by its error, and its number of
+    /// independent samples.
+    pub(crate) fn headings(&self) -> Vec<Heading> {
+        let mut all = vec![self.heading.clone()];
+        if self.has_error() {
+            let [error, independent] = error_names(self.name());
+            all.extend([Heading::new(error, self.unit()), Heading::new(independent, "")]);
+        }
+        all
+    }
+
     /// Returns whether the values of the column have an error.
     pub(crate) const fn has_error(&self) -> bool {
         !matches!(self.kind, Kind::Record(_))
