@@ -2,6 +2,7 @@
 //! an experiment, and the columns of its tables.
 
 pub(super) mod columns;
+pub(super) mod origin;
 pub(super) mod record;
 pub(super) mod riders;
 

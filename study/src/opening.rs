@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use super::experiment::record::Origin;
+use super::experiment::origin::{Maker, Origin};
 use super::folder::Folder;
-use super::maker::Maker;
 use super::parameters::{self, tree};
 use super::provenance::{self, Provenance};
 use super::store::{Claims, Store};

@@ -87,7 +87,7 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
         return Err(unknown("a part of its name is that of a parameter without parts"));
     }
     let refused = |reason: String| match known {
-        Some(_) => PlanError::Experiment { place: place(&[(parameter, &to)]), source: reason.into() },
+        Some(_) => PlanError::Experiment { place: place(&[(parameter, to.clone())]), source: reason.into() },
         None => unknown(&reason),
     };
     let read = experiment::<E>(changed).map_err(refused)?;
@@ -96,7 +96,7 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
 }
 
 /// Returns the names and values of parameters as the text of an error.
-pub(super) fn place(varied: &[(&str, &Scalar)]) -> String {
+pub(super) fn place(varied: &[(&str, Scalar)]) -> String {
     let varied: Vec<String> = varied.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if varied.is_empty() { String::new() } else { format!(" at {}", varied.join(", ")) }
 }

@@ -142,11 +142,7 @@ impl<E: Experiment> Study<E> {
             .ramp_records(ramp)
             .map(|record| Ok(self.plan.seen(&record?)))
             .collect::<Result<_, StudyError>>()?;
-        Ok(self.brackets(&seen))
-    }
-
-    fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
-        self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(seen))
+        Ok(self.plan.brackets(&seen))
     }
 
     /// Returns the progress of a ramp.
@@ -296,7 +292,7 @@ impl<E: Experiment> Study<E> {
                 let missing = || damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
                 return Err(self.store.damage().unwrap_or_else(missing));
             }
-            tables.end_ramp(ramp, &self.brackets(&seen))?;
+            tables.end_ramp(ramp, &self.plan.brackets(&seen))?;
         }
         tables.finish()?;
         Ok(finished)

@@ -9,7 +9,8 @@ use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
 use super::sliced::{self, Riders};
 use crate::errors::{ExperimentError, StudyError, chain};
-use crate::experiment::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
+use crate::experiment::origin::Origin;
+use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
 #[cfg(feature = "cli")]
 use crate::opening::Study;
 use crate::plan::refinement::Step;
@@ -62,20 +63,26 @@ impl<'a, E: Experiment> Value<'a, E> {
     pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
+        let work = |steps, measured| Work {
+            start,
+            steps,
+            is_prepared: false,
+            is_under_way: false,
+            counters,
+            measured,
+        };
         if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
             let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
-            let steps = self.plan.protocol().steps() - missing;
-            let work = Work { start, steps, is_prepared: false, is_under_way: false, counters, measured };
+            let work = work(self.plan.protocol().steps() - missing, measured);
             match self.go_on((self.origin.clone(), work, state, driving), self.folder) {
                 Err(StudyError::Damaged { .. }) => {}
                 made => return made,
             }
         }
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
-        let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
-        let work = Work { start, steps: 0, is_prepared: false, is_under_way: false, counters, measured };
+        let work = work(0, Measured { times: Vec::new(), samples: Vec::new(), observer });
         let riders = self.riders(run.time(), self.driving()?, false)?;
         Ok(Active { value: self, work, run, riders })
     }

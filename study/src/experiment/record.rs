@@ -8,9 +8,9 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
-use crate::maker::Maker;
+use super::origin::{Leg, Origin};
 use crate::parameters;
-use crate::{Experiment, ExperimentError, Interval, Leg, Scalar};
+use crate::{Experiment, ExperimentError, Interval, Scalar};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -121,18 +121,6 @@ pub(crate) struct Measured<S, O> {
     pub(crate) times: Vec<f64>,
     pub(crate) samples: Vec<S>,
     pub(crate) observer: O,
-}
-
-/// The study, ramp and value to which a file belongs.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Origin {
-    /// Hash of the plan.
-    pub(crate) study: [u8; 32],
-    pub(crate) maker: Maker,
-    pub(crate) ramp: usize,
-    pub(crate) value: usize,
-    pub(crate) seed: u64,
 }
 
 /// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number

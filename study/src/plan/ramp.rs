@@ -135,27 +135,18 @@ impl Ramp {
 
     /// Returns the number of values that the ramp comes to.
     pub(super) fn len(&self) -> usize {
-        self.ups() + self.downs()
+        match self.course {
+            Course::Up | Course::Down => self.values.len(),
+            Course::UpAndDown => (2 * self.values.len()).saturating_sub(1),
+        }
     }
 
     /// Returns the value of this index, and the direction from which the ramp comes to it.
     pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
-        if index < self.ups() {
+        if self.course != Course::Down && index < self.values.len() {
             return Some((Leg::Up, self.values.at(index)));
         }
         let from_below = self.len().checked_sub(index + 1)?;
         Some((Leg::Down, self.values.at(from_below)))
-    }
-
-    fn ups(&self) -> usize {
-        if matches!(self.course, Course::Down) { 0 } else { self.values.len() }
-    }
-
-    fn downs(&self) -> usize {
-        match self.course {
-            Course::Up => 0,
-            Course::Down => self.values.len(),
-            Course::UpAndDown => self.values.len().saturating_sub(1),
-        }
     }
 }

@@ -18,13 +18,9 @@ const LARGEST_SEED: u64 = i64::MAX as u64;
 impl<E: Experiment> Plan<E> {
     /// Returns the plan, or an error if it cannot be run.
     pub(super) fn checked(self) -> Result<Self, PlanError> {
-        self.consistent()?.proven()
-    }
-
-    /// Returns the plan, or an error if the experiment rejects the parameters of a tried value.
-    pub(super) fn proven(self) -> Result<Self, PlanError> {
-        self.check_experiments()?;
-        Ok(self)
+        let plan = self.consistent()?;
+        plan.check_experiments()?;
+        Ok(plan)
     }
 
     /// Returns the plan, or an error if one of its parts is not valid.
