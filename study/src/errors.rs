@@ -102,7 +102,7 @@ pub enum StudyError {
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
     /// A folder or a file cannot be used for this: for example, the folder holds other files, no study, or a
-    /// study already, or the file belongs to another plan.
+    /// study already, the file belongs to another plan, or a record was made by code that has changed.
     #[error("{} {reason}", path.display())]
     Refused {
         /// The folder or the file.
@@ -156,18 +156,6 @@ pub enum StudyError {
         path: PathBuf,
         /// The description of the damage.
         reason: String,
-    },
-    /// A record was made with another rule, other walls or another revision than the experiment has now: its
-    /// code changed.
-    #[error(
-        "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
-        path.display()
-    )]
-    Changed {
-        /// The file.
-        path: PathBuf,
-        /// The part that differs.
-        part: &'static str,
     },
     /// The study was begun by code with other results, or with another revision of the experiment.
     #[error(
@@ -237,6 +225,13 @@ impl StudyError {
     /// Returns the error of a folder or a file that cannot be used.
     pub(super) fn refused(path: &Path, reason: impl Into<String>) -> Self {
         Self::Refused { path: path.to_owned(), reason: reason.into() }
+    }
+
+    /// Returns the error of a record that was made with another rule, other walls or another revision than
+    /// the experiment has now: its code changed.
+    pub(super) fn changed(path: &Path, part: &str) -> Self {
+        let now = "than the experiment has now at these parameters; take a new folder for changed code";
+        Self::refused(path, format!("was made with another {part} {now}"))
     }
 
     /// Returns the error of a file that belongs to another plan.

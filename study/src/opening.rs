@@ -216,7 +216,7 @@ impl<E: Experiment> Study<E> {
         if self.is_ours(found) || self.provenance.as_ref().is_some_and(|code| code.takes(&found.maker)) {
             return Ok(());
         }
-        Err(StudyError::Changed { path: path.to_owned(), part: "revision" })
+        Err(StudyError::changed(path, "revision"))
     }
 
     /// Returns whether a file comes from code with the same results as this program.

@@ -55,7 +55,7 @@ impl<E: Experiment> Study<E> {
         let is_ours = self.is_ours(&record.contents.origin);
         let last = self.plan.protocol().last_of(record.contents.steps);
         match record.changed_part(&last).filter(|_| is_ours) {
-            Some(part) => Err(StudyError::Changed { path: self.store.log_of(entry), part }),
+            Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
             None => Ok(record),
         }
     }

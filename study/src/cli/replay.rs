@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 use granular_edmd::replay::{Replayed, Steps};
 use granular_edmd::trajectory::State;
 
-use super::collision_rows::{HEADINGS, row};
 use super::files::Ending;
-use super::source::{Place, Source, tell_end};
+use super::source::{HEADINGS, Place, Source, row, tell_end};
 use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
 use crate::{Experiment, Run};

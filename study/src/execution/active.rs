@@ -206,7 +206,7 @@ impl<E: Experiment> Study<E> {
         let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
         // Other code may give other results.
         if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
-            return Err(StudyError::Changed { path: self.folder().to_owned(), part: "revision" });
+            return Err(StudyError::changed(self.folder(), "revision"));
         }
         let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
         let experiment = self.plan.experiment_at(ramp, step.at)?;
