@@ -9,6 +9,7 @@ mod session;
 mod sliced;
 
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
@@ -114,7 +115,7 @@ fn work<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<(), St
     while !session.must_stop()
         && let Some(ramps) = queue.next()
     {
-        if !ramp::attempt(session, &ramps).inspect_err(|_| session.break_off())? {
+        if !ramp::attempt(session, &ramps).inspect_err(|_| session.broken.store(true, Ordering::Relaxed))? {
             queue.leave(ramps);
         }
     }

@@ -5,13 +5,12 @@
 
 use std::collections::HashSet;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use granular_edmd::file::{Locked, is_temporary};
 
 use super::provenance::Provenance;
-use super::whole::{self, damaged, if_there};
+use super::whole::{self, damaged, files_in, if_there};
 use super::{PlanError, StudyError};
 
 /// Text of the README in the folder of a study.
@@ -74,10 +73,9 @@ impl Folder {
 
     /// Returns the ramp and value indices of the unfinished values.
     pub(super) fn unfinished(&self) -> Result<HashSet<[usize; 2]>, StudyError> {
-        let folder = self.root.join(UNFINISHED);
         let mut found = HashSet::new();
-        for file in if_there("read", &folder, fs::read_dir(&folder))?.into_iter().flatten() {
-            let name = file.map_err(StudyError::io("read", &folder))?.file_name();
+        for file in files_in(&self.root.join(UNFINISHED))? {
+            let name = file.file_name();
             let place = name.to_str().and_then(|name| name.split_once('-'));
             found.extend(place.and_then(|(ramp, value)| Some([ramp.parse().ok()?, value.parse().ok()?])));
         }
@@ -178,15 +176,11 @@ impl Folder {
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
     /// a plan.
     fn check_free(&self) -> Result<(), StudyError> {
-        let entries = match fs::read_dir(&self.root) {
-            // The folder does not exist. The attempt to create it gives the error, if that fails.
-            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
-                return Ok(());
-            }
-            entries => entries.map_err(StudyError::io("read", &self.root))?,
-        };
-        for entry in entries {
-            let entry = entry.map_err(StudyError::io("read", &self.root))?;
+        if !self.root.is_dir() {
+            // The attempt to create it gives the error, if that fails.
+            return Ok(());
+        }
+        for entry in files_in(&self.root)? {
             let name = entry.file_name();
             let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));
             // Another process may have written the plan while the folder was read.

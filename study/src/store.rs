@@ -9,7 +9,7 @@ mod log;
 mod writer;
 
 use std::collections::HashSet;
-use std::fs::{self, File};
+use std::fs::{DirEntry, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -23,7 +23,7 @@ use log::{Log, read_piece};
 use writer::Writer;
 
 use super::StudyError;
-use super::whole::{damaged, decoded, encoded, if_there};
+use super::whole::{damaged, decoded, encoded, files_in};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
@@ -170,12 +170,8 @@ impl State {
 
 /// Returns the logs in a folder.
 fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let cannot_read = || StudyError::io("read", folder);
-    let mut found = Vec::new();
-    for entry in if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten() {
-        let path = entry.map_err(cannot_read())?.path();
-        found.extend(path.extension().is_some_and(|ending| ending == "records").then_some(path));
-    }
+    let mut found: Vec<PathBuf> = files_in(folder)?.iter().map(DirEntry::path).collect();
+    found.retain(|path| path.extension().is_some_and(|ending| ending == "records"));
     Ok(found)
 }
 

@@ -1,7 +1,7 @@
 //! The small files of a study. Each file is complete or absent, and the file of an unfinished value is
 //! sealed.
 
-use std::fs::{self, File};
+use std::fs::{self, DirEntry, File};
 use std::io;
 use std::path::Path;
 
@@ -105,15 +105,16 @@ pub(crate) fn if_there<T>(
     }
 }
 
+/// Returns the files in a folder; none if it does not exist.
+pub(crate) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
+    let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
+    files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))
+}
+
 /// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
 /// be locked.
 pub(crate) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
-    let cannot_read = || StudyError::io("read", folder);
-    for entry in fs::read_dir(folder).map_err(cannot_read())? {
-        let entry = entry.map_err(cannot_read())?;
-        if is_temporary(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file()) {
-            remove(&entry.path())?;
-        }
-    }
-    Ok(())
+    let mut files = files_in(folder)?;
+    files.retain(|file| is_temporary(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
+    files.iter().try_for_each(|file| remove(&file.path()))
 }

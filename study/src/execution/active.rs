@@ -31,8 +31,9 @@ pub(super) struct Value<'a, E: Experiment> {
 }
 
 /// The saved data of an unfinished value: its origin, the work so far, the state of its run and its driving.
-pub(super) type Partial<E> =
-    (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint, Option<Vec<u8>>);
+pub(super) type Partial<E> = (Origin, WorkOf<E>, Checkpoint, Option<Vec<u8>>);
+
+type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 
 /// The finished work of a value.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
@@ -53,7 +54,7 @@ pub(super) struct Work<S, O> {
 /// A value that is being run.
 pub(super) struct Active<'a, E: Experiment> {
     value: &'a Value<'a, E>,
-    work: Work<E::Sample, E::Observer>,
+    work: WorkOf<E>,
     run: Run<E>,
     riders: Riders,
 }
@@ -140,11 +141,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run, riders })
     }
 
-    #[expect(clippy::type_complexity, reason = "the parts of a value that goes on")]
-    fn state_of(
-        &self,
-        (_, work, state, _): Partial<E>,
-    ) -> Result<(Work<E::Sample, E::Observer>, Run<E>), String> {
+    fn state_of(&self, (_, work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
         let protocol = self.plan.protocol();
         work.check(protocol)?;
         check(work.start == self.start(), "it starts elsewhere")?;
@@ -315,7 +312,7 @@ impl<E: Experiment> Active<'_, E> {
     #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
     pub(super) fn partial(
         &self,
-    ) -> Result<(&Origin, &Work<E::Sample, E::Observer>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
+    ) -> Result<(&Origin, &WorkOf<E>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
         Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 

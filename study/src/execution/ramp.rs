@@ -49,7 +49,8 @@ pub(super) fn attempt<E: Experiment>(
     let study = session.study;
     let _claim = match study.claims.claim(ramps)? {
         Claimed::Ours(claim) => Some(claim),
-        Claimed::Collision if session.is_of_one_ramp() => None,
+        // Whoever runs one ramp alone makes sure that no other process runs it.
+        Claimed::Collision if session.ramps.len() == 1 => None,
         Claimed::Theirs | Claimed::Collision => return Ok(false),
     };
     // Other processes may have finished some ramps before this process had the claim.

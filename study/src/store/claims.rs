@@ -9,7 +9,7 @@ use std::time::Duration;
 use granular_edmd::file::Locked;
 
 use crate::StudyError;
-use crate::whole::{if_there, open_lock};
+use crate::whole::{files_in, open_lock};
 
 /// Number of lock files.
 const LOCKS: usize = 256;
@@ -80,8 +80,7 @@ impl Claims {
 
     /// Returns the ramps that processes are running, as far as the locks show.
     pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
-        let files = if_there("read", &self.folder, std::fs::read_dir(&self.folder))?;
-        let paths = files.into_iter().flatten().flatten().map(|file| file.path());
+        let paths = files_in(&self.folder)?.into_iter().map(|file| file.path());
         Ok(paths.filter(|path| is_taken(path)).filter_map(|path| held(&path)).collect())
     }
 }
