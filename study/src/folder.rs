@@ -14,27 +14,7 @@ use super::whole::{self, damaged, files_in, if_there};
 use super::{PlanError, StudyError};
 
 /// Text of the README in the folder of a study.
-const ABOUT: &str = "\
-A study by granular-edmd (event-driven molecular dynamics of frictional, inelastic, rotating disks).
-
-plan.toml             what is simulated: experiment, protocol, ramp, sweep, repeats, seed
-provenance.json       what began it: program, versions, target, revision of the experiment
-values.csv            a row for each value: parameters, means, standard errors, counts
-samples.csv           a row for each sample
-points.csv            a row for each value, all repeats of it together
-transitions.csv       a row for each transition that a refined ramp brackets
-columns.csv           the names, units and meanings of all columns of all tables
-logs/L.records        finished values as processes have added them, each with a checksum
-logs/L.jsonl          when values were finished, and the seconds that they took; not a result. It is locked while
-                      a process writes this log
-locks/                files that are locked while processes do some ramps
-unfinished/R-V        value V of ramp R, half done (0000-0000 is the first)
-complete              there once all ramps are done and in the tables
-lock                  locked while a process makes the plan or the tables
-
-Tables are written when all ramps are done, or on demand. Lost or damaged files come back, the same bytes, when the study is
-run again with --verify. Any number of processes may run it at the same time.
-";
+const ABOUT: &str = include_str!("folder.txt");
 
 const PLAN: &str = "plan.toml";
 const PROVENANCE: &str = "provenance.json";

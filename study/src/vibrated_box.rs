@@ -5,7 +5,6 @@
 
 mod base;
 mod convection;
-mod meanings;
 mod rule;
 mod sample;
 
@@ -14,6 +13,9 @@ pub use rule::BoxRule;
 use rule::Kind;
 pub use sample::{Measurement, Sample};
 
+use std::sync::LazyLock;
+
+use super::experiment::columns::{Meanings, meanings};
 use super::{Column, Experiment, ExperimentError, Record, Table};
 use crate::analysis::StateCriteria;
 use granular_edmd::boundary::{Container, Wall};
@@ -22,6 +24,9 @@ use granular_edmd::observable::Snapshot;
 use granular_edmd::quantity::accept;
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
+
+/// The meanings of the parameters and of the columns of the tables.
+static MEANINGS: Meanings = LazyLock::new(|| meanings(include_str!("vibrated_box/meanings.txt")));
 
 /// Radius of the disks: their diameter and mass are the units.
 const RADIUS: f64 = 0.5;
@@ -235,7 +240,7 @@ impl Experiment for VibratedBox {
     }
 
     fn meanings() -> &'static [(&'static str, &'static str)] {
-        &meanings::MEANINGS
+        &MEANINGS
     }
 
     fn columns() -> Vec<Column<Self>> {

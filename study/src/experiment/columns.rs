@@ -1,6 +1,7 @@
 //! Columns of tables, each defined once by its name, unit and value.
 
 use std::fmt;
+use std::sync::LazyLock;
 
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
@@ -183,29 +184,15 @@ impl<E: Experiment> fmt::Debug for Table<E> {
 }
 
 /// The columns that the tables of every study have.
-pub(crate) const OF_TABLES: [(&str, &str); 15] = [
-    ("ramp", "Index of the ramp, counted from 0. The repeats of a point are ramps that follow one another."),
-    ("value", "Index of the value in its ramp, counted from 0."),
-    ("leg", "Direction from which the ramp comes to the value: up or down. Empty without a ramp."),
-    ("repeat", "Index of the repeat of the point, counted from 0."),
-    ("point", "Index of the point: all repeats of the same parameters together."),
-    ("repeats", "Number of finished repeats of the point, failed ones among them."),
-    ("failed", "Number of repeats that stalled, failed or reached a limit."),
-    ("seed", "Seed of the ramp, in hexadecimal digits behind a letter."),
-    (
-        "made_by",
-        "Program that made the value: its version, the number of its results, and the revision of the experiment.",
-    ),
-    ("outcome", "`completed`, or `stopped`, `stalled`, `limited` or `failed`."),
-    ("samples", "Number of samples of the value."),
-    ("time", "Time of the sample since the start of the ramp."),
-    ("from_state", "State on the side from which the ramp came to the transition."),
-    ("to_state", "State on the far side of the transition; empty if none is known."),
-    (
-        "not_converged",
-        "Names of the columns whose error is only a lower bound, since they have too few independent samples.",
-    ),
-];
+pub(crate) static OF_TABLES: Meanings = LazyLock::new(|| meanings(include_str!("columns.txt")));
+
+/// Names with their meanings.
+pub(crate) type Meanings = LazyLock<Vec<(&'static str, &'static str)>>;
+
+/// Reads a text that has a name and its meaning on each line.
+pub(crate) fn meanings(text: &'static str) -> Vec<(&'static str, &'static str)> {
+    text.lines().filter_map(|line| line.split_once(": ")).collect()
+}
 
 /// The names of the tables of every study.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
