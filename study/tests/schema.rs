@@ -10,8 +10,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use granular_edmd_study::Plan;
 use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Experiment, Plan};
 use serde::Deserialize;
 use serde_json::Value;
 use shape::{Kind, Shape};
@@ -232,4 +232,14 @@ fn odd_types_have_a_shape() {
     let shape = Shape::of::<Odd>();
     assert_eq!(kinds(&shape), [Kind::Table, Kind::Any, Kind::Integer, Kind::Choice, Kind::Flag]);
     assert_eq!(kinds(&shape.parts[3].1), [Kind::Word, Kind::Number, Kind::Table, Kind::Any]);
+}
+
+/// Each name with a meaning is that of a parameter or a column.
+#[test]
+fn all_meanings_of_the_box_are_explained() {
+    let told = runs(&["explain"]).stdout;
+    let told = std::str::from_utf8(&told).unwrap();
+    let is_told = |name: &str| told.lines().any(|line| line.split([':', ' ']).next() == Some(name));
+    let unknown: Vec<_> = VibratedBox::meanings().iter().filter(|(name, _)| !is_told(name)).collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
 }
