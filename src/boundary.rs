@@ -123,11 +123,12 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives the unit normal that points from the wall to the disk, the gradient of
 ///    the gap, to $`10^{-8}`$. The velocity is the velocity of the wall's material at the touch, whatever the
-///    time origin. Along the normal, it is the speed at which the wall moves according to `overlap`, to
+///    time origin. Its normal component is the speed at which the wall moves according to `overlap`, to
 ///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
 ///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
-///    it is hollow, never zero. At a tip or a corner, it may have any other value.
-///    The angular velocity is that of the surface.
+///    it is hollow, never zero. At a tip or a corner, it may have any other value. The angular velocity is
+///    the rate $`\Omega`$ at which these velocities turn the surface: the velocity along the normal is larger
+///    by $`-\Omega d`$ at a point at a small distance $`d`$ along `normal.perp()`.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
@@ -138,15 +139,16 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple. Its velocity changes by
 ///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
-///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with such a
-///    mass m counts as the impulse C/R. No wall changes its position instantaneously. The result is
-///    [`Reaction::Moved`] if the velocity changes. A wall of infinite masses does not react.
+///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with a
+///    tangential mass counts as the impulse C/R along the surface. No wall changes its position
+///    instantaneously. The result is [`Reaction::Moved`] if the velocity changes. A wall of infinite masses
+///    does not react.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
-/// 12. [`area`](Self::area), if it is known, is the area of the positions without an `overlap` for the
-///     default kind, and [`wall_point`](Self::wall_point) stays on its wall.
+/// 12. [`area`](Self::area), if it is known, is the area of the positions at which a disk of the default kind
+///     has no `overlap`, and [`wall_point`](Self::wall_point) stays on its wall.
 /// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
 ///     have equal fingerprints, whatever their state and their origin.
 ///
@@ -170,7 +172,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than 1e-6 of
 /// its radius. Three things therefore end a run with an error: an early or late touch, a disk that has left
 /// the domain, and a disk that overlaps a wall at the end of a search that found no touch. A missed touch
-/// with a thin wall that disks meet from both sides stays unseen. A touch with a wall that the disk is
+/// with a thin wall that disks meet from both sides goes unnoticed. A touch with a wall that the disk is
 /// leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal that is
 /// not finite is an error of the run.
 ///
@@ -232,7 +234,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a boundary",
     label = "not a boundary",
-    note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a geometry of your own"
+    note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a custom geometry"
 )]
 pub trait Boundary {
     /// Returns the rectangle that holds the centers of all disks at all times.
@@ -267,7 +269,7 @@ pub trait Boundary {
 
     /// Returns the rectangle of the domain with its edges where the walls are at `time`, for pictures.
     ///
-    /// The edges of the domain leave room for walls that move; it is the domain unless implemented.
+    /// The edges of the domain leave room for walls that move. The default is the domain.
     fn edges(&self, time: f64) -> Domain {
         let _ = time;
         self.domain()
@@ -276,9 +278,9 @@ pub trait Boundary {
     /// Returns the displacement of a wall from its position at rest at `time`, and the phase of its motion:
     /// the time since the motion began, less whole periods.
     ///
-    /// `None` for a wall that does not move, and for a wall that moves with one of a smaller index, as the
-    /// bricks of a part do. It is `None` unless implemented. The phase of a [`Piston`](crate::wall::Piston)
-    /// is 0.
+    /// The result is `None` for a wall that does not move, and for a wall that moves together with a wall of
+    /// a smaller index, as the bricks of a part do. The phase of a [`Piston`](crate::wall::Piston) is 0. The
+    /// default is `None`.
     fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
         let _ = (wall, time);
         None
@@ -335,16 +337,16 @@ pub trait Boundary {
     /// Returns the area of the part of `region` in which the center of a disk of this radius and of the
     /// default kind is free at `time`, or `None` if the boundary does not know the area.
     ///
-    /// With a radius of 0, it is the area that matter can fill. Stresses, densities and profiles divide by
-    /// it; where walls occupy part of the domain, they refuse to measure without it. As long as the
-    /// [points](Self::wall_point) of all walls stay where they are, they may reuse the area. It is `None`
-    /// unless implemented. A boundary that leaves different areas to the matter of different kinds does not
-    /// know it.
+    /// With a radius of 0, the result is the area that matter can fill. Stresses, densities and profiles
+    /// divide by this area. Where walls occupy part of the domain, they refuse to measure if the area is
+    /// unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay where
+    /// they are. The default is `None`. A boundary in which the free area depends on the kind of the matter
+    /// returns `None`, too.
     ///
-    /// Containers, vessels and obstacles know it to 1e-10, whatever overlaps, unless a part with an inside is
-    /// [for some kinds only](Part::only_for). The exceptions are
-    /// obstacles that lie in a curved wall, and parts whose lines end inside the container with disks on one
-    /// side only. There, pieces below a sixteenth of their surroundings may be missed.
+    /// Containers, vessels and obstacles know the area to 1e-10, even if walls overlap, unless a part with an
+    /// inside is [for some kinds only](Part::only_for). The exceptions are obstacles that lie in a curved
+    /// wall, and parts whose lines end inside the container with disks on one side only. There, pieces
+    /// smaller than a sixteenth of the distance between the surrounding walls may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
         let _ = (region, radius, time);
         None
@@ -375,8 +377,8 @@ pub trait Boundary {
     /// Returns the state of the walls that [react](Self::react) at the time origin, as numbers: positions,
     /// velocities, and everything else that impacts have changed.
     ///
-    /// A checkpoint keeps them, since a boundary that is given again begins anew. It is empty unless
-    /// implemented.
+    /// A checkpoint keeps these numbers, since the boundary that the caller gives to a resumed run begins
+    /// anew. The default is empty.
     fn state(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -393,7 +395,8 @@ pub trait Boundary {
     /// Returns the fingerprint of the boundary: its name and everything on which its results depend, but not
     /// its [state](Self::state).
     ///
-    /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.
+    /// Checkpoints compare fingerprints when a run is resumed. A boundary without a fingerprint is not
+    /// compared.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }

@@ -19,7 +19,7 @@
 //! | [`RollingFriction`] | an adaptor: a couple slows the relative spin | Iwashita and Oda 1998 |
 //! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
 //! | [`KnownRule`] | any of the above, as one type that files can hold | |
-//! | [`from_fn`] | yours, as a closure | |
+//! | [`from_fn`] | your rule, as a closure | |
 //!
 //! # Custom rules
 //! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
@@ -110,19 +110,19 @@ use crate::forward::forward;
 /// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and the contact.
 /// 3. The surfaces no longer close after the collision. Otherwise, they collide again immediately, until the
 ///    run ends as stalled.
-/// 4. The collision gains no energy, of the relative motion of the surfaces and of the relative spin, unless
-///    the rule is meant to drive. Otherwise, the system heats up unnoticed.
+/// 4. The collision does not increase the energy of the relative motion of the surfaces and of the relative
+///    spin, unless the rule is meant to drive. Otherwise, the system heats up unnoticed.
 /// 5. An exchange of the partners leaves the physics unchanged: the same normal and tangential impulse, and
 ///    the opposite couple, for the contact with kinds and radii in the other order and with the opposite
 ///    relative spin and response. Otherwise, a trajectory depends on the order of the disks in a list.
 /// 6. The mirror image of a contact gives the mirror image of the impulse: the same normal impulse, and the
-///    opposite tangential one and couple, for the opposite slip and relative spin. A rule for disks that are
-///    not symmetric may differ.
+///    opposite tangential impulse and couple, for the opposite slip and relative spin. A rule for disks that
+///    are not symmetric may differ.
 ///
 /// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
 /// [`laws::check`] tests it. Its `promises` say which of promises 4 to 6 a rule does not keep, and which
-/// further ones it keeps: friction and rolling friction within their limits. `docs/validation.md` says which
-/// planted faults it finds.
+/// additional promises it keeps: friction and rolling friction within their limits. `docs/validation.md` says
+/// which planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",
     label = "the trait `CollisionRule` is not implemented for `{Self}`",

@@ -94,7 +94,7 @@ impl Disk {
     /// Returns the same disk turned to this angle, in radians, counterclockwise.
     ///
     /// # Errors
-    /// If the angle is not finite. It may be as large as a long run makes it.
+    /// If the angle is not finite. It may be of any magnitude, since it grows in a long run.
     pub fn with_angle(self, angle: f64) -> Result<Self, ParameterError> {
         Ok(Self { angle: finite("angle", angle)?, ..self })
     }
@@ -138,8 +138,8 @@ impl Disk {
 
     /// Returns the same disk with this id, which identifies the disk as long as it exists.
     ///
-    /// A simulation gives ids from 1 on to the disks that have none, so few programs call this. The id 0
-    /// stands for none.
+    /// A simulation gives ids from 1 on to the disks that have none, so few programs call this method. The id
+    /// 0 means that the disk has no id yet.
     ///
     /// # Errors
     /// If it is above 2^53. Ids stay exact in programs that read tables as floating-point numbers.
@@ -204,7 +204,7 @@ impl Disk {
     /// one.
     ///
     /// Unlike the index, it stays the same when other disks are removed. Checkpoints and files keep it, and a
-    /// run never gives the id of a disk that was removed to another one.
+    /// run never reuses the id of a removed disk.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -287,8 +287,8 @@ pub(crate) fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2,
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
-/// Returns the disks with their ids, or with the ids 1, 2, 3, … if some have no id, because no simulation
-/// made them.
+/// Returns the disks with their ids, or with the ids 1, 2, 3, … if some have no id, because they do not come
+/// from a simulation.
 pub(crate) fn numbered(disks: &[Disk]) -> impl Iterator<Item = (u64, &Disk)> {
     let are_known = disks.iter().all(|disk| disk.id() != 0);
     disks.iter().zip(1_u64..).map(move |(disk, number)| (if are_known { disk.id() } else { number }, disk))

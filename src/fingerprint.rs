@@ -11,9 +11,10 @@ use crate::violation::require;
 /// others. A custom part makes its fingerprint from its name and from all numbers on which its results
 /// depend. A part without a name and numbers, such as a closure, has no fingerprint, and two such parts
 /// cannot be distinguished. The checks of fingerprints, such as
-/// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare two parts
-/// with their results: parts with different results must have different fingerprints, and equal parts equal
-/// ones. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
+/// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare the
+/// fingerprints of two parts with their results: parts with different results must have different
+/// fingerprints, and equal parts equal ones. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so
+/// it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;

@@ -1,4 +1,4 @@
-//! Forwarding: a box of a part, or a reference to one, is such a part, too.
+//! Forwarding: a box of a part, or a reference to a part, implements the part's trait, too.
 
 /// Implements a trait for pointers to its implementers. Each call goes to the part behind the pointer.
 ///

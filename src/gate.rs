@@ -15,10 +15,11 @@ macro_rules! from_file {
         #[cfg(feature = "serde")]
         impl<'de $(, $part: serde::Deserialize<'de>)?> serde::Deserialize<'de> for $name $(<$part>)? {
             fn deserialize<D: serde::Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
-                // The mirror has the name of the type, which stands in errors of formats.
+                // The mirror struct has the name of the type, since the errors of file formats contain this
+                // name.
                 #[derive(serde::Deserialize)]
                 #[serde(deny_unknown_fields)]
-                // The fields have the names that they have in the type, however alike.
+                // The fields keep their names from the type, however similar these are.
                 #[allow(clippy::struct_field_names)]
                 struct $name $(<$part>)? {
                     $($(#[$attribute])* $field: $type,)+

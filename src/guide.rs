@@ -62,9 +62,9 @@ pub mod exercise_erratum {}
 #[doc = include_str!("../docs/guide/glossary.md")]
 pub mod glossary {}
 
-// Pages of the repository. On code hosts, their links lead to files. A definition that comes first wins, so
-// the ones here lead to modules instead, or nowhere, for pictures: their descriptions are shown. (Behind the
-// `#` is what `site/build` shows there.)
+// Pages of the repository. On code hosts, their links lead to files. The first definition of a link wins, so
+// the definitions here lead to modules instead. A definition for a picture leads nowhere, so that its
+// description is shown; `site/build` shows the file after the `#`.
 
 #[doc(alias("equations", "notation", "thermal wall"))]
 #[doc = "[physics-kinetic.md]: crate::guide::physics_kinetic"]

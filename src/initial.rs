@@ -8,7 +8,7 @@
 //! | [`random`], [`placed_at_random`] | equal ones, any | random positions, up to an area fraction of 0.5 |
 //! | [`packed_at_random`] | any | random positions, up to an area fraction of 0.8 |
 //!
-//! A [`Reader`](crate::trajectory::Reader) takes disks from files of other programs.
+//! A [`Reader`](crate::trajectory::Reader) reads disks from files of other programs.
 //!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
 //! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks
@@ -42,7 +42,7 @@ use crate::error::Readable;
 use crate::quantity::accept;
 use crate::simulation::{BuildError, FEWEST};
 
-/// The error of disks that do not fit, or cannot be placed.
+/// The error of the functions that place disks.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacementError {
@@ -61,8 +61,8 @@ pub enum PlacementError {
         /// Interior of the boundary, up to the height to which disks were placed.
         interior: Domain,
     },
-    /// A period of the domain is too short for a simulation of such disks: a disk would meet another disk and
-    /// its image at the same time.
+    /// A period of the domain is too short for a simulation of these disks: a disk would meet another disk
+    /// and its image at the same time.
     #[error(
         "a simulation needs periods of more than four diameters, but the period is {} and the diameter {}",
         Readable(*.period), Readable(*.diameter)

@@ -5,10 +5,11 @@
 //! [`Instructions`] names the level that this processor has. The arithmetic is the same in all copies, since
 //! Rust never fuses a product and a sum into one instruction; the bits do not depend on the level.
 //!
-//! Two parts for which the compiler finds no good vector instructions are written out in them: the tournament
-//! of the scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions
-//! (`simulation/prediction/vector.rs`). Each such function has a plain one of the same name beside it, which
-//! runs where there are no such instructions. Builds for other architectures have the plain functions only.
+//! The compiler finds no good vector instructions for two parts of the engine, so these parts call the
+//! instructions explicitly: the tournament of the scheduler (`scheduler/tournament_tree/earliest.rs`) and
+//! predictions (`simulation/prediction/vector.rs`). Each such function has a plain version of the same name
+//! beside it, which runs on processors without the instructions. Builds for other architectures have only the
+//! plain functions.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod load;

@@ -5,7 +5,7 @@ use std::fmt;
 /// The kind (species, material) of a disk or a wall, as a number of your choice.
 ///
 /// A kind changes nothing by itself: radius and mass belong to the disk. Rules find the kinds of both
-/// partners in the [`Contact`](crate::collision::Contact), so that steel and glass can rub in their own way
+/// partners in the [`Contact`](crate::collision::Contact), so steel and glass can have different friction
 /// ([`RulesByKind`](crate::collision::RulesByKind)). Observers can be restricted to disks of one kind
 /// ([`OfKind`](crate::observable::OfKind)). Disks have [`Kind::DEFAULT`] unless another is given, and walls
 /// have [`Kind::WALL`].

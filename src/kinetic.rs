@@ -1,9 +1,9 @@
 //! Mean energy loss per collision, the quantity that governs the states of the driven system.
 //!
 //! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule. The mean
-//! change of kinetic energy per collision is $`\langle dE\rangle`$, negative when energy is lost. Two ways
-//! lead to it, and each tests the other: [`mean_energy_change`] in closed form for the paper's rule, and
-//! [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a simulation.
+//! change of kinetic energy per collision is $`\langle dE\rangle`$, negative when energy is lost. It is
+//! computed in two ways, which test each other: [`mean_energy_change`] in closed form for the paper's rule,
+//! and [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a simulation.
 //!
 //! | question | answer | source |
 //! |---|---|---|

@@ -5,8 +5,8 @@
 //! friction). They move under gravity in a box whose base vibrates or is a thermal wall. The engine computes
 //! one collision after the other. The system was studied by D. Risso, R. Soto, S. Godoy and P. Cordero,
 //! *Friction and convection in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005),
-//! called “the paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, for
-//! studies beyond it.
+//! called “the paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, so a study
+//! can go beyond the paper.
 //!
 //! ```
 //! use granular_edmd::prelude::*;
@@ -29,7 +29,7 @@
 //!     .build()?;
 //!
 //! // Watch the convection rolls, the height and the energy loss for 100 oscillations.
-//! // No whole number of oscillations between two samples, so that they see all phases of the base.
+//! // The time between two samples is no whole number of oscillations, so that they see all phases.
 //! let times = SampleTimes::every(9.9 * oscillation)?;
 //! let mut series = Series::new((OrderParameters, CenterOfMass), times);
 //! let mut energy = EnergyChange::default();
@@ -110,11 +110,11 @@ pub mod trajectory;
 mod violation;
 pub mod wall;
 
-/// The number of the results of this version.
+/// Version number of the results.
 ///
-/// Versions with the same number give the same bits for the same inputs. A version that changes a trajectory,
-/// a seed or a measured value has a larger number, and a line under “Results” in its changelog. Only versions
-/// with the same number can continue a study.
+/// Versions of the crate with the same number give the same bits for the same inputs. A version that changes
+/// a trajectory, a seed or a measured value has a larger number, and a line under “Results” in its changelog.
+/// Only versions with the same number can continue a study.
 pub const RESULTS: u32 = 1;
 
 pub use disk::Disk;

@@ -6,9 +6,9 @@
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!
-//! An [`Accumulator`] adds up snapshots, from a [`Sampled`] around it in a run or from your program.
-//! [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have their own clocks,
-//! since the sampling interval is part of what they measure.
+//! An [`Accumulator`] adds up snapshots. It gets them from the [`Sampled`] that wraps it in a run, or from
+//! your program. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have their
+//! own clocks, since the sampling interval is part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|
@@ -94,9 +94,10 @@
 //!
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
-//! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. Read back and lent to
-//! the resumed run, they finally have the same bits as in a run without interruption. Text formats may lose
-//! bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
+//! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. If you read them back
+//! and lend them to the resumed run, they end with the same bits as in a run without interruption. Text
+//! formats may lose bits: JSON has no NaN, and its reader must round correctly (serde_json's
+//! `float_roundtrip`).
 
 mod arrivals;
 mod by_kind;

@@ -1,7 +1,7 @@
 //! The names of a run of the paper's system and of the traits for custom parts, in one line:
 //! `use granular_edmd::prelude::*;`.
 //!
-//! All other names come from their modules, which say where a reader finds them.
+//! All other names are imported from their modules.
 
 pub use crate::boundary::{Boundary, Container, Part, Region, Vessel, Wall};
 pub use crate::collision::{

@@ -2,8 +2,8 @@
 //! of two runs.
 //!
 //! Only states of the run are recorded, at intervals. Everything in between follows from these states, bit
-//! for bit, so any collision can be examined as if the run had just reached it. A state may come from a
-//! [checkpoint](Simulation::resume), from a start file or from a plan and a seed.
+//! for bit, so any collision can be examined as if the run had just reached it. The first state may come from
+//! a [checkpoint](Simulation::resume), from a start file or from a plan and a seed.
 //!
 //! ```
 //! use granular_edmd::prelude::*;
@@ -70,7 +70,8 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Self { states: vec![start], present, interval, most, has_failed: false })
     }
 
-    /// Returns the same replay with at most this number of states, or 2; 64 unless given.
+    /// Returns the same replay with another limit on the number of states. The default is 64, and the least
+    /// is 2.
     #[must_use]
     pub fn with_most_states(self, most: usize) -> Self {
         Self { most: most.max(2), ..self }
@@ -118,7 +119,8 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
         if time >= self.present.time() {
-            // The run may have ended with an error at this time, and would end so again.
+            // The run may have ended with an error at this time. Running on from here would end with the same
+            // error.
             return Ok((time == self.present.time()).then(|| self.present.clone()));
         }
         let mut run = state.clone();
@@ -177,7 +179,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(last.split_off(last.len().saturating_sub(count)))
     }
 
-    /// Continues from a state, and returns the collisions.
+    /// Continues the run from a state up to `until`, and returns its collisions.
     fn played(&self, run: Simulation<R, B, S>, until: f64) -> Result<Vec<Replayed>, RunError> {
         let (mut steps, mut all) = (Steps::new(run), Vec::new());
         let end = until.min(self.present.time());
@@ -220,7 +222,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     ///     replay.run_until(80.0)?;
     ///     Ok(replay)
     /// };
-    /// // In the other run, a disk begins aside by 1e-12.
+    /// // In the other run, a disk begins 1e-12 farther to the side.
     /// let mut others = disks.clone();
     /// others[0] = disks[0].with_position(disks[0].position() + DVec2::splat(1e-12))?;
     /// let found = replay(disks)?.differences(&replay(others)?, 1e-6)?.unwrap();

@@ -43,8 +43,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///    disk with the smallest index is named, with its infinite time.
 /// 3. **Time may go back.** [`set`](Self::set) takes any time. It may be later than the disk's last time,
 ///    earlier (because a faster partner has appeared), or even earlier than the last result of `earliest`.
-///    After most events, the disk that was just named gets a later time. In the other cases a scheduler may
-///    be slow, but not wrong.
+///    After most events, the disk that was just named gets a later time. In the other cases, a scheduler may
+///    be slow, but its results must be right.
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
 /// 5. **Without disks**, as before the first `reset`, the result is [`NOTHING_DUE`].
@@ -92,7 +92,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
     message = "`{Self}` is not a scheduler of events",
     label = "this type does not implement `EventScheduler`",
     note = "the default is `scheduler::BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
-    note = "one of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
+    note = "a custom scheduler implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
 )]
 pub trait EventScheduler {
     /// Replaces all disks and times by these times, one for each disk.

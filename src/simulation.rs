@@ -13,7 +13,7 @@
 //!    walls. Inlets come after all events of disks, in the order in which they were added.
 //! 3. A sample at time $`t`$ has seen all events up to and at $`t`$.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
-//!    time per event, over windows of 200 000 events and 20 more for each disk. The caller sets how much
+//!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
 //!    the caller gives again. If they have fingerprints, it notices when others are given.
@@ -301,8 +301,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets other walls from now on.
     ///
-    /// Moving walls are where their motions are at the present time. A wall that jumps in this way causes a
-    /// [`Warning`]. A [`Piston`](crate::wall::Piston) begins now, at its start.
+    /// Moving walls take the positions of their motions at the present time. A wall that thereby jumps causes
+    /// a [`Warning`]. A [`Piston`](crate::wall::Piston) begins now, at its start.
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation

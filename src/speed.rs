@@ -5,8 +5,8 @@
 //! one: [`Simulation::with_rule`](crate::Simulation::with_rule),
 //! [`with_boundary`](crate::Simulation::with_boundary) and
 //! [`with_scheduler`](crate::Simulation::with_scheduler) insert it, and a [`Comparison`] distinguishes a
-//! difference from noise. In criterion, a [`stretch`] is one run alone, without a partner that alternates
-//! with it.
+//! difference from noise. For benchmarks with criterion, [`stretch`] measures one run alone instead of two
+//! runs alternately.
 //!
 //! Times are those on the processor ([`Stopwatch`]). Measure builds with `--release` only.
 //!
@@ -28,7 +28,7 @@
 //!
 //! let built_in = speed::dense()?;
 //! let bare = || speed::stretch(&built_in, 10_000, &mut ());
-//! // The state has a contact duration, so the own rule gets the same one: only the rules differ.
+//! // The state has a contact duration, so the custom rule gets the same: only the rules differ.
 //! let own = Own(Friction::from_inelasticity(0.05, 0.1)?);
 //! let rule = ContactDuration::new(own, built_in.rule().duration())?;
 //! let own = built_in.clone().with_rule(rule);

@@ -11,9 +11,9 @@
 //! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!
 //! A [`Reader`] reads all of these but VTK, and files of other programs: it recognizes the format by the
-//! contents, and columns by their names. A [`State`] has the disks, and is also written as a table
-//! ([`State::write_csv`]), a data file of LAMMPS ([`State::write_lammps_data`]) or a file of VTK
-//! ([`State::write_vtk`]).
+//! contents, and columns by their names. A [`State`] holds the disks of a file or of a snapshot. It can be
+//! written as a table ([`State::write_csv`]), a data file of LAMMPS ([`State::write_lammps_data`]) or a file
+//! of VTK ([`State::write_vtk`]).
 //!
 //! With the feature `gzip`, a trajectory is compressed if the name of its file ends in `.gz`, and compressed
 //! files of any name are read.
@@ -48,7 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # A format of your own
+//! # Custom formats
 //! In a plain test, [`laws::check`] checks the contract of a format.
 //!
 //! ```

@@ -4,8 +4,8 @@ use thiserror::Error;
 
 /// The error of a part that breaks a law, one of the sentences in the contract of its trait.
 ///
-/// All checks of contracts return it, from `collision::laws` to `trajectory::laws`. The sentence that was
-/// found holds the numbers with which the part can be tried again.
+/// All checks of contracts return it, from `collision::laws` to `trajectory::laws`. The sentence about the
+/// fault holds the numbers that reproduce it.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, from_fn, laws};
@@ -24,8 +24,8 @@ pub struct Violation {
 }
 
 impl Violation {
-    /// Creates the violation of a law by a part of a kind, such as "boundary", with a sentence that says what
-    /// was found.
+    /// Creates a violation from the kind of the part, such as "boundary", the name of the law, and a sentence
+    /// that says what was found.
     pub fn new(part: &'static str, law: &'static str, found: impl Into<String>) -> Self {
         Self { part, law, found: found.into() }
     }

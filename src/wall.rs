@@ -38,9 +38,9 @@
 //!
 //! A [`Piston`] is not a planned motion: the disks push it, and it moves by its mass, force and spring.
 //!
-//! [`first_touch`] finds the contact for all of them and for your own motions. Apart from position, velocity
-//! and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an example,
-//! and [`laws`] for a check of a custom motion.
+//! [`first_touch`] finds the contact for all of these motions and for custom ones. Apart from position,
+//! velocity and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an
+//! example, and [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
 mod delayed;
@@ -177,17 +177,18 @@ impl AccelerationBounds {
 ///    that phase is the state after the jump.
 /// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
 /// 6. [`jumps`](Self::jumps) is true if the displacement jumps at the end of any piece.
-/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and equal motions have equal ones.
+/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and equal motions have equal
+///    fingerprints.
 ///
 /// [`laws::check`] tests the first six between two phases, and [`laws::check_fingerprints`] the last. A
 /// container calls the methods in any order and from any thread.
 ///
 /// # Motions that break the contract
-/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion with a number that is
-/// not finite at one of the tried phases, from 0 on. [`first_touch`] always ends, even if the motion breaks
-/// the contract; its documentation says how. Bounds that are too small, a reach that is too small or a jump
-/// toward the disks let disks pass into the wall, which the engine notices at the next collision with it.
-/// Bounds that are too large only cost time.
+/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
+/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even if the
+/// motion breaks the contract; its documentation says how. Bounds that are too small, a reach that is too
+/// small or a jump toward the disks let disks pass into the wall, which the engine notices at the next
+/// collision with it. Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{

@@ -3,14 +3,15 @@
 //! A horizontal line crosses the curves at which the freedom of a center may change: the surfaces of bricks,
 //! moved outward by the radius. Between two crossings, a center is free everywhere or nowhere. Between the
 //! heights at which curves end, turn or cross, the free length of a line is a smooth function of its height,
-//! but for square roots at these heights, which a substitution removes. Gaussian quadrature is then exact to
-//! rounding on each piece; where it is not, pieces are halved.
+//! except for square roots at these heights, which a substitution removes. Gaussian quadrature is then exact
+//! to rounding on most pieces; the other pieces are halved.
 
 use glam::DVec2;
 
 use super::Region;
 
-/// Error of the area of a piece, relative to the area of the region, at which it is not halved further.
+/// Error of the area of a piece, relative to the area of the region, below which the piece is not halved
+/// further.
 const TOLERANCE: f64 = 1e-12;
 
 /// Largest number of times that a piece is halved. A jump at an unknown height is then lost in rounding.
@@ -19,7 +20,7 @@ const MOST_HALVINGS: u32 = 44;
 /// Number of points between two crossings at which a line is examined if some curves may be unknown.
 pub(super) const LOOKS: u32 = 16;
 
-/// Distance of the first and the last of these points from the ends of the interval, relative to its length.
+/// Distance of the first and the last examined point from the ends of their interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
 
 /// Nodes and weights of Gauss and Legendre's rule of ten points on [-1, 1]: the positive half.
@@ -214,7 +215,8 @@ impl Field<'_> {
         ends.windows(2).map(|ends| self.free_between(ends[0], ends[1], height)).sum()
     }
 
-    /// Returns the free length between two crossings. It bisects for changes of freedom at unknown curves.
+    /// Returns the free length between two crossings. Changes of freedom at unknown curves are found by
+    /// bisection.
     fn free_between(&self, low: f64, high: f64, height: f64) -> f64 {
         if low == high {
             return 0.0;

@@ -1,4 +1,4 @@
-//! Bricks: the shapes of which vessels are built, and the first touch of one by a disk.
+//! Bricks: the shapes of which vessels are built, and the first touch of a disk with a brick.
 
 mod arc;
 mod constructors;
@@ -98,7 +98,7 @@ struct Sight {
     normal: DVec2,
     side: Side,
     /// Distance from the brick, extended straight beyond its ends. If two bricks meet at the nearest point,
-    /// the one with the larger such distance decides the side.
+    /// the brick with the larger `weight` decides the side.
     weight: f64,
 }
 
@@ -135,8 +135,8 @@ impl Brick {
         matches!(self.shape, Shape::Arc(arc) if arc.sector.is_none() && arc.center == place)
     }
 
-    /// Returns whether a direction leads to the only free side of the brick, or along the brick. If the brick
-    /// jumps the other way, it hits no disk.
+    /// Returns whether a direction leads to the only free side of the brick, or along the brick. A jump of
+    /// the brick in the opposite direction then hits no disk.
     pub(super) fn faces(&self, direction: DVec2) -> bool {
         match (self.shape, self.free) {
             (Shape::Segment(segment), Free::Left) => segment.direction.perp_dot(direction) >= 0.0,
@@ -231,7 +231,8 @@ impl Brick {
         let brick = match self.shape {
             Shape::Segment(segment) => {
                 let direction = segment.direction;
-                // The text is that of earlier versions, in which there were other segments.
+                // Earlier versions had other segments, too. The text keeps their fingerprint of a finite
+                // segment.
                 Fingerprint::of("Segment").number(direction.x).number(direction.y).text("finite")
             }
             Shape::Arc(arc) => arc

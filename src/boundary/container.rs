@@ -140,15 +140,15 @@ impl Container {
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
     ///
-    /// Initial states are placed where the wall is at the start. An impact of a disk changes the times at
-    /// which other disks meet the wall. Each impact therefore costs a pass over all disks, and new
+    /// Initial states keep clear of the wall at its position at the start. An impact of a disk changes the
+    /// times at which other disks meet the wall. Each impact therefore costs a pass over all disks, and new
     /// predictions for the flights that may meet the wall.
     ///
-    /// Only the stops of a piston keep it from the opposite wall: the walls do not notice each other.
+    /// Only the stops of a piston keep it away from the opposite wall: walls do not collide with each other.
     ///
     /// # Errors
     /// If the container has no such wall, or the motion of the piston has numbers that are not finite. If its
-    /// highest stop is beyond the nearest place of the opposite wall.
+    /// highest stop is beyond the nearest position of the opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));
         let motion = motion.map_err(|violation| WallError::Motion { wall, violation })?;

@@ -10,7 +10,7 @@ use crate::error::Readable;
 /// The rectangle that holds the centers of all disks.
 ///
 /// Its left and right sides may be periodic, and so may its lower and upper ends: a disk that leaves at one
-/// enters at the other.
+/// of them enters at the opposite one.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -89,8 +89,8 @@ impl Domain {
 
     /// Returns the displacements of another rectangle's periodic images near this rectangle.
     ///
-    /// An engine's domain is longer than four diameters of a disk where it is periodic, so a quarter of a
-    /// period is more than the radius by which a disk inside reaches beyond the domain.
+    /// The engine requires periods of more than four diameters of a disk, so a quarter of a period is more
+    /// than the radius by which a disk inside reaches beyond the domain.
     pub(crate) fn images_of(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = DVec2> + use<> {
         let periods = self.periods();
         let columns = numbers(periods.x, self.left - high.x, self.right - low.x);

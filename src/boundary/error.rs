@@ -64,7 +64,7 @@ pub enum VesselError {
         /// The name.
         name: String,
     },
-    /// A part extends over more periods of the container than a vessel can repeat it.
+    /// A part extends over more periods of the container than a vessel can handle.
     #[error(
         "the part \"{name}\" extends over {} periods of the container, and {most} are possible: let it end earlier",
         Rounded(*.periods)
@@ -79,8 +79,8 @@ pub enum VesselError {
     },
     /// The motion of a part is so small that it is lost in the rounding of the part's coordinates.
     #[error(
-        "the part \"{name}\" moves to and fro by {}, which is lost in the rounding of its coordinates: that must be \
-         {} at least, or nothing",
+        "the part \"{name}\" moves back and forth by {}, which is lost in the rounding of its coordinates: it must be \
+         at least {}, or 0",
         Rounded(*.stroke), Rounded(*.least)
     )]
     Stroke {

@@ -51,17 +51,19 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again immediately if it
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
-/// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along it is the
-///   rate at which the wall moves there, and the radius of the surface is its radius of curvature.
+/// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along the normal is
+///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
+///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
 ///   to infinity at the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface.
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.
 ///
-/// If the boundary knows its free `area`, the gaps to its walls, as overlaps of larger disks show them, must
-/// agree with it to 2e-5 of the region, for centers of disks and for matter, at radius 0. Along thin walls,
-/// which leave no gap behind them, the area of matter may be too large by some 1e-3 of the region.
+/// If the boundary knows its free `area`, the check computes the same area from the gaps to the walls, which
+/// overlaps of larger disks show. Both areas must agree to 2e-5 of the region, for centers of disks and for
+/// matter (radius 0). Along thin walls, which leave no gap behind them, the area of matter may be too large
+/// by about 1e-3 of the region.
 ///
 /// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check changes the boundary's time origin.
@@ -106,7 +108,7 @@ pub fn check<B: Boundary + ?Sized>(
     trial.check_names()
 }
 
-/// Checks that the domain is a rectangle, open above at most, and that it contains the interior.
+/// Checks that the domain is a rectangle, which may be open only above, and that it contains the interior.
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
     let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;

@@ -183,7 +183,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
             self.obstacles.iter().any(touches)
                 && self.boundary.overlap(&Probe::new(place, radius, time)).is_none()
         };
-        // Walls of the boundary among the obstacles are curves that only their overlaps show.
+        // The curves of the inner boundary's walls are unknown: only overlaps show them.
         let is_near_wall = |circle: &Curve| self.boundary.may_touch(&circle.bounds(), radius);
         let looks = if curves.iter().any(is_near_wall) { LOOKS } else { 1 };
         let region = region.within(&Region::new(low, high));
@@ -191,7 +191,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {
-        // An obstacle never moves, and the boundary knows no wall of its index.
+        // An obstacle never moves, and the inner boundary has no wall of this index.
         if impact.wall < self.boundary.wall_count() { self.boundary.react(impact) } else { Reaction::None }
     }
 

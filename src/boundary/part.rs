@@ -79,7 +79,7 @@ impl Part {
     /// Observers see the touch as a last collision with the wall ([`Response::Absorbing`]).
     /// [`Arrivals`](crate::observable::Arrivals) counts them, and an [`Inlet`](crate::simulation::Inlet) puts
     /// disks in. A removal takes the same time however many disks there are: the last disk gets the index of
-    /// the one that leaves.
+    /// the removed disk.
     ///
     /// [`Response::Absorbing`]: super::Response::Absorbing
     #[must_use]
@@ -122,9 +122,9 @@ impl Part {
     /// a membrane.
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
-    /// same for all kinds. Its vessel then knows no [`area`](super::Boundary::area), and stresses, densities
-    /// and profiles are refused unless they have a region to which no wall comes. A line of two-sided bricks,
-    /// such as a [`polyline`](Self::polyline), takes no area.
+    /// same for all kinds. Its vessel then does not know the [`area`](super::Boundary::area), and stresses,
+    /// densities and profiles are refused unless they have a region that no wall reaches. A line of two-sided
+    /// bricks, such as a [`polyline`](Self::polyline), takes no area.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -248,8 +248,8 @@ impl Part {
         nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
     }
 
-    /// Returns the surface of the part with this normal and radius, where the part moves at this velocity. A
-    /// belt turns where it is curved, like a drum.
+    /// Returns the surface of the part with this normal and radius, where the part moves at this velocity.
+    /// Where a belt is curved, it turns like a drum.
     pub(super) fn surface(&self, normal: DVec2, radius: f64, velocity: DVec2) -> Surface<'_> {
         let along = -normal.perp() * self.surface_speed;
         Surface::new(normal, velocity + along)
@@ -294,7 +294,7 @@ impl Sighted {
     /// equally near and seen less edge-on.
     ///
     /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
-    /// that is seen more broadside decides: the extension beyond its ends is farther from the position.
+    /// that is seen more broadside decides: the brick whose straight extension is farther from the position.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

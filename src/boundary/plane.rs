@@ -96,7 +96,7 @@ impl Plane {
     }
 
     /// Sets the sliding motion of the wall. Returns an error if the wall has one already, which would be
-    /// lost: a belt in a box that is shaken sideways.
+    /// lost, such as a belt in a box that is shaken sideways.
     pub(super) fn set_slide(&mut self, slide: Slide) -> Result<(), WallError> {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }

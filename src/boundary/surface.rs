@@ -38,7 +38,8 @@ pub struct Surface<'a> {
     /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
     /// radius R with the moment of inertia I.
     pub tangential_mass: f64,
-    /// Angular velocity of a guided wall, counterclockwise.
+    /// Angular velocity of the surface, counterclockwise. For a curved wall with a tangential mass, it is
+    /// ignored: that wall's angular velocity follows from its velocity.
     pub angular_velocity: f64,
 }
 
@@ -100,8 +101,8 @@ impl<'a> Surface<'a> {
 
     /// Returns the same surface with this mass against forces along the surface.
     ///
-    /// A curved wall with such a mass m turns about the center of its surface: its moment of inertia is
-    /// $`mR^2`$, and its angular velocity follows from the velocity of the surface.
+    /// A curved wall with the tangential mass m turns about the center of its surface: its moment of inertia
+    /// is $`mR^2`$, and its angular velocity follows from the velocity of the surface.
     #[must_use]
     #[inline]
     pub const fn with_tangential_mass(self, tangential_mass: f64) -> Self {
@@ -110,8 +111,8 @@ impl<'a> Surface<'a> {
 
     /// Returns the same surface of a wall that turns at this angular velocity, counterclockwise.
     ///
-    /// Rolling friction acts on the spin of the disk relative to it. The velocity of the surface does not
-    /// follow from it.
+    /// Rolling friction acts on the spin of the disk relative to this angular velocity. The velocity of the
+    /// surface is given separately.
     ///
     /// ```
     /// use granular_edmd::boundary::Surface;

@@ -20,8 +20,9 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest numbers of periods over which a part may extend: in one direction, and the product of both. Each
-/// brick has an image for each period, and each image may overlap a large part of the cells.
+/// Largest number of periods over which a part may extend in one direction, and largest product of the
+/// numbers in both directions. Each brick has an image for each period, and each image may overlap a large
+/// part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Least stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are
@@ -36,8 +37,8 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 /// added, replaced and removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
-/// Initial states keep clear of all parts, as these are at time 0. To pack disks densely among parts that
-/// move, pack them with the same parts at rest.
+/// Initial states keep clear of all parts at their positions at time 0. To pack disks densely among parts
+/// that move, pack them with the same parts at rest.
 ///
 /// The walls of the container have the first indices. After them, each brick and each corner of each part is
 /// a wall, in the order in which the parts were added. [`walls`](Self::walls) returns the indices of one
@@ -236,7 +237,7 @@ impl Vessel {
         place.ok_or_else(|| VesselError::Unknown { name: name.to_owned(), parts: parts() })
     }
 
-    /// Checks that a part can be in this vessel, in place of one with `less` walls.
+    /// Checks that a part can be in this vessel, in place of a part with `less` walls.
     fn check(&self, placed: &Placed, less: usize) -> Result<(), VesselError> {
         let count = self.wall_count() - less + placed.part.all_bricks().count();
         accept(count <= MOST_WALLS, "number of walls of the vessel", "at most 2^16", count as f64)?;

@@ -57,7 +57,7 @@ pub enum WallError {
         wall: Wall,
     },
     /// The settings of the wall would be lost, because the wall would be removed or would move differently.
-    #[error("the wall \"{wall}\" has settings that would be lost: leave out what was set before, or this")]
+    #[error("the wall \"{wall}\" has settings that would be lost: leave out the earlier setting or this one")]
     Lost {
         /// The wall with the settings.
         wall: Wall,

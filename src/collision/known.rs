@@ -48,9 +48,9 @@ known! {
 
 /// Any rule of this crate, as a value that files can hold.
 ///
-/// It is one type for rules of different types: for a table of them ([`RulesByKind`]), or for a rule that a
-/// file names. With the feature `serde`, it is written as the name of the rule in `snake_case` with its
-/// numbers. [`CollisionRule::known`] makes it from a rule.
+/// It represents rules of different types as one type: for a table of rules ([`RulesByKind`]), or for a rule
+/// that a file names. With the feature `serde`, it is written as the name of the rule in `snake_case` with
+/// its numbers. [`CollisionRule::known`] makes it from a rule.
 ///
 /// ```
 /// use granular_edmd::Kind;

@@ -20,7 +20,8 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// The couple acts after the tangential impulse, on the spins that friction has left. Friction is thus the
 /// same with rolling friction and without, and the couple never gains energy, whatever the inner rule does:
-/// it takes $`C(|\omega'| - C/2I)`$. In the other order, it could push surfaces that have just stuck.
+/// the couple removes the energy $`C(|\omega'| - C/2I)`$. In the other order, it could push surfaces that
+/// have just stuck.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Elastic, RollingFriction};
@@ -30,7 +31,7 @@ use crate::{Fingerprint, ParameterError};
 /// let turning = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0).with_spin(4.0, 0.0625, 0.0);
 /// assert_eq!(rule.impulse(&turning).couple(), 0.125);
 /// assert_eq!(rule.impulse(&turning).relative_spin_after(&turning), 2.0);
-/// // Less would turn them back, so a slow spin only stops.
+/// // The same couple would reverse a slow spin, so a smaller couple stops it.
 /// let slow = turning.with_spin(1.0, 0.0625, 0.0);
 /// assert_eq!(rule.impulse(&slow).relative_spin_after(&slow), 0.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
@@ -68,7 +69,7 @@ impl<R: CollisionRule> CollisionRule for RollingFriction<R> {
         let impulse = self.rule.impulse(contact);
         let stopping = contact.spin_inertia() * impulse.relative_spin_after(contact);
         let limit = self.coefficient * impulse.normal() * contact.effective_radius();
-        // A rule that pulls the surfaces together has no limit to friction, so it gets none.
+        // For a rule that pulls the surfaces together, the limit is negative; such a rule gets no couple.
         let couple = if stopping.abs() <= limit { stopping } else { limit.max(0.0).copysign(stopping) };
         impulse.with_couple(impulse.couple() + couple)
     }

@@ -104,7 +104,7 @@ impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
     }
 }
 
-// Files hold the pairs in any order.
+// Files may list the pairs in any order.
 crate::gate::from_file! {
     RulesByKind<R> { otherwise: R, #[serde(default = "Vec::new")] pairs: Vec<PairRule<R>> } => {
         let mut table = Self::new(otherwise);

@@ -16,8 +16,8 @@ pub enum TangentialResponse {
     /// The tangential impulse of the rule: only the normal direction becomes elastic. Friction then keeps
     /// cooling matter at rest, so runs still stall.
     Unchanged,
-    /// The slip reverses without loss, as between perfectly rough surfaces. Their slip is then zero on
-    /// average, so surfaces at rest hold each other, however weak the friction of the rule is.
+    /// The slip reverses without loss, as between perfectly rough surfaces. The slip is then zero on average,
+    /// so surfaces at rest hold each other, however weak the friction of the rule is.
     Reversing,
 }
 

@@ -36,7 +36,7 @@ impl Seal {
         self.version
     }
 
-    /// Returns the first bytes of a file of the format: its first bytes and its version.
+    /// Returns the bytes with which a file of the format begins: the magic bytes and the version.
     fn start(self) -> [u8; 12] {
         let mut start = [0; 12];
         start[..8].copy_from_slice(&self.magic);

@@ -14,8 +14,8 @@ const MOST_EMPTY_ROWS: usize = 1000;
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
 ///
-/// Over a floor that moves only vertically, the columns would hop in line forever, of which a run
-/// [warns](crate::simulation::Warning::OneDirection). Give the disks small velocities
+/// Over a floor that moves only vertically, the columns would hop in line forever, and the run would give a
+/// [warning](crate::simulation::Warning::OneDirection). Give the disks small velocities
 /// ([`with_maxwellian_velocities`](super::with_maxwellian_velocities)).
 ///
 /// Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for that. Sites
@@ -57,7 +57,8 @@ pub fn lattice<B: Boundary + ?Sized>(
 ///
 /// Columns and rows are about equally far apart. If the lattice has more sites than disks, the empty sites
 /// lie evenly among the others. Sites that overlap a wall ([`Boundary::overlap`]) are left out. Without
-/// gravity, such a gas is homogeneous from the start, other than on a [`lattice`] that fills the lower part.
+/// gravity, such a gas is homogeneous from the start, unlike a gas on a [`lattice`], which fills only the
+/// lower part.
 ///
 /// # Errors
 /// If the radius is not finite and positive, there are more than 2²⁸ disks, the interior has no top, or there
@@ -86,7 +87,8 @@ pub fn even_lattice<B: Boundary + ?Sized>(
     }
     let room = room(&interior, radius);
     let closest = 2.0 * radius * CLOSE;
-    // The lattice without walls around it is the widest; each try is a little closer.
+    // The first spacing is too wide by 10 %, even if no site overlaps a wall; each attempt is a little
+    // closer.
     let mut spacing = 1.1 * (interior.width() * interior.height() / count as f64).sqrt();
     loop {
         let sites = free_sites(boundary, &room, spacing.max(closest), radius);

@@ -29,9 +29,9 @@ const APART: f64 = 1e-9;
 /// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
 /// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
 ///
-/// The disks are packed in the interior of the boundary, in which walls must not move. Give a container a
-/// piston that falls fast after the disks are packed. To pack disks around a disk that is already
-/// placed, put that disk into the boundary as [`Obstacles`](crate::boundary::Obstacles).
+/// The disks are packed in the interior of the boundary, in which walls must not move. If a container has a
+/// piston that falls fast, add the piston after the disks are packed. To pack disks around a disk that is
+/// already placed, put that disk into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 ///
 /// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
 /// all disks grow at the same rate all the time.
@@ -76,7 +76,8 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     let wider = |disk: &Disk| Disk::new(disk.position(), disk.radius() * (1.0 + APART));
     let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
     let packing = grown(&room, &wider, area, seed).map_err(|error| match error {
-        // A heavy piston hardly moves before the disks are packed, so only a failure is its fault.
+        // A heavy piston hardly moves while disks are packed, so a moving piston is reported only if the
+        // packing fails.
         PlacementError::Run { .. } => room.check_walls().map_or_else(PlacementError::from, |()| error),
         error => with_full_radius(error, &disks),
     })?;

@@ -8,8 +8,8 @@ use crate::quantity::{accept, positive};
 use crate::random::uniform;
 use crate::{Disk, ParameterError};
 
-/// Largest distance from the median of log-normal radii, in standard deviations. No normal number made from a
-/// double is as large.
+/// Largest distance from the median of log-normal radii, in standard deviations. The normal numbers that are
+/// made from doubles never reach this distance.
 const FARTHEST: f64 = 9.0;
 
 /// A distribution of radii within bounds.

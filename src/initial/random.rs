@@ -21,8 +21,8 @@ const TRIALS: usize = 10_000;
 /// neither another disk nor a wall there ([`Boundary::overlap`] at time 0). In a round drum, all disks lie
 /// inside the circle.
 ///
-/// Disks are placed one by one where there is room. This cannot reach dense states (with an area fraction
-/// above 0.5, say). For these, start from a [`lattice`](super::lattice()) and let it melt, or take
+/// Disks are placed one by one where there is room. This method cannot reach dense states, such as area
+/// fractions above 0.5. For these, start from a [`lattice`](super::lattice()) and let it melt, or take
 /// [`packed_at_random`](super::packed_at_random).
 ///
 /// # Errors
@@ -57,7 +57,7 @@ pub fn random<B: Boundary + ?Sized>(
 /// In all other respects, the function works like [`random`].
 ///
 /// # Errors
-/// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one
+/// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or a disk
 /// finds no position in ten thousand trials.
 ///
 /// ```

@@ -116,7 +116,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
             (self.widest, self.fastest) =
                 (2.0 * largest(Disk::radius), largest(|disk| disk.velocity().length()));
             for _ in 0..self.disks.len() {
-                // Pairs are tried as often as the fastest and widest ones collide.
+                // Pairs are tried at the rate at which they would collide if all of them were as fast and
+                // wide as the fastest and widest.
                 let pairs = self.density * (self.disks.len() - 1) as f64 * PI;
                 self.time -= libm::log(uniform(&mut self.generator)) / (pairs * self.largest_rate());
                 if self.time >= end {

@@ -3,14 +3,14 @@
 use crate::collision::Contact;
 use crate::disk::{SCALE, scale};
 use crate::quantity::accept;
-use crate::{Disk, ParameterError};
+use crate::{Disk, Kind, ParameterError};
 
 /// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
 ///
-/// Velocities have the translational temperature, $`T = m\langle v_x^2\rangle`$, and spins the rotational
-/// one, $`T_r = I\langle\omega^2\rangle`$ (Boltzmann's constant is 1: temperatures are energies). Over its
-/// collisions, the closing speed has the flux-weighted density $`(v_n/S)\,e^{-v_n^2/2S}`$, and the slip speed
-/// is an independent normal variable of variance $`V`$, with
+/// Velocities have the translational temperature, $`T = m\langle v_x^2\rangle`$, and spins have the
+/// rotational temperature, $`T_r = I\langle\omega^2\rangle`$ (Boltzmann's constant is 1: temperatures are
+/// energies). Over the collisions of the gas, the closing speed has the flux-weighted density
+/// $`(v_n/S)\,e^{-v_n^2/2S}`$, and the slip speed is an independent normal variable of variance $`V`$, with
 ///
 /// ```math
 /// S = \frac{T}{\mu},\qquad V = \frac{T}{\mu} + T_r\left(\frac1{\mu_t}-\frac1\mu\right),
@@ -42,10 +42,13 @@ pub struct Maxwellian {
     rotational_temperature: f64,
     masses: [f64; 2],
     inertia_factors: [f64; 2],
+    radii: [f64; 2],
+    kinds: [Kind; 2],
 }
 
 impl Maxwellian {
-    /// Creates a gas of identical homogeneous disks of mass 1, with velocities and spins at this temperature.
+    /// Creates a gas of identical homogeneous disks of mass 1, radius 1/2 and the default kind, with velocities
+    /// and spins at this temperature.
     ///
     /// # Errors
     /// If the temperature is not in `[1e-30, 1e30]`.
@@ -55,7 +58,9 @@ impl Maxwellian {
             translational_temperature: temperature,
             rotational_temperature: temperature,
             masses: [1.0; 2],
-            inertia_factors: [crate::Disk::HOMOGENEOUS_INERTIA_FACTOR; 2],
+            inertia_factors: [Disk::HOMOGENEOUS_INERTIA_FACTOR; 2],
+            radii: [0.5; 2],
+            kinds: [Kind::DEFAULT; 2],
         })
     }
 
@@ -73,11 +78,14 @@ impl Maxwellian {
 
     /// Returns the same gas, with collisions between these two kinds of disks.
     ///
-    /// Only their masses and inertia factors matter; position and motion are ignored.
+    /// Their masses, inertia factors, radii and kinds matter; positions and motions are ignored.
     pub fn with_partners(self, first: &Disk, second: &Disk) -> Self {
+        let partners = [first, second];
         Self {
-            masses: [first.mass(), second.mass()],
-            inertia_factors: [first.inertia_factor(), second.inertia_factor()],
+            masses: partners.map(Disk::mass),
+            inertia_factors: partners.map(Disk::inertia_factor),
+            radii: partners.map(Disk::radius),
+            kinds: partners.map(Disk::kind),
             ..self
         }
     }
@@ -128,26 +136,41 @@ impl Maxwellian {
         1.0 + (self.mass_ratio() - 1.0) * (self.rotational_temperature / self.translational_temperature)
     }
 
-    /// Returns the contact with these speeds, given in units of √S and √V.
+    /// Returns the contact with these speeds, given in units of √S and √V. The third number is the part of the
+    /// relative spin that is independent of the slip, in units of its standard deviation.
+    ///
+    /// Slip and relative spin are the sum and the difference of the same two spins, so they are correlated:
+    /// ⟨v_t ω⟩ = k T_r, and ⟨ω²⟩ = T_r/I.
     #[inline]
-    pub(super) fn contact(&self, closing: f64, slip: f64) -> Contact {
-        Contact::new(
-            closing * self.closing_variance().sqrt(),
-            slip * self.slip_variance().sqrt(),
-            self.normal_mass(),
-            self.tangential_mass(),
-        )
+    pub(super) fn contact(&self, closing: f64, slip: f64, spin: f64) -> Contact {
+        let (variance, temperature) = (self.slip_variance(), self.rotational_temperature);
+        let [first, second] =
+            [0, 1].map(|disk| 1.0 / (self.inertia_factors[disk] * self.masses[disk] * self.radii[disk]));
+        let (response, mobility) = (first - second, first / self.radii[0] + second / self.radii[1]);
+        let slip = slip * variance.sqrt();
+        // With this bound, the independent part is never negative by rounding.
+        let independent = (mobility - response * response * temperature / variance).max(0.0);
+        let spin = response * temperature / variance * slip + (temperature * independent).sqrt() * spin;
+        let closing = closing * self.closing_variance().sqrt();
+        Contact::new(closing, slip, self.normal_mass(), self.tangential_mass())
+            .with_kinds(self.kinds)
+            .with_radii(self.radii)
+            .with_spin(spin, 1.0 / mobility, response)
     }
 }
 
 crate::gate::from_file! {
     Maxwellian {
-        translational_temperature: f64, rotational_temperature: f64, masses: [f64; 2], inertia_factors: [f64; 2]
+        translational_temperature: f64,
+        rotational_temperature: f64,
+        masses: [f64; 2],
+        inertia_factors: [f64; 2],
+        radii: [f64; 2],
+        kinds: [Kind; 2]
      } => {
         let partner = |index: usize| {
-            Disk::new(glam::DVec2::ZERO, 1.0)?
-                .with_mass(masses[index])?
-                .with_inertia_factor(inertia_factors[index])
+            let disk = Disk::new(glam::DVec2::ZERO, radii[index])?.with_kind(kinds[index]);
+            disk.with_mass(masses[index])?.with_inertia_factor(inertia_factors[index])
         };
         Ok(Self::new(translational_temperature)?
             .with_rotational_temperature(rotational_temperature)?

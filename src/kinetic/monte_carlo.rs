@@ -83,7 +83,8 @@ impl MonteCarlo {
         Ok(Self { standard_error: Some(positive("standard error", standard_error)?), ..self })
     }
 
-    /// Samples the mean energy change per collision ⟨dE⟩ of `rule` in `gas`.
+    /// Samples the mean energy change per collision ⟨dE⟩ of `rule` in `gas`, as the rule sees it: with the kinds,
+    /// the radii and the relative spin of the partners.
     ///
     /// The partners have never collided before: a rule that asks for the time since their last collision gets
     /// infinity.
@@ -115,14 +116,14 @@ impl MonteCarlo {
     }
 }
 
-/// Does `work` on every item. The results are in the order of the items.
+/// Applies `work` to every item. The results are in the order of the items.
 #[cfg(feature = "rayon")]
 fn map<T: Send, U: Send>(items: Vec<T>, work: impl Fn(T) -> U + Send + Sync) -> Vec<U> {
     use rayon::prelude::*;
     items.into_par_iter().map(work).collect()
 }
 
-/// Does `work` on every item. The results are in the order of the items.
+/// Applies `work` to every item. The results are in the order of the items.
 #[cfg(not(feature = "rayon"))]
 fn map<T, U>(items: Vec<T>, work: impl Fn(T) -> U) -> Vec<U> {
     items.into_iter().map(work).collect()
@@ -142,11 +143,15 @@ impl Sums {
         R: CollisionRule + ?Sized,
     {
         let mut sums = Self { chunks: 1, ..Self::default() };
+        // Few rules use the relative spin. Spins have their own stream, so that the speeds of a collision do
+        // not depend on them.
+        let mut spins = generator.clone();
+        spins.long_jump();
         for stratum in 0..STRATA {
             let mut energy = RunningMean::default();
             for _ in 0..SAMPLES {
                 let sample = Sample::draw(stratum, &mut generator);
-                let contact = gas.contact(sample.closing, sample.slip);
+                let contact = gas.contact(sample.closing, sample.slip, normal(&mut spins));
                 let impulse = rule.impulse(&contact);
                 energy.push(sample.weight * impulse.energy_change(&contact));
             }

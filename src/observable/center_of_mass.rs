@@ -15,8 +15,8 @@ use crate::boundary::direction;
 /// In a periodic direction, the mean of positions depends on where the seam is. There, the value is the
 /// circular mean (Bai and Breen 2008): the direction of $`\sum m_i e^{2\pi i x_i/L}`$, as a position in the
 /// domain. It moves along with the disks, also across the seam, and is the center of mass if they are
-/// symmetric about it. It is NaN if the sum vanishes, as for disks that are spread evenly, and noise if it
-/// nearly does. For the path of a center, use displacements of
+/// symmetric about it. It is NaN if the sum vanishes, as for disks that are spread evenly, and mostly noise
+/// if the sum nearly vanishes. For the path of a center, use displacements of
 /// [unwrapped](crate::boundary::Domain::unwrapped) positions.
 ///
 /// ```

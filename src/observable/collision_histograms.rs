@@ -19,7 +19,7 @@ use crate::statistics::Histogram;
 /// ```
 ///
 /// Collisions between disks count, unless [`with_wall`](Self::with_wall) chooses a wall. The errors come from
-/// blocks of collisions in their order; none are taken as independent.
+/// blocks of consecutive collisions, and do not assume that collisions are independent.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};

@@ -72,11 +72,12 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    or fails the run, no further event happens.
 /// 5. `on_insert` and `on_remove` are called for each disk that an inlet lets in, or a sink takes out, at its
 ///    time, so an observer knows all disks at all times.
-/// 6. Whatever an observer does, the trajectory has the same bits as without it, as far as it goes.
+/// 6. Whatever an observer does, the trajectory has the same bits as without the observer, as far as the run
+///    goes.
 ///
 /// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions only, and no start, samples
-/// or end. A verdict that fails ends it with an error. A verdict that stops has no effect, since the caller
-/// takes each step.
+/// or end. A verdict that fails ends the step with an error. A verdict that stops has no effect, since the
+/// caller takes each step.
 ///
 /// # What an observer guarantees
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
@@ -128,7 +129,7 @@ pub trait Observer {
 
     /// Receives a disk that a sink takes out during the run, after the collision with the sink.
     ///
-    /// The last disk gets its index.
+    /// The last disk then gets the index of this disk.
     fn on_remove(&mut self, disk: &Disk, time: f64) {
         let _ = (disk, time);
     }

@@ -21,7 +21,7 @@ use crate::{Disk, ParameterError};
 /// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count.
 ///
 /// On the line of a wall that [absorbs centers](crate::boundary::Part::absorbing_centers), rounding decides
-/// whether a disk that is absorbed there counts: take [`Arrivals`](super::Arrivals) for it.
+/// whether a disk that is absorbed there counts: use [`Arrivals`](super::Arrivals) there.
 ///
 /// ```
 /// use granular_edmd::observable::{Crossings, SampleTimes};

@@ -16,8 +16,8 @@ use crate::statistics::BlockedMean;
 /// including the work of the wall.
 ///
 /// A run ends with an error if it is of another system than the run before, or goes back in time: clear the
-/// observer, or take another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) is
-/// the mean over several systems.
+/// observer before such a run, or use another one.
+/// [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) is the mean over several systems.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;

@@ -36,12 +36,12 @@ impl EnergyChangeLayer {
 
 /// The energy change per disk–disk collision by height, with the temperatures there.
 ///
-/// A collision counts in the layer that has the center of its first disk, and not the contact, which is up to
-/// a radius above or below.
+/// A collision counts in the layer of its first disk's center. The contact is up to a radius above or below
+/// this center.
 ///
-/// It allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on average.
-/// Errors come from blocks of the collisions and of the disks in a layer, in the order in which they are
-/// seen; none are taken as independent.
+/// The profile allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on
+/// average. Errors come from blocks of the collisions and of the disks in a layer, in the order in which they
+/// are seen, and do not assume that these are independent.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChangeProfile;
@@ -58,8 +58,7 @@ pub struct EnergyChangeProfile {
 }
 
 impl EnergyChangeProfile {
-    /// Creates a profile of `layers` layers from the height `bottom` to `top`, with temperatures of the
-    /// snapshots.
+    /// Creates a profile of `layers` layers from the height `bottom` to `top`.
     ///
     /// Collisions and disks outside are left out. A run ends with an error if the whole profile is outside
     /// the domain.

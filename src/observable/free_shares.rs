@@ -37,7 +37,7 @@ impl FreeShares {
 /// Checks that the free area is known for a region, or else for each part of it.
 ///
 /// # Errors
-/// If not. The error says what to use instead.
+/// If the area is unknown. The error says what to use instead.
 pub(super) fn check_area(
     region: &Region,
     parts: impl IntoIterator<Item = Region>,

@@ -31,7 +31,7 @@ impl DenseLayer {
         Self { height, packing_fraction, least_below }
     }
 
-    /// Returns the densest layer of a profile, and of equally dense layers the lowest.
+    /// Returns the densest layer of a profile, or the lowest of several equally dense ones.
     ///
     /// The profile gives heights and packing fractions from the bottom up.
     ///
@@ -125,8 +125,8 @@ impl HeightProfile {
         fractions.enumerate().map(|(bin, fraction)| (self.bins.middle(bin), fraction))
     }
 
-    /// Returns the bin with the largest packing fraction, and of equally dense bins the lowest, or `None`
-    /// before the first sample.
+    /// Returns the bin with the largest packing fraction, or `None` before the first sample. Of several
+    /// equally dense bins, it is the lowest.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }

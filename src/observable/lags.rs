@@ -18,8 +18,8 @@ const MOST_LAGS: usize = 1 << 20;
 /// The last samples of a run, and means over pairs of samples. Every sample is the origin of pairs with later
 /// samples.
 ///
-/// Samples are equally spaced. After a gap, or before another run, it forgets the samples so far and keeps
-/// the means.
+/// Samples are equally spaced. After a gap, or before a run that does not continue the last one, the samples
+/// are forgotten and the means are kept.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Lags<V> {
@@ -64,7 +64,7 @@ impl<V> Lags<V> {
         self.places = Some(places_in(end));
     }
 
-    /// Adds a sample and its pairs with the earlier ones. It leaves out pairs whose value is NaN.
+    /// Adds a sample and its pairs with the earlier ones. Pairs whose value is NaN are left out.
     pub(super) fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
         let interval = self.sample_times.interval();
         let rounding = self.sample_times.rounding(time);

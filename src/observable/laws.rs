@@ -143,7 +143,8 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         if !self.wanted.is_finite() {
             return Ok(true);
         }
-        // The engine does the same: a sample time that has passed by rounding is sampled now.
+        // The engine does the same: if rounding has put the sampling time before the present, it takes the
+        // sample now.
         self.now = self.wanted.max(self.now);
         self.observer.on_sample(&snapshot(self.now, &disks(self.collisions)));
         let next = self.next_sample()?;

@@ -7,7 +7,7 @@ use crate::boundary::{Domain, Squares};
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
-/// The disks of a snapshot, searchable for disks near each other; made by [`Snapshot::neighbors`].
+/// A search for disks near each other in a snapshot; made by [`Snapshot::neighbors`].
 pub struct Neighbors<'a> {
     disks: &'a [Disk],
     domain: Domain,
@@ -82,7 +82,7 @@ pub(super) fn check_range(name: &'static str, range: f64, domain: &Domain) -> Re
 }
 
 impl Snapshot<'_> {
-    /// Finds the disks whose centers are within a distance of each other.
+    /// Finds the disks whose centers are within `range` of each other.
     ///
     /// Disks in a dense layer touch at a distance of their diameter, so 1.2 to 1.5 diameters are usual. The
     /// cost is proportional to the number of disks and of neighbors.

@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The pair correlation function g(r), also called radial distribution function.
 ///
-/// It is the number of disks at a distance $`r`$ from a disk, divided by that number in a gas without
+/// It is the number of disks at a distance $`r`$ from a disk, divided by the same number in a gas without
 /// correlations,
 ///
 /// ```math
@@ -32,10 +32,10 @@ const ROUNDING: f64 = 1e-9;
 /// of their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area is
 /// $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners among
 /// the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
-/// the whole domain. The region keeps a distance of the range from the sides and ends of the domain, so that
-/// all shells lie inside. In a vessel with walls inside, give a region by [`within`](Self::within) that keeps
-/// that distance from all walls. Where the density varies, under gravity
-/// for example, choose a thin layer.
+/// the whole domain. At walls, the region ends at a distance of `range` from the sides and ends of the
+/// domain, so that all shells lie inside. In a vessel with walls inside, give a region by
+/// [`within`](Self::within) that keeps the same distance from all walls. Where the density varies, under
+/// gravity for example, choose a thin layer.
 ///
 /// The errors come from the numbers of pairs in blocks of samples. The numbers of disks in the region are
 /// taken as exact, which is nearly true if the region holds many disks. If it holds only a few, take the

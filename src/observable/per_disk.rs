@@ -5,8 +5,8 @@ use crate::disk::numbered;
 
 /// A value for each disk of a snapshot.
 ///
-/// Two of them, taken at different times, are compared by the ids of the disks: only those that are in both
-/// count, whichever were inserted, removed or sorted in between.
+/// The values of two times are matched by the ids of the disks. Only disks with a value at both times count,
+/// so disks may be inserted, removed or sorted in between.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -7,8 +7,8 @@ use crate::quantity::{finite, positive};
 /// origin, rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Rounding of both times relative to the interval. Before time 0, for example, the origin may be far larger
-/// than the time, and the time then has the origin's rounding.
+/// Rounding of a start time and of a sampling time, relative to the interval. Before time 0, for example, the
+/// origin may be far larger than the time, and the time then has the origin's rounding.
 const PART: f64 = 1e-9;
 
 /// Smallest ratio of the interval to the time. Rounding then moves a sampling time by a sixteenth of the
@@ -23,9 +23,9 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 ///
 /// # When a run starts
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
-/// out, and so is one at the start, within rounding. A run of $`n`$ intervals therefore gives $`n`$ samples,
-/// the first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
-/// after a run to settle. There are two exceptions:
+/// out, and so is a sampling time at the start, within rounding. A run of $`n`$ intervals therefore gives
+/// $`n`$ samples, the first after one interval. This holds for a run from time 0, from another start, from a
+/// checkpoint, or after a run to settle. There are two exceptions:
 /// - A run that starts exactly at the first time of `starting_at` takes a sample there.
 /// - A clock that has run before continues. If the next run starts at the upcoming sampling time, within
 ///   rounding, it takes the sample there, since the previous run ended just before it. A run in pieces thus

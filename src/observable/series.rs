@@ -9,12 +9,12 @@ use crate::statistics::{Estimate, block_average};
 /// An observer that keeps the values of an observable at set times.
 ///
 /// The times increase. A run that starts before the last sample, or that is of another system, ends
-/// immediately with an error: clear the series for it, or take another one. The same happens if the
-/// checkpoint from which a run was resumed is older than the series.
+/// immediately with an error: clear the series before such a run, or use another series. The same happens if
+/// the checkpoint from which a run was resumed is older than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
-/// can. JSON knows no NaN, so a series with values that are not defined cannot be read back from it; from a
-/// [checkpoint](crate::simulation::Checkpoint::write_with) it can.
+/// can. JSON has no NaN, so a series with undefined values can be read back from a
+/// [checkpoint](crate::simulation::Checkpoint::write_with), but not from JSON.
 ///
 /// ```
 /// use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
@@ -77,7 +77,7 @@ impl<Q: Observable> Series<Q> {
     /// ([`block_average`]).
     ///
     /// # Errors
-    /// If there are fewer than two samples, or one is not finite or above 1e100 in magnitude.
+    /// If there are fewer than two samples, or one of the numbers is not finite or above 1e100 in magnitude.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;

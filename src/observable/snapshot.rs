@@ -11,7 +11,7 @@ use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
 ///
-/// The run does not see changes of these copies. They are made on request, so the start of a run costs
+/// The run does not see changes of these copies. The copies are made on request, so the start of a run costs
 /// nothing for an observer that only reads the time.
 #[derive(Debug, Clone)]
 pub struct Snapshot<'a> {
@@ -202,7 +202,7 @@ impl<'a> Snapshot<'a> {
         Some(if share > WHOLE { 1.0 } else { share })
     }
 
-    /// Returns whether a region is free of walls at all times, and not inside one.
+    /// Returns whether a region is free of walls at all times, and not inside a wall.
     pub(crate) fn is_clear(&self, region: &Region) -> bool {
         let middle = region.min + 0.5 * (region.max - region.min);
         // Up to four walls are the walls at the sides and ends of the domain.

@@ -47,9 +47,10 @@ pub struct StressTensor {
 ///
 /// In a box without gravity, the normal stress is the pressure on the walls. The area $`A`$ is the area that
 /// walls leave free for matter in the region, or in the whole domain, at the time of the sample
-/// ([`Boundary::area`](crate::boundary::Boundary::area)). A run ends with an error if it is infinite, or if
-/// the boundary does not know it. Where a driving changes the number of disks or their velocities, the
-/// kinetic part comes from the samples, and the collisional part from the collisions between them.
+/// ([`Boundary::area`](crate::boundary::Boundary::area)). A run ends with an error if the area is infinite,
+/// or if the boundary does not know the area. Where a driving changes the number of disks or their
+/// velocities, the kinetic part comes from the samples, and the collisional part from the collisions between
+/// the samples.
 ///
 /// Inside an [`OfKind`](super::OfKind), the kinetic part counts the disks of the kind, and the collisional
 /// part counts all collisions in which such a disk takes part.

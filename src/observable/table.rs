@@ -16,8 +16,8 @@ pub(super) const ENERGY: &str = "energy";
 /// All measures of this module are tables: a [`Series`] has a row for each time, a
 /// [`PairCorrelation`](super::PairCorrelation) for each distance, [`Fields`](super::Fields) for each cell. A
 /// number with an error has three columns: its mean `x`, its standard error `x_error`, and `x_samples`, the
-/// number of independent samples behind it. In a column `wall`, collisions of two disks have the undefined
-/// number. A `Sampled` measure is written like the measure inside it.
+/// number of independent samples behind it. In a column `wall`, collisions of two disks have the value `NaN`.
+/// A `Sampled` measure is written like the measure inside it.
 ///
 /// # Contract
 /// Each row has one number for each heading, in their order.

@@ -80,7 +80,7 @@ impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
     message = "the values of `{Self}` have no names for a table",
     label = "a `Tabular` observable is expected here",
     note = "a closure gets a name by `measured_by(…).named(\"name\", \"unit\")`",
-    note = "an observable of your own implements `observable::Tabular`"
+    note = "a custom observable implements `observable::Tabular`"
 )]
 pub trait Tabular: Observable {
     /// Returns the names and units of the columns.

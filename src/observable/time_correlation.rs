@@ -65,10 +65,10 @@ impl Observable for Velocities {
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is defined by
 /// [`InnerProduct`]: the dot product of vectors, and the mean over the disks for values of disks. No mean is
-/// subtracted. For fluctuations, subtract the mean in the observable if it is known, or else its square from
-/// the correlation. After a gap in time, or if disks were put elsewhere between two runs, the observer begins
-/// with new origins. Pairs without a product, such as samples that have no disk in common, are left out. The
-/// errors come from blocks of origins.
+/// subtracted. To correlate fluctuations, subtract the mean in the observable if the mean is known.
+/// Otherwise, subtract the square of the mean from the correlation. After a gap in time, or if disks were put
+/// elsewhere between two runs, the observer begins with new origins. Pairs without a product, such as samples
+/// that have no disk in common, are left out. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
 ///

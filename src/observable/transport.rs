@@ -22,9 +22,9 @@ type Moments = [DVec2; MOMENTS];
 /// An observer of the viscosities and the thermal conductivity of an elastic gas in a periodic box
 /// (Helfand 1960; Alder, Gass and Wainwright 1970).
 ///
-/// The moments belong to momentum and energy, with the collisional parts: in a collision, the momentum
-/// $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the vector $`\vec r`$ between
-/// the centers.
+/// The moments describe the transport of momentum and energy, also by collisions: in a collision, the
+/// momentum $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the vector $`\vec
+/// r`$ between the centers.
 ///
 /// ```math
 /// W_{ab}(t) = \int_0^t \sum_i m_i v_{i,a} v_{i,b}\,dt' + \sum_{\rm collisions}\Delta_a\, r_b ,
@@ -47,7 +47,7 @@ type Moments = [DVec2; MOMENTS];
 /// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
 ///
 /// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
-/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
+/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report this lag and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
 /// One observer measures one gas, in one run or in runs that continue each other. The first interval, as long
@@ -156,7 +156,7 @@ impl Mover {
 }
 
 /// Returns the moments of momentum and heat that are carried along a vector. Shear has two components that
-/// are equal in an isotropic gas; compression has one, which stands twice.
+/// are equal in an isotropic gas; compression has one component, which is stored twice.
 fn of_tensor(momentum: DVec2, way: DVec2, heat: DVec2) -> Moments {
     let (xx, yy) = (momentum.x * way.x, momentum.y * way.y);
     let shear = 0.5 * (momentum.x * way.y + momentum.y * way.x);
@@ -241,8 +241,8 @@ impl TransportCoefficients {
     }
 
     /// Stores the motions of this snapshot, and checks that they equal the expected motions up to rounding,
-    /// as they do if only collisions have changed them. Otherwise keeps the old motions, so that further runs
-    /// are refused, too.
+    /// as they do if only collisions have changed them. Otherwise, it keeps the old motions, so that further
+    /// runs are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;

@@ -22,8 +22,8 @@ use crate::{Disk, ParameterError};
 ///
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
 /// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas with the same
-/// number of disks. All cumulants of a Maxwellian gas are therefore 0, for any number of disks. Errors come
-/// from blocks of samples. A sample is left out if its disks all move alike, up to rounding.
+/// number of disks. All cumulants of a Maxwellian gas are then 0, for any number of disks. Errors come from
+/// blocks of samples. A sample is left out if its disks all move alike, up to rounding.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity.
@@ -63,7 +63,7 @@ enum Frame {
 }
 
 impl VelocityDistribution {
-    /// Creates histograms of `bins` bins each: of the components from `-largest` to `largest`, of the
+    /// Creates histograms of `bins` bins each: of the components from `-largest` to `largest`, and of the
     /// speed from 0 to `largest`, in units of the thermal speed.
     ///
     /// # Errors
@@ -82,8 +82,8 @@ impl VelocityDistribution {
 
     /// Returns the same distribution about the mean velocity of all disks, weighted by mass, in each sample.
     ///
-    /// A flow includes the mean: with [`about_flow`](Self::about_flow), in either order, this changes
-    /// nothing.
+    /// Together with [`about_flow`](Self::about_flow), in either order, this method changes nothing, since
+    /// the flow includes the mean.
     pub fn about_mean(self) -> Self {
         let frame = if let Frame::Container = self.frame { Frame::Mean } else { self.frame };
         Self { frame, ..self }

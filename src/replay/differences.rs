@@ -10,7 +10,7 @@ use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{RunError, Simulation};
 
-/// Number of halvings of the interval in which two runs come apart.
+/// Number of halvings of the interval in which two runs diverge.
 const HALVINGS: u32 = 40;
 
 /// The first differences of two runs.
@@ -50,8 +50,8 @@ pub struct TooFarApart {
 type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
 
 impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
-    /// Compares the partners of each disk, alternately by a collision of one run and a collision of the
-    /// other. A run that `failed` ends at its error.
+    /// Compares the partners of each disk, taking collisions from both runs alternately. A run that `failed`
+    /// ends at its error.
     pub(super) fn other_partners(
         pair: Pair<'_, R, B, S>,
         end: f64,

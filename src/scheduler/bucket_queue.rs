@@ -14,11 +14,11 @@ use piles::Piles;
 /// the last entries of all of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
-/// Number of events per disk in a page. They share the cost of dealing out the disk to the next page.
+/// Number of events per disk in a page. These events share the cost of entering the disk into the next page.
 const EVENTS_PER_DISK: usize = 2;
 
-/// Largest number of events per disk in a page. A page is meant to last half as long, so one that lasts
-/// longer has too wide buckets.
+/// Largest number of events per disk in a page. A page is meant for half of this number, so the buckets of a
+/// page that lasts longer are too wide.
 const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
 
 /// Number of disks in the sample from which the density of events is first estimated.

@@ -4,7 +4,7 @@ use super::{BucketQueue, EventScheduler, TournamentTree};
 
 /// Number of disks beyond which the system no longer fits the caches.
 ///
-/// Above it, an event waits for the memory, and work that saves accesses to memory pays: an order that is
+/// Above it, an event waits for the memory, and work that saves accesses to memory pays off: an order that is
 /// written page by page ([`BucketQueue`]), and early requests for the data of the next events. Below it, the
 /// same work is a loss. The number comes from the program `scaling` in `tools`. The optimum is flat, so one
 /// number serves both kinds of work.

@@ -18,8 +18,8 @@ const PART: &str = "scheduler";
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
 /// have from none to tens of thousands of disks, and up to three million operations. They contain times that
 /// advance, go back, or are before the last result; ties and times that differ only in their last bits, both
-/// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, fewer, as
-/// many and no disks. Each query is made twice. At intervals, the scripts call
+/// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, to fewer,
+/// to the same number and to no disks. Each query is made twice. At intervals, the scripts call
 /// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" says
 /// which planted faults the check finds. The scripts never change within a version.
 ///
@@ -118,7 +118,7 @@ impl<S: EventScheduler> Performance<S> {
         let mut named = kept.to_vec();
         self.scheduler.upcoming(&mut named);
         let Self { script, disks, step, .. } = *self;
-        let (name, sentence) = (script.name, "the look at upcoming disks changes others");
+        let (name, sentence) = (script.name, "`upcoming` changes disks that the list held already");
         require!(PART, "hint", named.starts_with(&kept);
             "script \"{name}\" of {disks} disks, step {step}: {sentence}");
         self.compare(|| "after a look at upcoming disks".to_owned())

@@ -131,7 +131,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         if !self.disks.is_empty() {
             check_epoch(&clock, 0.0)?;
         }
-        // Along a direction without an end, gravity adds energy forever.
+        // Along a periodic direction, gravity adds energy forever.
         let falls = gravity.acceleration() * boundary.domain().periods();
         let ledger = Ledger::new(self.start_time, bodies.energy(0.0), falls != DVec2::ZERO);
         let mut simulation = Simulation {

@@ -1,8 +1,9 @@
 //! Neighbor cells: until it leaves its cell, a disk can collide only with disks in that cell and the eight
 //! cells around it.
 //!
-//! A disk passes to a neighbor cell where it leaves its own, widened by a margin (`layout.rs`, `grid.rs`), at
-//! the time that `prediction::cell_exit` gives. Then it searches the three cells ahead (`Cells::ahead`).
+//! A disk passes to a neighbor cell when it leaves its own cell, which is widened by a margin (`layout.rs`,
+//! `grid.rs`). The function `prediction::cell_exit` gives this time. The disk then searches the three cells
+//! ahead (`Cells::ahead`).
 
 mod block;
 mod cell_size;
@@ -56,8 +57,8 @@ pub(super) struct Cells {
 
 impl Cells {
     /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for
-    /// them. The cells also suit a disk of one `further` diameter and, if that is the largest, any smaller
-    /// disk.
+    /// them. The cells also suit a disk of the diameter `further` and, if this diameter is the largest, any
+    /// smaller disk.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         cell_size: CellSize,
@@ -153,7 +154,7 @@ impl Cells {
         self.change(disk, Contents::push);
     }
 
-    /// Removes a disk. The last one takes its index.
+    /// Removes a disk. The last disk takes its index.
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
         self.change(disk, Contents::remove);
@@ -296,7 +297,7 @@ impl Cells {
         self.around_cell_in_layers(place, found)
     }
 
-    /// Writes the disks in the nine cells around a place, and the larger ones within reach.
+    /// Writes the disks in the nine cells around a place, and the larger disks within reach.
     fn around_cell_in_layers(&self, place: Place, found: &mut [u32]) -> usize {
         let count = self.around_cell(place, found);
         let Some(layers) = &self.layers else { return count };

@@ -35,8 +35,8 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Checks that a disk at this position touches a wall, and keeps the largest overlap.
     ///
-    /// One question serves both. A disk that touches overlaps the wall once its radius is enlarged by the
-    /// largest gap. The depth minus this gap is the depth of the disk itself.
+    /// One query to the boundary serves both purposes. A disk that touches overlaps the wall once its radius
+    /// is enlarged by the largest gap. The depth minus this gap is the depth of the disk itself.
     #[inline]
     pub(super) fn check_touch(&mut self, disk: usize, wall: usize) -> Outcome<()> {
         let probe = self.probe(disk);
@@ -59,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
-    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner that
-    /// the disk overlaps. This may be another wall than the touched one.
+    /// A larger overlap is not kept, so that the next overlap of this size is noticed, too. The error names
+    /// the partner that the disk overlaps. This may be another wall than the touched one.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(
@@ -90,7 +90,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
         let (now, radius) = (self.clock.now, probe.radius());
         let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
-        // A wall that jumps away from the disks may have done so in the rounding of the time. The engine
+        // A wall that jumps away from the disks may have jumped within the rounding of the time. The engine
         // never passes times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);
         if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {

@@ -27,7 +27,7 @@ use crate::{Disk, ParameterError};
 ///
 /// It is lent to a run, as observers are, and keeps its clock and its random numbers. With the feature
 /// `serde`, write it with the state (`Checkpoint::write_with`): a run that is resumed between two kicks then
-/// has the bits of one that was not interrupted.
+/// has the bits of an uninterrupted run.
 ///
 /// # Contract
 /// A driving guarantees:
@@ -36,9 +36,9 @@ use crate::{Disk, ParameterError};
 ///    must leave them inside and apart, and must declare this to the check.
 /// 2. A kick treats disks alike wherever they are in the list, and works without disks, too.
 /// 3. The same driving gives the same kicks to the same disks, to the bit: its random numbers are its own.
-/// 4. The clock advances: after a kick it returns a later time, and the same time at each call. A run that is
-///    cut into pieces has the same kicks.
-/// 5. If it promises so, the total momentum stays, up to rounding.
+/// 4. The clock advances: after a kick, it returns a later time, and returns the same time at each call until
+///    the next kick. A run that is cut into pieces has the same kicks.
+/// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
 /// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults it finds. The engine
 /// refuses disks that overlap, a change of their number, and a clock that stands still.
@@ -77,7 +77,7 @@ pub trait Driving {
     /// Changes the disks at a kick.
     ///
     /// # Errors
-    /// If it cannot.
+    /// If the kick is not possible.
     fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError>;
 }
 

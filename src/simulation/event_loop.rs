@@ -93,8 +93,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // it waits for the roots and quotients of the collision.
         let counts = [self.neighbors(disk, 0), self.neighbors(partner, 1)];
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
-        // A couple can make a spin impossible while the velocity stays possible. Without one, the comparison
-        // is known when the rule is compiled.
+        // A couple can make a spin impossible while the velocity stays possible. For a rule that never gives
+        // a couple, the compiler knows the result of the comparison.
         let may_spin = (collision.impulse.couple() == 0.0) | (kicks[0].may_spin() & kicks[1].may_spin());
         if !(may_spin & self.is_tame(&kicks[0]) & self.is_tame(&kicks[1])) {
             self.prepare_for_pair(disk, partner)?;
@@ -218,7 +218,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     fn count_regime(&mut self, collision: &Collision) {
         let (contact, impulse) = (collision.contact, collision.impulse);
-        // Selections: a branch here would cost 3 % of a dense run, though it is hardly ever taken.
+        // These are selections, since a branch would cost 3 % of a dense run, although it would hardly ever
+        // be taken.
         let by_contact_duration = impulse.regime() == Regime::ContactDuration;
         let since = if by_contact_duration { contact.time_since_last_collision() } else { 0.0 };
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
@@ -301,7 +302,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(always)]
     fn go_on(&mut self, disk: usize, count: usize) {
         // The end of the flight is computed before the search for a partner. The processor then resolves the
-        // branches of the former, predicted right or wrong, while the search is still under way.
+        // branches of the flight's end, whether it has predicted them correctly or not, while the search is
+        // still under way.
         self.end_flight(disk);
         let forecast = self.forecast(disk);
         let known = Earliest { due: forecast.collision_due, partner: forecast.partner };

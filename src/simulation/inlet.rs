@@ -15,9 +15,9 @@ use crate::{Disk, Kind, ParameterError};
 ///
 /// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
 /// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it
-/// finds no room waits until the inlet opens again, and the others wait behind it. A disk that enters has a
-/// new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same time
-/// however many disks there are.
+/// finds no room waits until the inlet opens again, and the other disks wait behind it. A disk that enters
+/// has a new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same
+/// time however many disks there are.
 ///
 /// An inlet is a part of the state of a run, and so of its checkpoints, with the disks that wait.
 ///
@@ -69,8 +69,8 @@ impl Inlet {
     ///
     /// Its center is in the rectangle with the corners `places`: first the lower left, then the upper right.
     /// The copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models
-    /// have no meaning. A distribution is a list of disks whose radii [`Radii`](crate::initial::Radii) draws,
-    /// for example.
+    /// have no meaning. For a distribution of sizes, give a list of disks, for example with radii that
+    /// [`Radii`](crate::initial::Radii) draws.
     ///
     /// # Errors
     /// If there are no models, or the corners are not finite or not in this order.

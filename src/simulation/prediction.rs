@@ -1,6 +1,6 @@
 //! Predictions of the time at which two disks collide.
 //!
-//! `exits.rs` computes the time at which a disk leaves its cell, and `vector.rs` the same arithmetic in
+//! `exits.rs` computes the time at which a disk leaves its cell, and `vector.rs` has the same arithmetic in
 //! vector instructions.
 
 mod exits;

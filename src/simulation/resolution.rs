@@ -18,7 +18,7 @@ const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
 /// The normal comes from a difference of positions, so its rounding error is ε times the ratio of the
-/// vessel's size to the disks'.
+/// vessel's size to the size of the disks.
 const GRAZING: f64 = 1e-6;
 
 /// The change of a disk's motion in a collision.
@@ -79,7 +79,8 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
     let outcome = collide_bodies(rule, normal, since, (&first, &material), (&second, &other));
-    // The pair was resolved in the free-fall frame, where gravity drops out. Observers see the container's.
+    // The pair was resolved in the free-fall frame, where gravity drops out. Observers see velocities in the
+    // container's frame.
     let (fallen, gained) = bodies.fall(offset);
     let collision = Collision {
         time: clock.time(),
@@ -188,8 +189,8 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Returns whether a surface's normal is a unit vector, its velocities are ones that a disk may have, its
-/// radius is neither zero nor NaN, and its masses are positive.
+/// Returns whether a surface's normal is a unit vector, its velocities are possible for a disk, its radius is
+/// neither zero nor NaN, and its masses are positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;

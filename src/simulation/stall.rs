@@ -1,5 +1,5 @@
-//! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy.
-//! `state/guard.rs` decides when that is so, and has the defaults.
+//! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy. `state/guard.rs`
+//! decides when a run hardly progresses, and has the defaults.
 
 use super::resolution::{resolve_pair, resolve_wall};
 use super::state::{Clock, Exit, Forecast, Standstill};
@@ -49,9 +49,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns whether a run in which time hardly advances before this event is stuck.
     ///
-    /// A lossless collision may be one of many that end by themselves: a light disk between a wall and a
-    /// heavy disk that comes near. Such a run has more time, as long as its windows differ. If they are
-    /// alike, a disk is squeezed.
+    /// Many lossless collisions in a short time may end by themselves, as for a light disk between a wall and
+    /// a heavy disk that comes near. Such a run has more time, as long as its windows differ. If the windows
+    /// are alike, a disk is squeezed.
     #[cold]
     pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
         let (disk, due) = self.next_collider(disk, due);

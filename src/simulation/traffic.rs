@@ -1,9 +1,9 @@
 //! Insertion and removal of single disks during a run.
 //!
 //! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
-//! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
-//! of date: their collision count does not match the disk that has this index now. The engine replaces them
-//! when they are due, as for any partner that has collided since.
+//! of the removed disk, so no other index changes. Predictions of other disks that name one of the two
+//! indices are then out of date: their collision count does not match the disk that has this index now. The
+//! engine replaces them when they are due, as for any partner that has collided since.
 
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
@@ -163,13 +163,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Makes new cells if these do not suit disks of this diameter. Returns whether the domain has room for
-    /// such disks.
+    /// Makes new cells if the present ones do not suit disks of this diameter. Returns whether the domain has
+    /// room for such disks.
     fn make_cells_suit(&mut self, diameter: f64) -> bool {
         self.cells.suit(diameter) || self.renew_cells(self.cells.grid().cell_size(), Some(diameter))
     }
 
-    /// Makes new cells if there are far more or far fewer disks than these suit.
+    /// Makes new cells if there are far more or far fewer disks than the present cells suit.
     fn keep_cells_suitable(&mut self) {
         if self.cells.are_outgrown() {
             self.renew_cells(self.cells.grid().cell_size(), None);

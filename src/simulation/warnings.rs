@@ -55,7 +55,8 @@ pub enum Warning {
     },
     /// The contact duration is not short compared with the time between the collisions of a disk: by Luding's
     /// criterion, $`t_c\,\omega_c \ll 1`$, where $`\omega_c`$ is the rate of the collisions that the model
-    /// did not change. It removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a flow.
+    /// did not change. The model removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a
+    /// flow.
     LongContactDuration {
         /// The contact duration, as estimated from the collisions, times the rate of a disk's collisions.
         share_of_time: f64,
@@ -168,7 +169,7 @@ impl fmt::Display for Warning {
 }
 
 impl Counters {
-    /// Returns what these counts warn of.
+    /// Returns the warnings that follow from these counts.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;
@@ -197,8 +198,9 @@ impl Counters {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns what the simulation noticed and survived since it was built: the warnings of its
-    /// [`counters`](Self::counters), with the names of walls, and those about its inlets.
+    /// Returns the warnings about the simulation since it was built: the warnings of its
+    /// [`counters`](Self::counters), with the names of walls, and warnings that depend on the state of the
+    /// simulation.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.counters.warnings();
         for warning in &mut warnings {
@@ -226,9 +228,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;
-        // Matter that collapses has very many collisions before it rests, and few while it flowed. But its
-        // disks hardly move in the contact duration. If the model decides nearly all collisions of a flow, on
-        // the other hand, few are left to count.
+        // In matter that collapses, the model decides most collisions on purpose; such matter is recognized
+        // because its disks hardly move in the contact duration. In a flow, the model may decide nearly all
+        // collisions, too. Few others are then left, so all collisions are counted.
         let is_flow = way > FAR;
         let share_of_time = if elastic > collisions / 2 { longest_contact * rate(collisions) } else { free };
         let is_long = collisions >= FEWEST && is_flow && share_of_time > LONG;
@@ -262,8 +264,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         (!has_source && is_more).then_some(Warning::EnergyGained { before, now })
     }
 
-    /// Counts the walls that have another position in another boundary at the present time. Walls are the
-    /// same if their names are.
+    /// Counts the walls that have another position in another boundary at the present time. Walls with the
+    /// same name count as the same wall.
     pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
         let before = places(&self.boundary, self.clock.now);
         for (name, (wall, here)) in places(other, self.clock.now) {
@@ -278,9 +280,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 }
 
-/// Returns the walls of a boundary by name, each with its index and its position. Of walls of one name, such
-/// as the parts of a gate, the first is enough. The map is sorted, so that the count is the same on every
-/// run.
+/// Returns the walls of a boundary by name, each with its index and its position. If several walls have the
+/// same name, such as the parts of a gate, only the first is listed. The map is sorted, so that the count is
+/// the same on every run.
 fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, (usize, DVec2)> {
     let mut places = BTreeMap::new();
     for wall in 0..boundary.wall_count() {

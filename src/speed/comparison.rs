@@ -19,9 +19,9 @@ const OUTSIDE: usize = 78;
 
 /// Runs a copy of the simulation for `collisions` collisions, with disks or walls, and returns the report.
 ///
-/// Equal calls do the same work, from the same state. Take a fixed number of collisions in a bench of
-/// criterion, too: in a longer stretch, a rule with other physics would leave the state. An iteration is a
-/// stretch.
+/// Equal calls do the same work, from the same state. In a benchmark with criterion, too, take a fixed number
+/// of collisions: in a longer run, a rule with other physics would leave the state. Each iteration of the
+/// benchmark is one call.
 ///
 /// ```no_run
 /// # use criterion_stand_in::Bencher;
@@ -56,11 +56,11 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
 
 /// The ratio of the times per collision in two runs, from alternating intervals.
 ///
-/// Stretches of the two runs follow each other in pairs, and each pair gives a ratio, so what slows both
-/// cancels. Stretches of one run do the same work each time, from the same state. A rule with other physics
-/// leads to other states, in which a collision may take more events. The numbers of events stand beside the
-/// times: if they agree, the ratio is the cost of the rule itself. To include the cost of the state to which
-/// the rule leads, take a run that has settled under it.
+/// Intervals of the two runs follow each other in pairs, and each pair gives a ratio, so anything that slows
+/// both cancels. Intervals of one run do the same work each time, from the same state. A rule with other
+/// physics leads to other states, in which a collision may take more events. The numbers of events are given
+/// with the times: if they agree, the ratio is the cost of the rule itself. To include the cost of the state
+/// to which the rule leads, take a run that has settled under it.
 ///
 /// ```no_run
 /// use granular_edmd::collision::Frictional;
@@ -99,7 +99,7 @@ pub enum Finding {
 }
 
 impl Comparison {
-    /// Compares two runs over 201 intervals of each. Stretches of a few milliseconds are best: 10 000
+    /// Compares two runs over 201 intervals of each. Intervals of a few milliseconds are best, such as 10 000
     /// collisions.
     ///
     /// # Errors
@@ -131,7 +131,8 @@ impl Comparison {
         })
     }
 
-    /// Returns the time of a collision in the other run over that in the first.
+    /// Returns the ratio of the times per collision: the time of the other run divided by the time of the
+    /// first.
     pub const fn ratio(&self) -> Quartiles {
         self.ratio
     }

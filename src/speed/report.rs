@@ -9,7 +9,7 @@ use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
 use crate::simulation::Counters;
 
-/// A meter that is started before a run and read after it. The run itself takes no longer.
+/// A meter that is started before a run and read after it. The meter does not slow the run.
 ///
 /// ```
 /// use granular_edmd::speed::Meter;
@@ -61,7 +61,8 @@ impl Meter {
 
 /// The report of a run, for people ([`Display`](fmt::Display)) and as data (feature `serde`).
 ///
-/// A collision is one of two disks. In a run without any, numbers per collision are infinite or NaN.
+/// Only collisions of two disks count as collisions here. In a run without such collisions, numbers per
+/// collision are infinite or NaN.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]

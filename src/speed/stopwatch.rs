@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 /// A stopwatch for the time on processors, which starts when it is made.
 ///
-/// On Linux, time in which other programs have the processor does not count, and readings are good to some
-/// microseconds. Elsewhere, the wall clock counts the seconds.
+/// On Linux, time in which other programs have the processor does not count, and readings are accurate to a
+/// few microseconds. Elsewhere, the wall clock counts the seconds.
 ///
 /// ```
 /// use granular_edmd::speed::Stopwatch;
@@ -35,7 +35,7 @@ impl Stopwatch {
 
 /// Returns the processor time of this thread, in seconds.
 fn seconds_of_thread() -> Option<f64> {
-    // The kernel books the time of a task when the task gives up the processor, or some milliseconds later.
+    // The kernel records the time of a task when the task gives up the processor, or some milliseconds later.
     std::thread::sleep(Duration::from_nanos(1));
     let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;

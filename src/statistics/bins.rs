@@ -63,8 +63,8 @@ impl Bins {
         self.edge(bin) + 0.5 * self.width
     }
 
-    /// Returns the bin of a number. Numbers below the first bin count as in it; numbers above the last bin
-    /// give `count` or more.
+    /// Returns the bin of a number. Numbers below the first bin give the first bin; numbers above the last
+    /// bin give `count` or more.
     pub(crate) fn at_or_above(&self, value: f64) -> usize {
         // The cast saturates: a negative number becomes 0.
         let bin = ((value - self.low) / self.width) as usize;

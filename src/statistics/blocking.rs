@@ -21,12 +21,11 @@ const LARGEST: f64 = 1e100;
 ///    $`\epsilon_B`$ itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
 /// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
 ///    error from blocks of a quarter of the size by at most one and a half times its uncertainty;
-/// 3. for no larger blocks does the error exceed $`\epsilon_B`$ by more than twice the uncertainty of that
-///    error.
+/// 3. for all larger blocks, the error exceeds $`\epsilon_B`$ by at most twice its own uncertainty.
 ///
-/// The first condition suffices for a series with one correlation time. The others detect a second, longer
-/// one with a small share of the variance, such as heat that slowly comes and goes in a gas whose collisions
-/// are otherwise independent. Sizes with fewer than eight blocks are not considered.
+/// The first condition suffices for a series with one correlation time. The other conditions detect a second,
+/// longer correlation time with a small share of the variance, such as heat that slowly comes and goes in a
+/// gas whose collisions are otherwise independent. Sizes with fewer than eight blocks are not considered.
 ///
 /// An error is [converged](Estimate::is_converged) if there are such blocks, and if the largest error of any
 /// blocks leaves at least 120 independent samples, $`n_i`$. The error is then raised by the share $`60/n_i`$,
@@ -48,7 +47,7 @@ const LARGEST: f64 = 1e100;
 /// quantity is constant, or has not changed yet.
 ///
 /// # Errors
-/// If there are fewer than two samples, or one is not finite or above 1e100 in magnitude.
+/// If there are fewer than two samples, or one of them is not finite or above 1e100 in magnitude.
 ///
 /// ```
 /// use granular_edmd::statistics::block_average;

@@ -5,9 +5,8 @@ use crate::ParameterError;
 
 /// A histogram of numbers that come one by one.
 ///
-/// The numbers may be correlated: the errors come from the scatter between blocks of numbers that came after
-/// each other, by the method of [`BlockedMean`]. The smallest blocks have one number for each bin, and at
-/// least 64.
+/// The numbers may be correlated: the errors come from the scatter between blocks of consecutive numbers, by
+/// the method of [`BlockedMean`]. The size of the smallest blocks is the number of bins, and at least 64.
 ///
 /// ```
 /// use granular_edmd::statistics::Histogram;

@@ -7,16 +7,16 @@ const FEWEST_BLOCKS: u64 = 8;
 
 /// Smallest number of independent samples of an error that can be trusted.
 ///
-/// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. With
-/// half of this number, every tenth series of 30 would be called converged, with an error too small by a
-/// third.
+/// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. If
+/// half of this number were enough, every tenth series of 30 independent samples would be called converged,
+/// with an error too small by a third.
 pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Excess of a trusted error over its blocks' error, times the number of independent samples.
 ///
 /// A series is called converged if its error is small, and some errors are small by chance: the errors that
-/// are trusted are too small on average, the more so the fewer samples they have. With this excess, two
-/// errors hold the true mean in nine cases of ten or more at any length. The table of
+/// are trusted are too small on average, the more so the fewer samples they have. With this excess, the true
+/// mean lies within two errors in nine cases of ten or more, at any length. The table of
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 

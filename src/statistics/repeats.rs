@@ -9,8 +9,8 @@ const ENOUGH: usize = 8;
 impl Estimate {
     /// Combines the estimates of several independent runs into one, as if all samples were of one run.
     ///
-    /// Each run is weighted by the number of its samples. The error is the larger of two: the one that
-    /// follows from the errors of the runs, and the one from the scatter of their means,
+    /// Each run is weighted by the number of its samples. The error is the larger of two errors. One follows
+    /// from the errors of the runs, and the other from the scatter of their means,
     ///
     /// ```math
     /// \epsilon^2 = \max\left(\sum_i w_i^2\epsilon_i^2,\; \frac{1}{k-1}\sum_i w_i(\bar x_i-\bar x)^2\right),
@@ -19,9 +19,9 @@ impl Estimate {
     ///
     /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
     /// way. The scatter of two or three runs, however, may be small by chance; the errors of the runs then
-    /// count. The estimate has converged if the estimates of all runs have, if there are at least eight runs,
-    /// or if the runs together have 120 independent samples by this error, as many as one run needs. Runs
-    /// without samples are left out.
+    /// count. The estimate has converged if the estimates of all runs have converged, if there are at least
+    /// eight runs, or if the runs together have 120 independent samples by this error, the number that a
+    /// single run needs. Runs without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};

@@ -25,7 +25,7 @@ impl RunningMean {
         self.0.push(value, 1.0);
     }
 
-    /// Returns how many numbers were added.
+    /// Returns the count of the numbers.
     pub const fn count(&self) -> u64 {
         self.0.weight as u64
     }

@@ -13,8 +13,8 @@ const TIME: &str = "time";
 
 /// Reads a table whose first line names the columns.
 ///
-/// Commas, semicolons, tabs or spaces separate the cells, whichever of them the first line has. A line that
-/// begins with `#` is a comment, except before the names.
+/// Commas, semicolons, tabs or spaces separate the cells; the first line shows which. A line that begins with
+/// `#` is a comment, except before the names.
 pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut lines = text.lines()?;
     let Some((head, line)) = lines.next_filled() else {
@@ -69,7 +69,7 @@ fn has_name(row: &str, divider: Option<char>, columns: usize) -> bool {
     row.starts_with('"') && has_bare_cell && cells(row, divider).count() == columns + 1
 }
 
-/// Creates the error of a text in none of the formats.
+/// Creates the error of a text that has none of the known formats.
 fn unknown(line: usize, found: &str) -> ReadError {
     let known = "extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose first line names columns \
                  such as x, y and radius";

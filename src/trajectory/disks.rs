@@ -118,7 +118,7 @@ fn agree(what: &str, one: f64, other: f64, scale: f64, line: usize) -> Result<f6
 
 /// Creates the error of columns that contradict each other.
 fn contradiction(what: &str, found: &str, line: usize) -> ReadError {
-    ReadError::unexpected(line, what, "the same in all columns that tell it", found)
+    ReadError::unexpected(line, what, "the same in all columns that give it", found)
 }
 
 /// Checks that the disks lie in one plane, move in it, and turn in it.
@@ -267,7 +267,8 @@ impl Row<'_> {
             _ => None,
         };
         let Some(angle) = self.get(Angle, 0) else { return Ok(half.map_or(0.0, |half| 2.0 * half)) };
-        // An angle of many turns keeps few digits within a turn, but its sine and cosine are the writer's.
+        // An angle of many turns has few digits within a turn. The writer made the orientation from its sine
+        // and cosine, so these are compared.
         let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);

@@ -105,7 +105,7 @@ impl RecordError {
 
 /// An error in reading disks from a file.
 ///
-/// Lines are counted from 1. In a GSD file, which has no lines, they are the disks.
+/// Lines are counted from 1. A GSD file has no lines; there, the number of the disk counts as the line.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 ///
@@ -170,7 +170,7 @@ pub enum ReadError {
         what: String,
     },
     /// The numbers of a line do not make a disk.
-    #[error("line {line} is no disk")]
+    #[error("line {line} does not describe a disk")]
     Disk {
         /// Number of the line.
         line: usize,
@@ -218,7 +218,7 @@ pub enum ReadError {
         share: f64,
         /// Number of overlaps, counted up to eight for each disk.
         count: usize,
-        /// The settings that accept them, or the reason why none should.
+        /// The settings that accept the overlaps, or the reason why no setting should.
         advice: &'static str,
     },
     /// The file does not have the frame.

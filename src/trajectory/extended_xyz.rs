@@ -24,14 +24,14 @@ use crate::{Disk, Gravity};
 /// | `kind`, `id` | number of the [`Kind`](crate::Kind); id of the disk in the run |
 /// | `velo` | velocity of the center |
 /// | `orientation` | turn about the third axis, as a quaternion with the real part last |
-/// | `omega` | angular velocity about each axis in radians, counterclockwise; the last is that of the disk |
+/// | `omega` | angular velocity about each axis in radians, counterclockwise; the last is the disk's |
 /// | `angle` | in radians, counterclockwise; not reduced |
 /// | `radius`, `mass`, `inertia_factor` | as in [`Disk`] |
 /// | `image` | periods that the disk has passed to the right and up, from [`Disk::image`] |
 /// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
-/// ASE, chemfiles, MDAnalysis and OVITO read the columns alike, as far as they know them. Symbols of elements
-/// are written because ASE accepts nothing else.
+/// ASE, chemfiles, MDAnalysis and OVITO agree on the meaning of the columns that they know. Symbols of
+/// elements are written because ASE accepts nothing else.
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
 /// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the

@@ -110,7 +110,7 @@ pub struct Vtk;
 /// | `.gsd` | [`Gsd`] |
 /// | `.pvd` | [`Vtk`] |
 ///
-/// With the feature `gzip`, `.gz` may follow the name of a text.
+/// With the feature `gzip`, `.gz` may follow the ending of a text file.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;

@@ -1,5 +1,5 @@
 //! Frames of a trajectory, and the trait of the formats in which they are written, one after another into a
-//! file. Formats with an index, or of several files, have stores (`store.rs`).
+//! file. Formats with an index, or of several files, implement `Layout` (`sink.rs`) directly.
 
 use std::io::{self, BufRead, Read, Write};
 
@@ -44,12 +44,12 @@ impl<'a> Frame<'a> {
 /// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults it
 /// finds.
 ///
-/// [`Recorder`](super::Recorder) makes each frame whole in memory, so a format may write in small pieces. The
-/// recorder owns the file, its compression, and the clock.
+/// [`Recorder`](super::Recorder) collects each whole frame in memory, so a format may write in small pieces.
+/// The recorder owns the file, its compression, and the clock.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a format of trajectories",
     label = "a `trajectory::Format` is expected here",
-    note = "take `ExtendedXyz`, `LammpsDump`, or implement `Format` for a format of your own"
+    note = "take `ExtendedXyz`, `LammpsDump`, or implement `Format` for a custom format"
 )]
 pub trait Format {
     /// Writes a frame.

@@ -17,7 +17,7 @@ impl Frames {
     /// Adds a frame that was found in a file.
     pub(super) fn add(&mut self, time: f64, bytes: &[u8], end: u64) -> io::Result<()> {
         if self.times.last().is_some_and(|&last| last >= time) || !time.is_finite() {
-            return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
+            return Err(no_frame("a frame later than the previous one", &format!("time {time:?}")));
         }
         self.times.push(time);
         self.digests.push(digest(bytes));

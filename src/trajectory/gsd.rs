@@ -40,7 +40,8 @@ const NAME: usize = 6;
 
 /// The chunks of each frame in their order: name, type, numbers in a row, rows.
 ///
-/// `read_log` of the package `gsd` takes a chunk of one row for a single number, so vectors are columns.
+/// `read_log` of the package `gsd` interprets a chunk with one row as a single number, so a vector is stored
+/// as a column.
 const CHUNKS: [(&str, u8, u32, Rows); 24] = [
     ("configuration/step", U64, 1, Rows::Fixed(1)),
     ("configuration/dimensions", U8, 1, Rows::Fixed(1)),

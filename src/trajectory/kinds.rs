@@ -4,8 +4,8 @@ use super::ReadError;
 use super::lines::as_whole;
 use super::table::Table;
 
-/// Returns the numbers of the kinds that names stand for: the names themselves, or else their positions in
-/// order, which are the same for all frames with these names.
+/// Returns the numbers of the kinds with these names: the names themselves if all are numbers, or else their
+/// positions in alphabetical order, which are the same for all frames with these names.
 pub(super) fn of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     let names = table.names();
     let ordered = ordered(table);

@@ -29,7 +29,7 @@ use crate::disk::numbered;
 /// move.
 ///
 /// The time is a column since some programs, such as MDAnalysis, know no `ITEM: TIME`. Only a frame without
-/// disks has that item; [`TimedLammpsDump`] has it in all.
+/// disks has that item; [`TimedLammpsDump`] has it in all frames.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;

@@ -18,11 +18,11 @@ const ROUNDS: usize = 40;
 /// Numbers of the frames.
 const NUMBERS: [usize; 6] = [0, 1, 2, 3, 4, 1_000_000];
 
-/// Checks that a format keeps its contract, with some frames of made-up disks, each of which is written some
+/// Checks that a format keeps its contract, with some frames of made-up disks, each of which is written about
 /// sixty times, alternately and twice in a row.
 ///
-/// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked as far as it goes. The page
-/// "Validation" says which planted faults the check finds.
+/// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked only for the bytes that it
+/// writes. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -42,7 +42,7 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
             for _ in 0..=round % 2 {
                 let is_same = *once == written(format, number, &snapshots[number])?;
                 require!(PART, "alike", is_same;
-                    "frame {number} of {} bytes is another when written again", once.len());
+                    "frame {number} of {} bytes differs when it is written again", once.len());
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::disk::LARGEST_ID;
 /// file can expand to one that fills the memory.
 pub(super) const LONGEST: u64 = 1 << 20;
 
-/// Some programs begin a text with this character.
+/// The character with which some programs begin a text.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// A text that is read line by line. Lines are counted from 1.
@@ -172,7 +172,7 @@ pub(super) fn whole<T: FromStr>(what: &str, text: &str, line: usize) -> Result<T
     as_whole(text).ok_or_else(|| ReadError::unexpected(line, what, requirement, text.trim()))
 }
 
-/// Returns the whole number that a text is, if it is one.
+/// Returns the whole number that a text represents, or `None` if it represents none.
 pub(super) fn as_whole<T: FromStr>(text: &str) -> Option<T> {
     let of_float = || {
         let number = text.trim().parse::<f64>().ok()?;

@@ -107,8 +107,8 @@ impl Packing {
         }
     }
 
-    /// Writes the ending again if it was cut off: without it, readers find the file damaged, and a run that
-    /// ends before its next frame would leave it so.
+    /// Writes the ending again if it was cut off. Without the ending, readers consider the file damaged, and
+    /// it would stay so if the run ended before its next frame.
     fn mend(&self, file: &mut Growing<Locked>) -> io::Result<()> {
         let (ending, mut there, mut medium) = (self.ending(), Vec::new(), file.medium.file());
         medium.seek(SeekFrom::Start(file.length))?;

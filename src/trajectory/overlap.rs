@@ -12,7 +12,8 @@ use crate::boundary::Domain;
 /// With squares for one size only, a single giant would make every disk a neighbor of every other.
 struct Class {
     side: f64,
-    /// The numbers of a square are whole floating-point numbers, which do not overflow, as their bits.
+    /// The disks in each square, by the column and row of the square. Both are whole floating-point numbers,
+    /// which do not overflow; the keys are their bits.
     squares: HashMap<[u64; 2], Vec<usize>>,
 }
 
@@ -56,7 +57,8 @@ pub(super) struct Overlap {
     pub(super) share: f64,
     /// Number of all overlaps.
     pub(super) count: usize,
-    /// True if all overlaps are counted. Disks that lie on one heap have too many overlaps for that.
+    /// True if all overlaps are counted. If very many disks lie at one place, there are too many overlaps to
+    /// count.
     pub(super) is_counted: bool,
 }
 

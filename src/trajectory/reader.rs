@@ -20,7 +20,7 @@ use crate::quantity::non_negative;
 /// feature `gzip`, the file may be compressed.
 ///
 /// Columns are recognized by their names, in any order and case. A position and a radius are needed; without
-/// the others, a disk has the defaults of [`Disk::new`](crate::Disk::new).
+/// the other columns, a disk has the defaults of [`Disk::new`](crate::Disk::new).
 ///
 /// | property | names |
 /// |---|---|
@@ -35,9 +35,9 @@ use crate::quantity::non_negative;
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
 ///
-/// A component may follow its name, as in `vel_x`, `Position.X` or `velocity:0`. Two columns of the same
-/// quantity must agree. Disks keep the order of the file. They must lie in one plane; its z is ignored.
-/// [`State::notes`] lists everything that the reader ignores or changes.
+/// The letter or number of a component may follow the name of the property, as in `vel_x`, `Position.X` or
+/// `velocity:0`. Two columns of the same quantity must agree. Disks keep the order of the file. They must lie
+/// in one plane; its z is ignored. [`State::notes`] lists everything that the reader ignores or changes.
 ///
 /// # Examples
 /// The example turns a state of soft disks, whose contacts overlap, into a start for hard disks:
@@ -128,9 +128,9 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This turns states of soft disks, and files with few digits, into starts. [`State::shrunk`] says by how
-    /// much. With a [tolerance](Self::with_tolerance), deeper overlaps remain an error. Overlaps of more than
-    /// half the sum of the radii always are. Masses stay.
+    /// This turns states of soft disks, and files with few digits, into initial states for hard disks.
+    /// [`State::shrunk`] says by how much. With a [tolerance](Self::with_tolerance), deeper overlaps remain
+    /// an error. Overlaps of more than half the sum of the radii are always an error. Masses stay.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -160,7 +160,8 @@ impl Reader {
     /// Reads a frame of a file.
     ///
     /// # Errors
-    /// As for [`read_from`](Self::read_from), and if the file cannot be opened. The error names the file.
+    /// The same as for [`read_from`](Self::read_from), and if the file cannot be opened. The error names the
+    /// file.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<State, ReadError> {
         let path = path.as_ref();
         let file = File::open(path).map_err(|source| ReadError::Open { path: path.to_owned(), source })?;
@@ -185,7 +186,7 @@ impl Reader {
 
     /// Returns the states of all frames of an input, one after another. The iterator ends after an error.
     ///
-    /// A file is an input as `BufReader::new(File::open(path)?)`.
+    /// For a file, pass `BufReader::new(File::open(path)?)`.
     ///
     /// # Errors
     /// If the input fails at its start, or is of no known format.

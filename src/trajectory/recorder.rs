@@ -9,19 +9,19 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 
 /// An observer that writes a frame to a file at set times.
 ///
-/// Each frame is made whole in memory, then written. If that fails, for example because the file system is
-/// full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole
-/// frame. The next run with the same recorder records the missed frame.
+/// Each frame is collected completely in memory, and then written. If the writing fails, for example because
+/// the file system is full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends
+/// with its last whole frame. The next run with the same recorder records the missed frame.
 ///
 /// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind. Files hold the
 /// box and the moving walls ([`Snapshot::moving_walls`]). Files for ParaView also hold the other walls
 /// ([`Snapshot::wall_lines`]).
 ///
-/// # Going on in a file
-/// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
-/// the frames after the checkpoint again, with the same bits. The recorder compares them with the frames in
-/// the file and does not write them twice. If they differ, the file is of another run, and the error says so.
-/// If the process died in the middle of a frame, the next frame overwrites the incomplete one.
+/// # Continuing a file
+/// If the process was killed, resume the run from its checkpoint, and [`append`](Self::append) to its file.
+/// The run makes the frames after the checkpoint again, with the same bits. The recorder compares them with
+/// the frames in the file and does not write them twice. If they differ, the file is of another run, and the
+/// error says so. If the process died in the middle of a frame, the next frame overwrites the incomplete one.
 ///
 /// The recorder continues with the first sampling time after the last frame of the file. If the run is later
 /// than that, as from a checkpoint that is newer than the file, the run ends with an error, since frames
@@ -79,7 +79,7 @@ impl Recorder {
 
     /// Creates a recorder that continues a file that [`create`](Self::create) began.
     ///
-    /// It reads the whole file once; of [`Gsd`](super::Gsd) and [`Vtk`](super::Vtk), only the index.
+    /// The whole file is read once. For [`Gsd`](super::Gsd) and [`Vtk`](super::Vtk), only the index is read.
     ///
     /// # Errors
     /// If the file cannot be opened, another recorder writes to it, it is not of this format, an older
@@ -116,8 +116,8 @@ impl Recorder {
 
     /// Returns the same recorder with its clock in the state after the last frame of the file.
     ///
-    /// A clock that begins anew would take a sampling time just after the start of the run for one at the
-    /// start, and leave it out. A run in pieces that was killed between two of them would then lack a frame.
+    /// A clock that begins anew would mistake a sampling time just after the start of the run for one at the
+    /// start, and leave it out. A run in pieces that was killed between two pieces would then lack a frame.
     fn going_on(mut self) -> Self {
         if let Some(&last) = self.times().last() {
             self.clock.start_at(last);

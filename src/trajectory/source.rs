@@ -1,4 +1,4 @@
-//! The frames of a file, whose format shows in its contents.
+//! The frames of a file, whose format is recognized by its contents.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};
@@ -11,7 +11,7 @@ use super::{csv, extended_xyz, gsd, lammps_data, lammps_dump};
 /// Bytes by which the format is recognized.
 const HEAD: u64 = 1 << 14;
 
-/// Returns the frames of a file. A GSD file is not read whole.
+/// Returns the frames of a file. A GSD file is not read completely.
 pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
     let failed = |source| ReadError::Io { line: 1, source };
     let mut head = Vec::new();

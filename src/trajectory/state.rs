@@ -7,8 +7,8 @@ use crate::{Disk, Gravity};
 
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
-/// A [`Reader`](super::Reader) reads it. No two disks overlap by more than its tolerance, and none has its
-/// center outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks them against the
+/// A [`Reader`](super::Reader) reads it. No two disks overlap by more than the reader's tolerance, and no
+/// center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks them against the
 /// walls.
 ///
 /// ```
@@ -30,7 +30,7 @@ pub struct State {
     pub(super) ignored: Vec<String>,
     pub(super) wrapped: usize,
     pub(super) shrunk: f64,
-    /// Other sentences about the file.
+    /// Other notes about the file, each a sentence.
     pub(super) notes: Vec<String>,
 }
 
@@ -79,8 +79,8 @@ impl State {
         self.gravity
     }
 
-    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. It is the
-    /// alphabetical order, unless the file numbers them.
+    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. This order is
+    /// alphabetical, unless the file numbers the kinds.
     ///
     /// It is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {

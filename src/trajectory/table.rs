@@ -21,7 +21,7 @@ pub(super) struct Table {
     values: Vec<f64>,
     /// The line number of each row.
     pub(super) lines: Vec<usize>,
-    /// The index of each name, which stands for it in the values.
+    /// The index by which the values refer to each name.
     names: HashMap<String, usize>,
     /// The names that the file gives to the numbers of kinds, from 0 on.
     pub(super) kind_names: Vec<String>,
@@ -140,7 +140,7 @@ impl Table {
     }
 }
 
-/// Reads a cell. The index of a name stands for it.
+/// Reads a cell. A name is replaced by its index.
 fn value(
     column: &Column,
     slot: usize,

@@ -5,7 +5,7 @@ use super::{AccelerationBounds, Motion, WallMotion, WallState};
 use crate::quantity::finite;
 use crate::{Fingerprint, ParameterError};
 
-/// A motion that begins at a given time, and a wall at rest before.
+/// A motion that begins at a given time; before this time, the wall is at rest.
 ///
 /// With the start $`t_0`$, and $`z`$ the displacement of the motion,
 ///
@@ -31,7 +31,7 @@ pub struct Delayed {
 }
 
 impl Delayed {
-    /// Creates the motion that has phase 0 at this time, and rests before.
+    /// Creates the motion that has phase 0 at this time, and is at rest before it.
     ///
     /// # Errors
     /// If the time is not finite.

@@ -200,7 +200,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         Self { motion, approach, reach }
     }
 
-    /// Returns the first time, from this one on, at which the wall could reach the surface, at its highest.
+    /// Returns the first time, not before `time`, at which the wall could reach the surface if it were at its
+    /// highest position.
     fn enters_reach(&self, time: f64) -> Option<f64> {
         let Approach { acceleration, .. } = *self.approach;
         let above = self.approach.height(time) - self.reach.1;
@@ -255,8 +256,9 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     ///
     /// The gap itself does not show when such a bounce is over. However, the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
-    /// the bounce is over when the gap closes as fast as it opened. Any earlier, and bounces would lose speed
-    /// that no rule takes. Any later, and each bounce would go deeper into the wall than the last.
+    /// the bounce is over when the gap closes as fast as it opened. At an earlier end, bounces would lose
+    /// speed that no rule takes away. At a later end, each bounce would go deeper into the wall than the
+    /// previous one.
     fn low_bounce(&self, start: f64) -> Option<f64> {
         let first = self.look(start);
         let is_low = |pull: f64| first.rate * first.rate <= -2.0 * pull * first.tolerance;

@@ -1,4 +1,4 @@
-//! The motions that can be written to files: one list. A new motion is entered here, and exported in
+//! The list of the motions that can be written to files. A new motion is entered here, and exported in
 //! `wall.rs`.
 
 use std::any::Any;
@@ -25,7 +25,7 @@ impl<'de> Deserialize<'de> for Motion {
         let motion = motion_or_piston(deserializer)?;
         // Inside another motion, or in a part, a piston would not react.
         let reacts = motion.stroke().is_some();
-        if reacts { Err(D::Error::custom("a piston is a wall of a container")) } else { Ok(motion) }
+        if reacts { Err(D::Error::custom("only a wall of a container can be a piston")) } else { Ok(motion) }
     }
 }
 

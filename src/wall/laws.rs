@@ -44,11 +44,11 @@ const LATE: i32 = 40;
 ///
 /// The check samples each piece that begins between the phases. The state must be finite and within the
 /// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
-/// the integral of the velocity. Pieces must advance, and the wall may jump only where one ends, away from
-/// the disks, and if the motion says so. The motion must repeat after its period, and return the same values
-/// when it is called again. The check can miss a fault that is narrower than a five-hundredth of a piece, so
-/// check a motion with one long piece in several short intervals. It refuses an interval of more than ten
-/// thousand pieces. The page "Validation" says which planted faults it finds.
+/// the integral of the velocity. Pieces must advance. The wall may jump only where a piece ends, only away
+/// from the disks, and only if the motion declares jumps. The motion must repeat after its period, and return
+/// the same values when it is called again. The check can miss a fault that is narrower than a five-hundredth
+/// of a piece, so check a motion with one long piece in several short intervals. It refuses an interval of
+/// more than ten thousand pieces. The page "Validation" says which planted faults it finds.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -95,10 +95,10 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     Err(Violation::new(PART, "pieces", sentence))
 }
 
-/// Checks that two motions with different values have different fingerprints, and that two with equal values
-/// have the same fingerprint. Motions without a fingerprint are not compared.
+/// Checks that two motions with different values have different fingerprints, and that two motions with equal
+/// values have the same fingerprint. Motions without a fingerprint are not compared.
 ///
-/// The motions are compared at four thousand phases from −1 to 399, and at some later ones.
+/// The motions are compared at four thousand phases from −1 to 399, and at forty later phases.
 ///
 /// # Errors
 /// If the fingerprints contradict the values.
@@ -306,7 +306,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 // The times at which pieces end are rounded. The bounds there change with the third
                 // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
-            let sentence = "is not that at phase";
+            let sentence = "differs from the state at phase";
             require!(PART, "period", !differs;
                 "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}");
         }

@@ -19,11 +19,11 @@ use crate::{Fingerprint, ParameterError};
 /// between two impacts: a parabola or a sine, without a time step. Each disk that hits the wall changes its
 /// velocity by $`\Delta_n/M`$, as the collision rule says for partners of the masses $`m`$ and $`M`$. The
 /// wall is guided, so it takes any momentum along itself. A stop takes all of the wall's velocity: the wall
-/// rests there as long as the force presses it against the stop. A wall that turns at a stop, up to 1e-7 of
-/// its speed, does not touch it.
+/// rests there as long as the force presses it against the stop. A wall that turns around at a stop, up to
+/// 1e-7 of its speed, does not touch the stop.
 ///
-/// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall of it. A checkpoint keeps
-/// the state of the wall, a file of the container only its state at the start.
+/// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall from a piston. A
+/// checkpoint keeps the present state of the wall; a file of the container keeps only its state at the start.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -57,7 +57,7 @@ pub struct Piston {
 
 impl Piston {
     /// Creates a wall of this mass between a lower and an upper stop, given as displacements along its
-    /// normal, at rest at displacement 0 or the stop next to it, without forces.
+    /// normal, at rest at displacement 0 or at the stop nearest to 0, without forces.
     ///
     /// # Errors
     /// If the mass is not finite and positive, or the stops are not finite and in order.
@@ -83,7 +83,7 @@ impl Piston {
     /// Returns the same wall on a spring of this stiffness, which is slack at the displacement `center`.
     ///
     /// # Errors
-    /// If the stiffness is negative, or one of both is not finite.
+    /// If the stiffness is negative, or one of the two numbers is not finite.
     pub fn with_spring(self, stiffness: f64, center: f64) -> Result<Self, ParameterError> {
         let stiffness = non_negative("stiffness of a spring", stiffness)?;
         Ok(Self { stiffness, center: finite("center of a spring", center)?, ..self })

@@ -79,7 +79,7 @@ impl WallMotion for Scaled {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        // A mirrored motion keeps the fingerprint that checkpoints know.
+        // A mirrored motion keeps the fingerprint that existing checkpoints contain.
         let is_mirrored = self.factor == -1.0;
         let name = if is_mirrored {
             Fingerprint::of("Mirrored")

@@ -7,8 +7,8 @@ use crate::{Fingerprint, ParameterError};
 /// The sum of two motions.
 ///
 /// Displacements, velocities and bounds on the acceleration add. A piece ends where a piece of either motion
-/// ends. The sum has a period if one period is a whole multiple of the other, to the last bit, or one of the
-/// two never moves.
+/// ends. The sum has a period if one period is a whole multiple of the other, to the last bit, or if one of
+/// the two motions never moves.
 ///
 /// ```
 /// use granular_edmd::wall::{Sinusoidal, Summed, WallMotion};

@@ -56,8 +56,8 @@ impl Tabulated {
     /// Creates the motion through these rows, each a time and a displacement.
     ///
     /// # Errors
-    /// If there are fewer than two rows, a number is not finite, or a time is not later than the one before,
-    /// by more than rounding. If an acceleration would not be finite. Rows count from 0.
+    /// If there are fewer than two rows, a number is not finite, or a time is not later than the previous
+    /// time by more than rounding. If an acceleration would not be finite. Rows count from 0.
     pub fn new(rows: impl IntoIterator<Item = (f64, f64)>) -> Result<Self, ParameterError> {
         let rows: Vec<(f64, f64)> = rows.into_iter().collect();
         accept(rows.len() > 1, "number of rows", "at least 2", rows.len() as f64)?;
@@ -108,7 +108,8 @@ impl Tabulated {
         &self.rows
     }
 
-    /// Returns the arc at a phase, and where it ends. Before the first row, the wall rests at it.
+    /// Returns the arc at a phase, and the phase at which it ends. Before the first row, the wall rests at
+    /// the displacement of that row.
     fn arc(&self, phase: f64) -> (Arc, f64) {
         let next = self.arcs.partition_point(|arc| arc.from <= phase);
         let until = self.arcs.get(next).map_or(f64::INFINITY, |arc| arc.from);
@@ -145,7 +146,8 @@ fn arcs_to(row: usize, rows: &[(f64, f64)], velocities: &[f64]) -> Result<[Arc; 
     accept(from < middle && middle < to, format!("time of row {row}"), later(), to)?;
     let (first, second) = (middle - from, to - middle);
     let (start, end) = (velocities[row - 1], velocities[row]);
-    // The middle time is rounded. With its own two parts, the arcs meet at the same position and velocity.
+    // The middle time is rounded. With the durations of both halves after rounding, the arcs meet at the same
+    // position and velocity.
     let share = first / (to - from);
     let velocity = 2.0 * slope(row, rows) - share * start - (1.0 - share) * end;
     let acceleration = |gain: f64, wait: f64| finite(format!("acceleration before row {row}"), gain / wait);

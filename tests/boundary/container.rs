@@ -241,7 +241,8 @@ fn a_domain_with_an_open_top_returns_from_a_file() {
 #[test]
 fn walls_with_settings_do_not_become_periodic() {
     let lost = |container: Container| container.with_periodic_sides().unwrap_err().to_string();
-    let said = "the wall \"right\" has settings that would be lost: leave out what was set before, or this";
+    let said =
+        "the wall \"right\" has settings that would be lost: leave out the earlier setting or this one";
     assert_eq!(lost(closed().with_rule(Wall::Right, Elastic).unwrap()), said);
     assert_eq!(lost(closed().with_kind(Wall::Right, Kind::new(7)).unwrap()), said);
     assert_eq!(lost(closed().with_surface_speed(Wall::Right, 0.5).unwrap()), said);

@@ -169,7 +169,10 @@ fn an_answer_that_depends_on_the_past() {
     });
     let violation = caught(remembering, Promises::new());
     let text = violation.to_string();
-    assert!(text.contains("is another when asked for again") && text.contains("closing speed"), "{text}");
+    assert!(
+        text.contains("changes when the rule is called again") && text.contains("closing speed"),
+        "{text}"
+    );
 }
 
 #[test]

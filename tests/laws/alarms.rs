@@ -98,6 +98,7 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
         ("bar", vessel(bar.clone())?),
         ("conveyor", vessel(bar.clone().with_surface_speed(0.4)?)?),
         ("membrane", vessel(bar.clone().only_for([Kind::new(1)]))?),
+        ("pulley", vessel(Part::peg(middle, 0.8)?.with_surface_speed(0.4)?)?),
         ("sink", vessel(bar.clone().absorbing())?),
         ("turning bar", vessel(bar.with_rotation(middle, 0.8)?)?),
         ("moving block", vessel(Part::block(triangle)?.with_motion(DVec2::new(0.6, 0.8), sine)?)?),

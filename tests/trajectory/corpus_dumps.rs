@@ -17,7 +17,7 @@ fn dumps_of_lammps_and_liggghts() {
         (
             "id x y ix xu radius",
             "3 1 2 2 11 0.5",
-            "refused: line 10: x must be the same in all columns that tell it, but is \"21 and 11\"",
+            "refused: line 10: x must be the same in all columns that give it, but is \"21 and 11\"",
         ),
         (
             "id type type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius",

@@ -105,8 +105,14 @@ fn files_of_gsd() {
                 "refused: frame 0: the chunk `particles/position` has 3 rows of 2 numbers, not 3 of 3",
             ),
             ("no_positions.gsd", "refused: frame 0: the chunk `particles/position` is missing"),
-            ("bad_radius.gsd", "refused: line 2 is no disk: radius must be finite and positive, but is 0"),
-            ("bad_mass.gsd", "refused: line 2 is no disk: mass must be finite and positive, but is -1"),
+            (
+                "bad_radius.gsd",
+                "refused: line 2 does not describe a disk: radius must be finite and positive, but is 0",
+            ),
+            (
+                "bad_mass.gsd",
+                "refused: line 2 does not describe a disk: mass must be finite and positive, but is -1",
+            ),
             ("bad_time.gsd", "refused: frame 0: the chunk `log/time` must be finite, but is [NaN]"),
             (
                 "bad_gravity.gsd",

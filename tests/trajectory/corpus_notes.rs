@@ -40,7 +40,7 @@ fn momenta_need_masses() {
 #[test]
 fn columns_may_repeat_what_they_say() {
     let types = |rows| dump("id type type x y z radius", rows);
-    let differ = "must be the same in all columns that tell it, but is";
+    let differ = "must be the same in all columns that give it, but is";
     let twice = |columns: &str, row: &str| format!("{columns}\n{row}\n");
     check(
         &Reader::new(),

@@ -203,31 +203,31 @@ fn columns_that_contradict_each_other() {
             "Properties=pos:R:2:radius:R:1:diameter:R:1",
             "1 2 0.5 0.5",
             "refused: line 3: radius must be the same in all \
-          columns that tell it, but is \"0.5 and 0.25\"",
+          columns that give it, but is \"0.5 and 0.25\"",
         ],
         ["Properties=pos:R:2:radius:R:1:vel:R:2:velo:R:2", "1 2 0.5 3 4 3 4", "(1 2) r0.5 v(3 4)"],
         [
             "Properties=pos:R:2:radius:R:1:vel:R:2:velo:R:2",
             "1 2 0.5 3 4 4 4",
             "refused: line 3: velo must be the same in \
-          all columns that tell it, but is \"3 and 4\"",
+          all columns that give it, but is \"3 and 4\"",
         ],
         [
             "Properties=pos:R:2:radius:R:1:vel:R:2:momenta:R:2:mass:R:1",
             "1 2 0.5 3 4 6 8 1",
             "refused: line 3: velocity \
-          must be the same in all columns that tell it, but is \"3 and 6\"",
+          must be the same in all columns that give it, but is \"3 and 6\"",
         ],
         [
             "Properties=pos:R:2:radius:R:1:angle:R:1:orientation:R:4",
             "1 2 0.5 1 0 0 1 0",
             "refused: line 3: angle must be \
-          the same in all columns that tell it, but is \"1 and that of the orientation\"",
+          the same in all columns that give it, but is \"1 and that of the orientation\"",
         ],
         [
             "Properties=pos:R:2:pos:R:2:radius:R:1",
             "1 2 1 3 0.5",
-            "refused: line 3: pos must be the same in all columns that tell it, but is \"2 and 3\"",
+            "refused: line 3: pos must be the same in all columns that give it, but is \"2 and 3\"",
         ],
     ]);
 }

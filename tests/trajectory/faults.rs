@@ -38,12 +38,15 @@ fn faults_of_tables() {
         ("weight,height\n1,2\n", UNKNOWN),
         (
             "x,y,radius,diameter\n1,2,0.5,1\n3,2,0.25,0.25\n",
-            "line 3: radius must be the same in all columns that tell it, but is \"0.25 and 0.125\"",
+            "line 3: radius must be the same in all columns that give it, but is \"0.25 and 0.125\"",
         ),
-        ("x,y,radius\n1,2,-0.5\n", "line 2 is no disk: radius must be finite and positive, but is -0.5"),
+        (
+            "x,y,radius\n1,2,-0.5\n",
+            "line 2 does not describe a disk: radius must be finite and positive, but is -0.5",
+        ),
         (
             "x,y,radius\n1,inf,0.5\n",
-            "line 2 is no disk: position must be finite and at most 1e60 in magnitude, but is inf",
+            "line 2 does not describe a disk: position must be finite and at most 1e60 in magnitude, but is inf",
         ),
         (
             "x,y,radius,kind\n1,2,0.5,-1\n",
@@ -198,7 +201,7 @@ fn faults_of_data_of_lammps() {
     told(&format!("{atoms}1 1 1 1 9.5 2 0\n"), "line 11: the disk at (9.5, 2) is outside the box");
     told(
         &format!("{atoms}1 1 0 1 4 2 0\n"),
-        "line 11 is no disk: radius must be finite and positive, but is 0",
+        "line 11 does not describe a disk: radius must be finite and positive, but is 0",
     );
     let moving = format!("{atoms}1 1 1 1 4 4 0\n\nVelocities\n\n");
     told(&format!("{moving}3 0 0 0 0 0 0\n"), "line 15: the atom 3, which has a velocity here, is missing");

@@ -469,7 +469,7 @@ fn faults_of_formats_are_told() {
     assert_eq!(faulty(0.0, 1, false), found("frame 0 has 10 bytes, of which 11 are skipped"));
     let cut = "frame 0, cut after 2 of its 10 bytes, does not answer `None`";
     assert_eq!(faulty(0.0, 0, true), found(cut));
-    assert_eq!(faulty(0.0, 5, false), found("frame 0 of 10 bytes is another when written again"));
+    assert_eq!(faulty(0.0, 5, false), found("frame 0 of 10 bytes differs when it is written again"));
     assert_eq!(trajectory::laws::check(&ExtendedXyz), Ok(()));
     assert_eq!(trajectory::laws::check(&LammpsDump), Ok(()));
 }

@@ -43,7 +43,7 @@ impl Brick {
     }
 
     /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
-    /// If the disk grows, there is no earlier touch, but there need not be one at that time either.
+    /// If the disk grows, the true disk has no earlier touch, but need not touch at that time either.
     ///
     /// The disk can touch only the side of the brick on which its center is. A disk whose center is behind
     /// the brick flies on until it is in front. Only touches beside the brick count. At its ends, the next
@@ -109,7 +109,7 @@ impl Brick {
         Some(from + opens + touch)
     }
 
-    /// Returns by how much a disk may grow at most, so that the search still finds its first touch.
+    /// Returns the largest growth of a disk at which the search still finds the disk's first touch.
     pub(in crate::boundary) fn most_growth(&self, radius: f64) -> f64 {
         match self.shape {
             Shape::Segment(_) => f64::INFINITY,
@@ -125,8 +125,8 @@ impl Brick {
         }
     }
 
-    /// Returns the radius of the brick toward a disk at this position. It is negative from inside an arc, and
-    /// infinite for a segment or a corner, which has no radius.
+    /// Returns the radius of the brick as seen by a disk at this position. It is negative inside an arc, and
+    /// infinite for a segment and for a corner, which have no radius.
     pub(in crate::boundary) fn radius_at(&self, place: DVec2) -> f64 {
         match self.shape {
             Shape::Arc(arc) if arc.radius > 0.0 => match arc.side(place) {

@@ -131,7 +131,7 @@ impl Beside {
     pub(super) fn stretches(&self, wait: f64) -> impl Iterator<Item = (f64, f64)> {
         let [first, second] = self.quantities.map(|quantity| quantity.zeros());
         // Between neighboring marks, no quantity changes its sign. A zero that is not a number or is outside
-        // the interval is moved to its end, where it is harmless.
+        // the interval is replaced by the end of the interval, where it is harmless.
         let inside = |time: f64| if time > 0.0 && time < wait { time } else { wait };
         let mut marks = [0.0, inside(first[0]), inside(first[1]), inside(second[0]), inside(second[1]), wait];
         marks.sort_by(f64::total_cmp);

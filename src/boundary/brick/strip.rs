@@ -9,8 +9,8 @@ use crate::roots::first_descent_of_quartic;
 
 impl Brick {
     /// Returns the first time, not later than `wait`, at which a disk is in the strip of a brick that moves
-    /// to and fro: within its radius of some position of the brick from `-stroke` to `stroke`. The time may
-    /// be too early, but never too late.
+    /// back and forth: the disk would touch the brick at some displacement from `-stroke` to `stroke`. The
+    /// time may be too early, but never too late.
     ///
     /// The strip is the band along the brick that is as wide as the stroke across it, and longer than the
     /// brick by the stroke at both ends. A rectangle around the brick in all its positions would be too
@@ -50,8 +50,8 @@ impl Brick {
     }
 
     /// Returns the first time, not later than `wait`, at which a disk is in the ring of a brick that turns
-    /// about a point: its distance from the point then equals the distance of some position on the brick, up
-    /// to the radius.
+    /// about a point: its distance from that point then equals, up to the disk's radius, the distance of some
+    /// point of the brick.
     pub(in crate::boundary) fn wait_to_enter_ring(
         &self,
         path: &Path,

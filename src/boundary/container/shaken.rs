@@ -32,8 +32,8 @@ impl Container {
 
     /// Returns the same container with a wall that moves along itself.
     ///
-    /// The displacement of the motion is to the right for floor and lid, and up for the sides. The wall may
-    /// also move along its normal.
+    /// A positive displacement moves floor and lid to the right, and the sides up. The wall may also move
+    /// along its normal.
     ///
     /// # Errors
     /// The same as for [`with_motion`](Self::with_motion), and if the wall slides already.

@@ -2,10 +2,10 @@
 //!
 //! A region is halved until the gaps decide whether each of its cells is free. A wall that is farther from
 //! the middle of a cell than its corners does not reach into the cell, since the gap grows by no more than
-//! the disk moves. In a small cell whose middle and corners have the gaps to one straight wall, the wall is
-//! straight up to `BEND`, and the free share has a closed form. Cells at corners of the free area, at thin
-//! walls and at tight arcs are halved further. The smallest cells count as uncertain if they are still
-//! undecided.
+//! the disk moves. If the gaps in the middle and at the corners of a small cell fit one straight wall up to
+//! `BEND`, the wall counts as straight, and the free share has a closed form. Cells at corners of the free
+//! area, at thin walls and at tight arcs are halved further. The smallest cells count as uncertain if they
+//! are still undecided.
 
 use glam::DVec2;
 
@@ -123,7 +123,7 @@ impl Cell {
 /// middle and its change to the sides.
 fn share_beside_line(middle: f64, change: DVec2) -> f64 {
     let across = change.abs().max_element();
-    // A function that hardly changes along a side would cancel below.
+    // For a function that hardly changes along a side, the difference below would lose its digits.
     let along = change.abs().min_element().max(1e-4 * across);
     let square = |from: f64| from.max(0.0) * from.max(0.0);
     let integral = |value: f64| (square(value + across) - square(value - across)) / (4.0 * across);

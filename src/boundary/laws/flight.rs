@@ -109,8 +109,8 @@ fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
-/// Returns whether the flight ends at a sink, which may take a disk out without a touch, when the center
-/// arrives.
+/// Returns whether the flight ends at a sink. A sink for centers takes a disk out without a touch, when the
+/// center arrives.
 fn is_absorbed(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
     let place = flight.position(touch.time);
     matches!(trial.boundary.surface(touch.wall, place, touch.time).response, Response::Absorbing)
@@ -152,7 +152,7 @@ fn check_way(trial: &Trial<'_>, flight: &Flight, end: f64, found: Option<Touch>)
     Ok(())
 }
 
-/// Checks that the gap is closed at the touch, and the surface there.
+/// Checks that the gap is closed at the touch, and checks the surface there.
 fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<Meeting, Violation> {
     let Touch { time, wall, .. } = touch;
     let place = flight.position(time);
@@ -194,8 +194,8 @@ fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result
 /// Checks that the same flight, given relative to another time origin, touches at the same absolute time, and
 /// finds the same surface.
 ///
-/// Rounding decides a grazing touch, or one just before the flight is over, so it may be found with one
-/// origin only.
+/// Rounding decides whether there is a grazing touch, or a touch just before the end of the flight. Such a
+/// touch may be found with one origin only.
 fn check_origin(
     trial: &mut Trial<'_>,
     flight: &Flight,

@@ -17,11 +17,11 @@ const FLIGHTS: usize = 1000;
 /// Number of contacts in which the rules of two walls are compared.
 const CONTACTS: usize = 300;
 
-/// Checks that two boundaries with different results have different fingerprints, and that two with equal
-/// results on a thousand flights have the same fingerprint. Boundaries without a fingerprint are not
-/// compared.
+/// Checks that two boundaries with different results have different fingerprints, and that two boundaries
+/// with equal results on a thousand flights have the same fingerprint. Boundaries without a fingerprint are
+/// not compared.
 ///
-/// The check sets the time origins of both.
+/// The check sets the time origins of both boundaries.
 ///
 /// # Errors
 /// If the fingerprints contradict the results.
@@ -54,7 +54,7 @@ where
     for number in 0..FLIGHTS {
         one.kind = Kind::new(KINDS[number % KINDS.len()]);
         other.kind = one.kind;
-        // A boundary without room has been refused by `check`; here, nothing is left to compare.
+        // `check` refuses a boundary without room. Here, nothing is left to compare.
         let Ok((origin, flight)) = random.flight(&mut one) else { break };
         one.set_origin(origin);
         other.set_origin(origin);

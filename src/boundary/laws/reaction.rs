@@ -58,7 +58,7 @@ fn check_blow(
     let (radius, masses) = (surface.radius, [surface.mass, surface.tangential_mass]);
     let [mass, tangential] = masses.map(|mass| if mass.is_finite() { mass } else { 1.0 });
     let impulse = trial.speed * (along * mass * normal + across * tangential * tangent);
-    // A couple turns a wall with a tangential mass, which is its moment of inertia by R².
+    // A couple turns a wall that has a tangential mass, which is the moment of inertia divided by R².
     let arm = if radius.is_finite() { radius } else { trial.radius };
     let couple = couple * trial.speed * tangential * arm;
     let point = place - trial.radius * normal;

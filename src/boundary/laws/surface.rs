@@ -19,8 +19,9 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
-/// Largest errors: `UNIT` of a normal's squared length, `SLOPE` of its direction if another wall is as near,
-/// `EXACT` of its direction otherwise, of a speed and of a curvature.
+/// Largest errors. `UNIT` holds for the squared length of a normal, and `SLOPE` for the direction of a normal
+/// if another wall is equally near. `EXACT` holds for the direction of any other normal, for speeds and for
+/// curvatures.
 const UNIT: f64 = 1e-9;
 const SLOPE: f64 = 0.2;
 const EXACT: f64 = 5e-8;
@@ -54,6 +55,7 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
         around.check_velocity(&surface)?;
         around.check_radius(normal, radius)?;
         around.check_point(&surface)?;
+        around.check_turning(&surface)?;
     }
     let [touched, named] = &mut trial.touches[wall];
     (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
@@ -76,8 +78,8 @@ impl Around<'_, '_> {
         found.map_or((-larger, self.wall), |found| (found.depth - larger, found.with))
     }
 
-    /// Returns whether a function of a step has this slope at 0: from both sides, or from one, since the
-    /// other may lie beyond a corner or beyond a change of the motion.
+    /// Returns whether a function of a step has this slope at 0, on both sides or on one side: the other side
+    /// may lie beyond a corner or beyond a change of the motion.
     fn has_slope(&self, slope: f64, step: f64, slack: f64, depth: impl Fn(f64) -> f64) -> bool {
         let slack = slack + 16.0 * f64::EPSILON * self.trial.extent() / step;
         let [low, below, here, above, high] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|count| depth(count * step));
@@ -115,8 +117,8 @@ impl Around<'_, '_> {
     }
 
     /// Checks that other disks that touch the same point find the same velocity there, since it is the
-    /// velocity of the material: a larger one, and at a tip one from another side. A belt that runs around a
-    /// tip has the same speed on either side.
+    /// velocity of the material. The other disks are a larger one and, at a tip, one on another side. A belt
+    /// that runs around a tip has the same speed on either side.
     fn check_point(&self, surface: &Surface<'_>) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = *self;
         let (normal, size, velocity) = (surface.normal, self.trial.radius, surface.velocity);
@@ -141,8 +143,37 @@ impl Around<'_, '_> {
         Ok(())
     }
 
+    /// Checks that the angular velocity agrees with the velocities of surface points beside the touch: their
+    /// components along the normal differ by the rotation. At a kink or a tip, it is enough that one side
+    /// agrees. A free drum is not checked, since its angular velocity follows from its velocity.
+    fn check_turning(&self, surface: &Surface<'_>) -> Result<(), Violation> {
+        let Self { wall, place, time, .. } = *self;
+        let (normal, size, turning) = (surface.normal, self.trial.radius, surface.angular_velocity);
+        require!(PART, "angular velocity", turning.is_finite();
+            "wall {wall} turns at {turning:?} at {place:?}, time {time:?}");
+        if surface.tangential_mass.is_finite() && surface.radius.is_finite() {
+            return Ok(());
+        }
+        let step = NEAR * size;
+        let [low, here, high] = [-1.0, 0.0, 1.0].map(|count: f64| {
+            let beside = place + count * step * normal.perp();
+            let other = self.trial.boundary.surface(wall, beside, time);
+            (beside - size * other.normal, other.velocity.dot(normal))
+        });
+        let slack = SAME * (turning.abs() + (self.trial.speed + here.1.abs()) / size);
+        let mut pairs = [(low, high), (low, here), (here, high)].into_iter();
+        let turns = pairs.any(|((from, before), (to, after))| {
+            let along = (to - from).dot(normal.perp());
+            along < 0.5 * step || ((before - after) / along - turning).abs() <= slack
+        });
+        require!(PART, "angular velocity", turns;
+            "wall {wall} has the angular velocity {turning:?}, but its velocities around {place:?}, {time:?}, turn \
+             it otherwise");
+        Ok(())
+    }
+
     /// Checks that the radius agrees with the curvature, if the wall is smooth near the touch. At a corner or
-    /// a tip it may be any.
+    /// a tip, the radius may have any value.
     fn check_radius(&self, normal: DVec2, radius: f64) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
         let size = self.trial.radius;

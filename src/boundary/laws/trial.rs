@@ -161,7 +161,7 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the region with the engine's extension: to infinity where the region is near an edge of the
+    /// Returns the region as the engine extends it: to infinity where the region is near an edge of the
     /// domain.
     fn open_at_edges(&self, region: Region) -> Region {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::boundary::brick::Brick;
 
-/// Sine of the smallest angle at which two bricks, turned toward the disks, shield their corner. A disk at
-/// such a corner touches both bricks and never the corner itself, so the corner needs no point.
+/// Sine of the smallest angle between two bricks that turn toward the disks and thereby shield their corner.
+/// A disk at such a corner touches both bricks and never the corner itself, so the corner needs no point.
 const CLEARLY: f64 = 1e-6;
 
 /// The bricks that meet at a point, by the directions in which they arrive and leave.
@@ -59,7 +59,7 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
 /// Returns whether all borders between free and occupied regions lie on bricks: all bricks are thin, or no
 /// brick is thin and the bricks form closed lines.
 ///
-/// At the free end of other bricks, the nearest of them decides on which side a position is.
+/// In all other cases, the nearest brick decides on which side of the bricks a position is.
 pub(super) fn are_closed(bricks: &[Brick]) -> bool {
     let mut more_starts: HashMap<[u64; 2], i32> = HashMap::new();
     let walls = || bricks.iter().filter(|brick| !brick.is_point());

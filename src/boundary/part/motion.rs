@@ -10,7 +10,8 @@ use crate::wall::{Motion, WallMotion};
 
 /// Position and motion.
 impl Part {
-    /// Returns the same part with a motion along a direction. Replaces an earlier motion along a direction.
+    /// Returns the same part with a motion along a direction, in place of an earlier motion along a
+    /// direction.
     ///
     /// The vector `direction` can have any length except 0. A part that also [turns](Self::with_rotation)
     /// moves along the same direction at all times, and the point about which it turns moves with it.
@@ -30,8 +31,8 @@ impl Part {
         self.moving(Along { direction, motion })
     }
 
-    /// Returns the same part, turning about a point, counterclockwise at this angular velocity. Replaces an
-    /// earlier rotation.
+    /// Returns the same part, turning about a point, counterclockwise at this angular velocity, in place of
+    /// an earlier rotation.
     ///
     /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
     /// and the displacement $`z`$, the point that was built at $`r`$ is, at the time $`t`$, at
@@ -41,8 +42,8 @@ impl Part {
     /// \dot z(t)\,e + \omega\,R(\omega t)\,(r - c)_\perp .
     /// ```
     ///
-    /// A circle about that point stays in place; only its surface moves. Any other part is where it was built
-    /// at time 0, and after each whole turn.
+    /// A circle about that point stays in place; only its surface moves. Any other part has the position in
+    /// which it was built at time 0 and after each whole turn.
     ///
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
@@ -80,9 +81,9 @@ impl Part {
 
     /// Returns the same part with a motion whose phase counts from this absolute time instead of 0.
     ///
-    /// A moving part that is added to a run should start at the present time. It is then where it was built,
-    /// if its motion has no displacement at phase 0. The start is not a delay: before it, the part goes
-    /// through the phases before 0.
+    /// A moving part that is added to a run should start at the present time. It then has the position in
+    /// which it was built, if its motion has no displacement at phase 0. The start is not a delay: before it,
+    /// the part goes through the phases before 0.
     ///
     /// # Errors
     /// If the time is not finite.

@@ -50,7 +50,8 @@ fn doubled_area(points: &[DVec2]) -> f64 {
 /// Returns the numbers of two sides that cross or touch, or `None` if no two do. Neighbors may share only
 /// their common end.
 ///
-/// Sides are sorted by their left ends, so that each is compared only with those that begin before it ends.
+/// Sides are sorted by their left ends, so that each side is compared only with sides that begin before it
+/// ends.
 fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
     let sides: Vec<(DVec2, DVec2)> = pairs(points).collect();
     let mut order: Vec<usize> = (0..sides.len()).collect();

@@ -42,7 +42,7 @@ pub(in crate::boundary) struct Turning {
     pub(super) is_round: bool,
 }
 
-/// The phases of both motions of a part, each the time less whole periods.
+/// The phases of both motions of a part. Each phase is the time less whole periods of the motion.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::boundary) struct Phase {
     along: f64,
@@ -111,8 +111,8 @@ impl Along {
     /// bounds.
     fn look(&self, path: &Path, phase: f64, time: f64) -> Look {
         let (state, bounds) = (self.motion.state(time + phase), self.motion.acceleration(time + phase));
-        // The true acceleration differs from the middle by at most half of the range, so the disk grows
-        // least.
+        // The true acceleration differs from the middle by at most half of the range. The disk therefore
+        // grows less than with any other choice.
         let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
         let path = Path {
             place: path.place - self.direction * state.displacement,

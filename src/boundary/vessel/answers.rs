@@ -10,7 +10,7 @@ use crate::boundary::{
 };
 use crate::{Fingerprint, Flight, ParameterError};
 
-/// Relative difference of radii below which a disk counts as large as a hollow.
+/// Relative difference below which the radii of a disk and a hollow count as equal.
 const TIGHT: f64 = 1e-9;
 
 impl Boundary for Vessel {

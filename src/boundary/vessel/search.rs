@@ -13,7 +13,7 @@ use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 /// one round more. The engine reads the clock every 256 events, so it still keeps a limit of wall-clock time.
 const MOST_STEPS: u32 = 256;
 
-/// Largest number of steps of a search for one brick, before the others have their turn.
+/// Largest number of steps of a search for one brick, before the search continues with the next brick.
 ///
 /// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
 /// touches it first. A turning arm has such a brick on its trailing side. The rounds keep it from taking all
@@ -77,8 +77,8 @@ impl Vessel {
         if moving.is_empty() { first } else { self.search(&moving, flight, until, first) }
     }
 
-    /// Returns the flight as seen from a periodic image of a brick; the flight of a point, if the brick takes
-    /// centers.
+    /// Returns the flight as seen from a periodic image of a brick. For a brick that takes centers, it is the
+    /// flight of a point.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
         let is_line = self.parts[self.walls[entry.wall as usize].part].part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
@@ -209,7 +209,7 @@ enum Step {
 }
 
 impl Search<'_> {
-    /// Searches from a time on, at which there was no touch yet, for a round of steps.
+    /// Searches for one round of steps, from a time up to which there is no touch.
     fn run(&self, from: f64, steps: &mut u32) -> FirstTouch<f64> {
         let mut time = from;
         for _ in 0..STEPS_IN_A_ROUND {

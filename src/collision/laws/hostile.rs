@@ -53,7 +53,7 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
 /// Returns contacts that authors of rules tend to forget, the same ones in the same order every time.
 ///
 /// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
-/// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
+/// accepts. Among them are positive, negative and zero slips, central and grazing contacts, contacts without
 /// closing speed, and partners that have just collided. The partners are, alternately, disks of kinds 0 and 1
 /// and straight walls, with radii up to the extremes that the engine accepts.
 ///
@@ -82,7 +82,7 @@ fn mild_contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
-/// Returns an ordinary contact of each kind with its like, with the default kind, and with a wall.
+/// Returns an ordinary contact of each kind with the same kind, with the default kind, and with a wall.
 pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
     let contact = Contact::new(1.0, 0.5, 0.5, 0.25);
     (0..u16::MAX).map(Kind::new).flat_map(move |kind| {

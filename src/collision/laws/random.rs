@@ -45,8 +45,8 @@ pub(crate) fn meeting(partners: [Partner; 2], closing: f64, slip: f64, spin: f64
         .with_spin(spin, inertia, one[2] - other[2])
 }
 
-/// Returns contacts between disks, and with straight, convex and hollow walls, with relative spins, masses up
-/// to a ratio of 10⁶ and infinite ones, and last collisions at any time.
+/// Returns contacts between disks, and with straight, convex and hollow walls. They have relative spins, mass
+/// ratios up to 10⁶ and infinite masses, and last collisions at any time.
 pub(super) fn random_contacts(seed: u64, kinds: &[Kind]) -> impl Iterator<Item = Contact> + '_ {
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(seed));
     (0..CONTACTS).map(move |_| random.contact(kinds))

@@ -106,7 +106,7 @@ impl Promises {
         Self { mirror: false, ..self }
     }
 
-    /// Returns the same promises for disks of these kinds only; by default, for all.
+    /// Returns the same promises for disks of these kinds only; the default is all kinds.
     ///
     /// ```
     /// use granular_edmd::Kind;
@@ -186,14 +186,14 @@ impl Promises {
 /// Checks that `rule` keeps its promises, and that it returns the same impulses when it is called again in
 /// other orders.
 ///
-/// The contacts are all [`hostile_contacts`], and twelve thousand at random between them: disks, straight,
-/// convex and hollow walls, relative spins, masses up to a ratio of 10⁶ and infinite ones, and last
-/// collisions at any time. Each is also tried with the partners exchanged and as its mirror image. Each kind
-/// has an ordinary contact with its like, with the default kind and with a wall. The page "Validation" says
-/// which planted faults the check finds.
+/// The contacts are all [`hostile_contacts`], and twelve thousand random ones between their extremes: between
+/// disks and with straight, convex and hollow walls, with relative spins, mass ratios up to 10⁶ and infinite
+/// masses, and last collisions at any time. Each is also tried with the partners exchanged and as its mirror
+/// image. Each kind has an ordinary contact with the same kind, with the default kind and with a wall. The
+/// page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken, at the simplest contact at which the same promise is still broken.
+/// The first promise that is broken, at the simplest contact that the check finds for the same promise.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
     let answer = |contact: &Contact| promises.check_answer(rule, contact);
     let simplify = |contact, violation| simplest(contact, violation, |contact| answer(contact).err());
@@ -216,7 +216,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
     Ok(())
 }
 
-/// Checks that two rules with different impulses have different fingerprints, and that two with equal
+/// Checks that two rules with different impulses have different fingerprints, and that two rules with equal
 /// impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint are not
 /// compared.
 ///
@@ -241,7 +241,7 @@ where
     check_pair("collision rule", [first.fingerprint(), second.fingerprint()], difference)
 }
 
-/// Returns the same contact, with partner 1 as partner 2.
+/// Returns the same contact with the partners exchanged.
 fn exchanged(contact: &Contact) -> Contact {
     let ([first, second], [one, other]) = (contact.kinds(), contact.radii());
     contact.with_kinds([second, first]).with_radii([other, one]).with_spin(
@@ -280,12 +280,12 @@ fn check_same(
     let is_same = close(impulse.normal(), other.normal(), 0.0)
         && close(impulse.tangential(), sign * other.tangential(), impulse.normal())
         && close(impulse.couple(), -other.couple(), turning);
-    unless(is_same, law, contact, impulse, || format!("is another there: {other}"))
+    unless(is_same, law, contact, impulse, || format!("disagrees with the impulse in that contact: {other}"))
 }
 
 fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<(), Violation> {
     unless(bits(impulse) == bits(later), "repeatable", contact, impulse, || {
-        format!("is another when asked for again: {later}, {:?}", later.regime())
+        format!("changes when the rule is called again: {later}, {:?}", later.regime())
     })
 }
 

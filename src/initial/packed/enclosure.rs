@@ -18,7 +18,7 @@ pub(super) struct Enclosure<'a, B: ?Sized> {
     room: Domain,
 }
 
-// `Clone` is written out, because a derived one would require it of the boundary.
+// `Clone` is written out, because a derived implementation would require `Clone` of the boundary.
 impl<B: ?Sized> Clone for Enclosure<'_, B> {
     fn clone(&self) -> Self {
         Self { boundary: self.boundary, room: self.room }

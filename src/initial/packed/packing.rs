@@ -21,8 +21,8 @@ const SMALLER: f64 = 0.7;
 /// Number of attempts to find random positions.
 const ATTEMPTS: i32 = 8;
 
-/// Number of collisions per disk between two steps of growth. With fewer, packing is faster, and jams at a
-/// lower density.
+/// Number of collisions per disk between two steps of growth. With fewer collisions, packing is faster, but
+/// jams at a lower density.
 const COLLISIONS: usize = 4;
 
 /// Longest time between two steps, in which a disk of the largest size moves by about its radius.
@@ -113,7 +113,7 @@ impl<'a> Packing<'a> {
         Ok(())
     }
 
-    /// Returns the radius to which a disk may grow and leave its neighbors room to grow, too; at most its
+    /// Returns the radius to which a disk may grow so that its neighbors keep room to grow, too; at most its
     /// full radius.
     fn free_radius(&self, index: usize, domain: &Domain, squares: &Squares) -> f64 {
         let (disk, full) = (&self.grown[index], self.full[index].radius());
@@ -158,8 +158,8 @@ fn placed<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns a radius, at most this one, with which a disk at this position overlaps no wall; 0 if there is
-/// none.
+/// Returns a radius of at most `radius` with which a disk at this position overlaps no wall; 0 if there is no
+/// such radius.
 fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
     let probe = Probe::new(place, radius, 0.0);
     let Some(overlap) = room.overlap(&probe) else { return radius };

@@ -33,7 +33,7 @@ pub(super) struct Script {
     /// Generates the times of the first operation, a reset.
     time: fn(&mut Stage) -> f64,
     /// Makes the next operation from the earliest disk and its time. It is called only while there are disks.
-    /// Without it, the first or any other disk gets another time.
+    /// If there is no such function, the first disk or a random one gets another time.
     next: Option<fn(&mut Stage, usize, f64) -> Operation>,
 }
 
@@ -50,7 +50,8 @@ const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
 /// script.
 const SOME: &[usize] = &[600];
 
-/// More disks than a scheduler that chooses by size treats as few, and than 16 bits can count.
+/// More disks than [`LARGE_SYSTEM`], from which on schedulers may work differently, and more than 16 bits can
+/// count.
 const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
 
 pub(super) const SCRIPTS: [Script; 13] = [

@@ -37,7 +37,8 @@ pub(super) mod avx512 {
         let (left_out, late) = ((1_u64 << one) | (1_u64 << other), _mm512_set1_pd(f64::INFINITY));
         let eight = |k: usize| _mm512_mask_mov_pd(load::eight(&eights[k]), (left_out >> (8 * k)) as u8, late);
         let [a, b, c, d] = [eight(0), eight(1), eight(2), eight(3)];
-        // The earliest of each column, then of columns four, two and one apart: all columns hold it at last.
+        // The earliest time of each column, then of columns that are four, two and one apart. In the end, all
+        // columns hold the earliest time.
         let first = min(min(a, b), min(c, d));
         let first = min(first, _mm512_shuffle_f64x2::<0b01_00_11_10>(first, first));
         let first = min(first, _mm512_shuffle_f64x2::<0b10_11_00_01>(first, first));
@@ -59,9 +60,9 @@ pub(super) mod avx2 {
     use super::{NO_SEAT, PLAYERS, Times};
     use crate::instructions::load;
 
-    /// A single infinite time among times that are never the later ones. Of any 32 in a row, it is in one
-    /// seat or in none. There are no selections by the bits of a mask here, so players are left out by the
-    /// maximum of their time and this one.
+    /// A table of negative infinities with one positive infinity. In any 32 consecutive entries, the positive
+    /// infinity is in one seat or in none. AVX2 cannot select by the bits of a mask. Instead, the maximum of
+    /// the times and these entries makes one player infinitely late.
     static LATE: [f64; 3 * PLAYERS] = {
         let mut late = [f64::NEG_INFINITY; 3 * PLAYERS];
         late[PLAYERS] = f64::INFINITY;
@@ -89,7 +90,8 @@ pub(super) mod avx2 {
         let first = min(first, _mm256_permute2f128_pd::<0b01>(first, first));
         let first = min(first, _mm256_permute_pd::<0b01_01>(first));
         let seats = |times| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_EQ_OQ>(times, first)).cast_unsigned();
-        // As a sum of shifted masks, or in a loop, the compiler would collect these through memory.
+        // If this were a sum of shifted masks, or a loop, the compiler would collect the masks through
+        // memory.
         let low = ((seats(d) * 16 + seats(c)) * 16 + seats(b)) * 16 + seats(a);
         let high = ((seats(h) * 16 + seats(g)) * 16 + seats(f)) * 16 + seats(e);
         (_mm256_cvtsd_f64(first), (low | (high << 16)).trailing_zeros() as usize % PLAYERS)

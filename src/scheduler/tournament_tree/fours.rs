@@ -27,7 +27,7 @@ impl Entry {
     /// Returns the earlier of two entries. At equal times, the smaller disk wins.
     #[inline]
     fn earlier(self, other: Self) -> Self {
-        // To compare the two as pairs would become a branch on some processors. The sum cannot overflow,
+        // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow,
         // since no time has the largest order; for this reason, `EMPTY` has the order before it.
         let wins = other.order < self.order + u64::from(other.disk < self.disk);
         Self {

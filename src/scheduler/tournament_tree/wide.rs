@@ -2,8 +2,9 @@
 //!
 //! The runner-up is known before the winner's event is carried out. The next event can therefore begin while
 //! the processor is still busy with the winner's new time, which is known last. Only the branch on whether
-//! the winner stays first depends on that time, and it is nearly always predicted. A tournament without the
-//! runner-up has to wait for the new time, and is slower than the tournament in matches of four.
+//! the winner stays first depends on that time, and this branch is nearly always predicted correctly. A
+//! tournament without the runner-up has to wait for the new time, and is slower than the tournament in
+//! matches of four.
 
 use std::hint::select_unpredictable;
 

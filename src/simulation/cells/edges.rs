@@ -5,8 +5,9 @@ use crate::boundary::Domain;
 
 /// Moves the outermost edges out by a margin.
 pub(super) fn widen(edges: &mut [f64], margin: f64) {
-    // Cells keep their disks up to a margin beyond their edges (`Grid::region`). At periodic sides the margin
-    // would take disks out of the domain, so the outermost edges move in by as much, and the sum is the side.
+    // Cells keep their disks up to a margin beyond their edges (`Grid::region`). At periodic sides, the
+    // margin would take disks out of the domain. The outermost edges are therefore moved inward by the
+    // margin, so that edge and margin together end at the side.
     if let [first, .., last] = edges {
         *first -= margin;
         *last += margin;
@@ -24,9 +25,9 @@ pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64>
 }
 
 /// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
-/// height, so a disk that flies high does not share its cell with all other high ones.
+/// height, so a disk that flies high does not share its cell with all other disks at great heights.
 pub(super) fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
-    /// Ratio of heights from row to row. With it, a few rows more reach exponentially higher.
+    /// Ratio of heights from row to row. A few more rows then reach exponentially higher.
     const GROWTH: f64 = 1.1;
     let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, !domain.periodic_ends);
     if domain.top.is_infinite() {

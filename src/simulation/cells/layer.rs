@@ -6,8 +6,8 @@
 //! picture.
 //!
 //! Homes consist of whole cells, a power of two along each side, so that a home follows from a cell by a
-//! shift of bits. A disk that enters another cell is mostly still at home, and then the contents of homes
-//! stay as they are.
+//! shift of bits. A disk that enters another cell usually stays in its home, and then the contents of homes
+//! do not change.
 
 use std::f64::consts::SQRT_2;
 
@@ -30,7 +30,7 @@ const SPARE_HOMES: f64 = 16.0;
 /// Largest number of doublings by which cells are finer than homes.
 const FINEST: u32 = 10;
 
-/// Number of columns or rows from which on cells get no finer.
+/// Number of columns or rows at which cells are not made finer any more.
 const MOST_LINES: u32 = 1 << 20;
 
 /// The layout of the cells of a class, and the number of cells that make up a home.
@@ -61,21 +61,21 @@ impl LayerLayout {
         let free_path =
             1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
         // In a small cell, a disk has few partners, but it leaves the cell often. A cell of this class is no
-        // smaller than a cell of the smallest class, since the disks of this class search the cells of that
-        // one.
+        // smaller than a cell of the smallest class, since the disks of this class search the cells of the
+        // smallest class.
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
-        // Cells are halved homes, so only some sizes are possible. The size with a ratio to the suitable one
-        // that is nearest to 1 is taken.
+        // Cells are halved homes, so only some sizes are possible. The size whose ratio to the suitable size
+        // is nearest to 1 is taken.
         while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.can_be_finer() {
             layout = layout.finer();
         }
         Some(layout)
     }
 
-    /// Returns whether there may be twice as many columns and rows. Their number is limited, since each has
-    /// entries in tables.
+    /// Returns whether the numbers of columns and rows may be doubled. They are limited, since each column
+    /// and row has entries in tables.
     fn can_be_finer(&self) -> bool {
         self.doublings < FINEST && self.cells.columns.max(self.cells.rows) < MOST_LINES
     }
@@ -137,8 +137,8 @@ impl LayerLayout {
 /// half a period, no other image comes nearer.
 pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
     // Both of two equal disks may be anywhere in their cells. Each cell may therefore be half as wide as half
-    // a period less the distance at a touch. Beside a small disk, the margin of its cell counts, too: it may
-    // be that far outside.
+    // a period less the distance at a touch. For a small disk, the margin of its cell counts, too, since the
+    // disk may be outside the cell by the margin.
     let half = 0.5 * domain.periods();
     let small_cell = grid.layout.pitch + 2.0 * grid.margin;
     let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);

@@ -22,8 +22,8 @@
 //! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
 //! many to search.
 //!
-//! A pair must find each other from both sides, whichever of the two is searched for. The large disk searches
-//! the homes within its reach. The small disk cannot look up: the cells above it that reach its home are too
+//! The two disks of a pair must find each other, whichever of them searches. The large disk searches the
+//! homes within its reach. The small disk cannot look up: the cells above it that reach its home are too
 //! many. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it lies. When the
 //! large disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought
 //! up to date there, and only the small disks there are new partners.
@@ -53,7 +53,8 @@ const fn cells_per_small_disk(cell_size: CellSize) -> f64 {
 /// The layers of all classes but the smallest.
 #[derive(Debug, Clone)]
 pub(super) struct Layers {
-    /// Class of each disk. A disk that is added has yet to enter its cell, and one that goes has left it.
+    /// Class of each disk. While a disk is being added, it is not in its cell yet; while a disk is being
+    /// removed, it is not in its cell any more.
     pub(super) classes: Vec<u8>,
     larger: Vec<Layer>,
     /// The visitors of each home of each class, the smallest class first: the larger disks that reach the
@@ -162,8 +163,8 @@ impl Layers {
             return;
         };
         layer.cross(disk, from, to);
-        // Homes in both reaches keep the disk. A home at the rim of the hole may leave the reach on one side
-        // of it and enter on the other, so both directions are needed.
+        // Homes in both reaches keep the disk. At the rims of the reach and of the hole, some homes leave the
+        // reach and others enter it, so both differences are needed.
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
             reach.for_each_run_beyond(from, to, |first, count| {
                 (first..first + count).for_each(|home| visitors.remove(home, disk));

@@ -74,10 +74,10 @@ fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
 /// Returns the largest distance beyond its edges up to which a cell can keep its disks, such that they still
 /// collide only with disks in the cells around it.
 ///
-/// A disk that turns back soon, or moves to and fro at an edge, then stays in its cell.
+/// A disk that turns back soon, or moves back and forth at an edge, then stays in its cell.
 pub(super) fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
     let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
-    // With so few columns or rows and a margin, neighbors could be more than half a period apart.
+    // With so few columns or rows, a margin would let neighbors be more than half a period apart.
     if domain.periodic_sides && layout.columns < 6 {
         margin.x = 0.0;
     }

@@ -1,14 +1,15 @@
 //! The homes of another class of disks that a disk may touch from anywhere in its own cell.
 //!
 //! The picture in `layers.rs` shows a reach and its hole. Both are rectangles, so a reach is given by its
-//! columns and its rows, each with the columns or rows of the hole. They are tables, with one entry for each
-//! column and row of the disk's own grid. The searches of large disks read them all the time: a table costs
-//! one load, whereas the edges of uneven rows would have to be searched. Homes of a column lie next to each
-//! other in memory, so the reach is traversed in runs of rows.
+//! columns and its rows, each with the columns or rows of the hole. They are stored in tables with one entry
+//! for each column and row of the disk's own grid. The searches of large disks read them all the time: a
+//! table costs one load, whereas the edges of uneven rows would have to be searched. Homes of a column lie
+//! next to each other in memory, so the reach is traversed in runs of rows.
 //!
 //! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back
-//! immediately. Rows are kept as they are counted, so that reach, hole and difference of two reaches are
-//! plain intervals, and are brought back only when a run is handed out, then in two pieces.
+//! immediately. Rows are kept as they are counted, so that a reach, its hole and the difference of two
+//! reaches are plain intervals. They are brought back only when a run is passed to the caller, then in two
+//! pieces.
 
 use super::grid::{Grid, Place};
 
@@ -73,9 +74,10 @@ impl Reach {
         let margin = homes.grid.margin;
         let [from_columns, from_rows] = from.ranges();
         let periods = homes.grid.periods();
-        // Half the width of the square in the circle on which the nearest possible centers lie. A home in
-        // this square is nearer than a touch even with its corners. The homes between square and circle hold
-        // no disks either, but a rectangle is quicker to traverse than what would be left.
+        // Half the width of the square in the circle on which the nearest possible centers lie. Even at its
+        // corners, a home in this square is nearer than any disk that touches. The homes between square and
+        // circle hold no such disks either, but leaving them out would cost more than it saves: a rectangle
+        // is quicker to traverse.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
             // A disk stays in its home up to a margin beyond the edge, so the reach is larger by this margin.

@@ -48,7 +48,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
     }
 
-    /// Allows a rule that differs from the checkpoint's, for the next value of a ramp, for example.
+    /// Allows a rule that differs from the checkpoint's, as for the next value of a ramp.
     pub const fn with_another_rule(mut self) -> Self {
         self.another_rule = true;
         self

@@ -14,7 +14,7 @@ const SEAL: Seal = Seal::new(*b"GRANWITH", 1);
 impl Checkpoint {
     /// Writes the checkpoint and the observers of its run to one file, completely or not at all.
     ///
-    /// Numbers keep their bits, infinities and NaN, too, and state and observers cannot come from different
+    /// All numbers keep their bits, even infinities and NaN. State and observers cannot come from different
     /// times. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
     /// measure, a tuple of several, or a custom type.
     ///
@@ -58,7 +58,8 @@ impl Checkpoint {
         write_whole(path.as_ref(), &SEAL.seal(&bytes)).map_err(failed("write", path.as_ref()))
     }
 
-    /// Reads a checkpoint and the observers of its run from a file of [`write_with`](Self::write_with).
+    /// Reads a checkpoint and the observers of its run from a file that [`write_with`](Self::write_with)
+    /// wrote.
     ///
     /// # Errors
     /// If the file cannot be read, is not such a file, is of another version, was cut or changed, or has

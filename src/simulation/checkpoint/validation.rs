@@ -1,8 +1,8 @@
 //! Checks that the contents of a checkpoint are a state from which the engine can continue.
 //!
 //! A checksum shows accidents, not intent: anyone can compute it anew over any numbers. Therefore, all
-//! numbers must pass the bounds of the constructors, and all events must be where and when they can be. A run
-//! from here may be unphysical, but it does not panic and does not hang.
+//! numbers must pass the bounds of the constructors, and all events must be at possible places and times. A
+//! run from here may be unphysical, but it does not panic and does not hang.
 
 use std::collections::HashMap;
 
@@ -15,7 +15,7 @@ use crate::simulation::cells::{
 use crate::simulation::state::{Bodies, Clock, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
 
-/// A larger number of events than any run has.
+/// Number of events that no run reaches.
 const MOST_COUNTED: u64 = 1 << 60;
 
 /// Room for rounding, in sizes of a cell, of the grid or of a disk. It is much more than rounding needs.
@@ -38,7 +38,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
     check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
     check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
-    check(saved.identities.suits(count), "its ids are not those of so many disks")?;
+    check(saved.identities.suits(count), "its ids do not fit the number of disks")?;
     check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
     let diameter = saved.typical_diameter;
     let is_diameter = if count == 0 { diameter >= 0.0 } else { diameter > 0.0 };

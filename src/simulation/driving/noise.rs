@@ -22,7 +22,7 @@ use crate::{Disk, ParameterError};
 ///
 /// and, with [rotational noise](Self::with_rotational_noise), $`\dot T_r = I\,\xi_r^2`$. The noise is white
 /// if the kicks are more frequent than collisions. At each kick, all events are predicted anew, so a kick
-/// takes about as long as a collision of each disk.
+/// takes about as long as one collision per disk.
 ///
 /// The random numbers follow from the seed alone; serde writes their state and the clock.
 ///
@@ -37,7 +37,7 @@ use crate::{Disk, ParameterError};
 /// let mut noise = WhiteNoise::new(0.1, SampleTimes::every(0.1)?, 7)?;
 /// let mut lost = EnergyChange::default();
 /// run.run_driven(&Limits::until(20.0), &mut noise, &mut lost)?;
-/// // The grains keep what they got and did not lose.
+/// // The present energy is what the kicks added, less what collisions dissipated.
 /// let lost = lost.disks().sum();
 /// let energy: f64 = run.disks().iter().map(Disk::translational_energy).sum();
 /// assert!((noise.energy() + lost - energy).abs() < 1e-9);
@@ -77,7 +77,7 @@ impl WhiteNoise {
         Ok(Self { rotational_noise: non_negative("rotational noise", noise)?, ..self })
     }
 
-    /// Returns the kinetic energy that all kicks have fed so far.
+    /// Returns the kinetic energy that all kicks have added so far.
     pub const fn energy(&self) -> f64 {
         self.energy
     }

@@ -44,7 +44,7 @@ impl Rescaling {
         Ok(Self { temperature: positive("temperature", temperature)?, times, energy: 0.0 })
     }
 
-    /// Returns the kinetic energy that all rescalings have fed so far.
+    /// Returns the kinetic energy that all rescalings have added so far.
     pub const fn energy(&self) -> f64 {
         self.energy
     }

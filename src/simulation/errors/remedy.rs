@@ -10,7 +10,7 @@ use std::fmt;
 #[non_exhaustive]
 pub enum Remedy {
     /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
-    /// repeated collisions elastic, or let no surfaces part too slowly.
+    /// repeated collisions elastic, or set a least speed at which surfaces part.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
@@ -41,7 +41,7 @@ impl fmt::Display for Remedy {
             }
             Self::FasterDisks => {
                 "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or the rule LeastRebound with a higher speed; for walls of your own see boundary::laws::check"
+                 room, or the rule LeastRebound with a higher speed; for custom walls see boundary::laws::check"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
             Self::WallVelocity => {

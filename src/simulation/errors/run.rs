@@ -189,7 +189,7 @@ fn misplaced(depth: f64) -> String {
     }
 }
 
-/// Returns the laws that find the part to blame for a false contact.
+/// Returns the checks that find the faulty part behind a false contact.
 fn laws_of(partner: Partner) -> &'static str {
     match partner {
         Partner::Wall(_) => "wall::laws::check tries motions, and boundary::laws::check tries boundaries",

@@ -1,13 +1,13 @@
 //! Predictions in vector instructions. Each function does what the plain function of the same name does, with
 //! the same bits, and has its lines in the same order. The reasons for the arithmetic are given there.
 //!
-//! Three things here are not in the plain code, and are what makes it faster:
+//! Three differences make this code faster than the plain code:
 //! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read
 //!    only if the write covers all of the read. Otherwise the read waits until the writes have left for the
 //!    cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler makes
 //!    such reads: it merges four numbers that lie side by side into one vector. The functions of
-//!    [`load`](crate::instructions::load) read as much as they say, and arguments come in registers or from
-//!    tables, never as an array or a rectangle that was just built.
+//!    [`load`](crate::instructions::load) read exactly as many numbers as their names say, and arguments come
+//!    in registers or from tables, never as an array or a rectangle that was just built.
 //! 2. **Two searches in one loop.** After a collision, neither of the two depends on the other, and the root
 //!    and the quotient of a search take most of its time, so one is computed while the other waits.
 //! 3. **Two exits in one vector**, with one root and two quotients for both.

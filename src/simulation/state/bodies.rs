@@ -81,7 +81,7 @@ pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) spins: Vec<Spin>,
     pub(in crate::simulation) gravity: Gravity,
     pub(super) properties: Properties,
-    /// Numbers of periods that each disk has passed; empty as long as none has passed any.
+    /// Numbers of periods that each disk has crossed; empty as long as no disk has crossed a period.
     pub(in crate::simulation) images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,

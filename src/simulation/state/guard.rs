@@ -36,7 +36,8 @@ pub(in crate::simulation) struct Guard {
     pub(in crate::simulation) before: u64,
     /// Number of windows in a row in which time hardly advanced.
     pub(in crate::simulation) slow: u32,
-    /// Number of the last of these windows in which time advanced as much as in the previous window.
+    /// Number of consecutive windows, up to the last one, in which time advanced as much as in the window
+    /// before.
     pub(in crate::simulation) alike: u32,
     /// Simulated time that the last window covered.
     pub(in crate::simulation) elapsed: f64,

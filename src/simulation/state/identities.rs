@@ -26,7 +26,7 @@ impl Identities {
         self.ids.get(disk).copied().unwrap_or(disk as u64 + 1)
     }
 
-    /// Checks that the ids of disks that have none will not be too large.
+    /// Checks that the new ids for disks without an id will not be too large.
     pub(in crate::simulation) fn check_room(&self, disks: &[Disk]) -> Result<(), ParameterError> {
         let last = disks.iter().map(Disk::id).fold(self.last, u64::max);
         let new = disks.iter().filter(|disk| disk.id() == 0).count() as u64;
@@ -39,7 +39,7 @@ impl Identities {
         self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
     }
 
-    /// Adds a disk after these `count` ones. A disk without an id gets an id above all ids given so far.
+    /// Adds a disk after `count` others. A disk without an id gets an id above all ids given so far.
     pub(super) fn push(&mut self, count: usize, id: u64) {
         let id = if id == 0 { self.last + 1 } else { id };
         self.last = self.last.max(id);

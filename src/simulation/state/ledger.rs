@@ -1,4 +1,4 @@
-//! The energy at the start of a run, and whether anything may have put energy in since.
+//! The energy at the start of a run, and whether anything may have added energy since.
 
 /// The energy balance of a run, which shows a rule or a wall that gains energy.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,7 +3,7 @@
 use crate::collision::Material;
 use crate::{Disk, Kind};
 
-/// Ratio of the largest to the median diameter beyond which the largest decides how long epochs are.
+/// Ratio of the largest to the median diameter beyond which the largest diameter sets the length of epochs.
 const LARGEST_RATIO: f64 = 1024.0;
 
 /// The properties of all disks: a single set if all disks are equal, so that it stays in the cache.
@@ -61,8 +61,8 @@ impl Properties {
         }
     }
 
-    /// Adds a disk after these `count` ones. Only the first disk that differs from the others costs a time
-    /// that grows with the number of disks.
+    /// Adds a disk after `count` others. Only the first disk that differs from the others costs a time that
+    /// grows with the number of disks.
     pub(super) fn push(&mut self, count: usize, disk: &Disk) {
         if let Self::Same { model, .. } = *self {
             if is_alike(disk, &model) {

@@ -11,7 +11,8 @@ use crate::trajectory::column::{Column, Quantity};
 use crate::trajectory::lines::{checked_box, finite, is_upright, number};
 use crate::trajectory::table::Table;
 
-/// Largest number of columns of a disk. A few letters can ask for any number of them.
+/// Largest number of columns of a disk. Without a limit, a few characters in a file could ask for any number
+/// of columns.
 const MOST_COLUMNS: usize = 1000;
 
 /// The keys with a meaning.
@@ -213,7 +214,7 @@ fn columns(properties: &str, line: usize) -> Result<Vec<Column>, ReadError> {
         }
         columns.extend(Column::of(name, count));
     }
-    // Beside a vector, ASE's `Z` is the number of an element.
+    // If another column is the vector of positions, `Z` is ASE's atomic number.
     let is = |column: &Column, name: &str| column.name.eq_ignore_ascii_case(name);
     if columns.iter().any(|column| column.slot == Quantity::Position.slot(0) && !is(column, "x")) {
         columns.iter_mut().filter(|column| is(column, "z")).for_each(|column| column.slot = None);

@@ -29,7 +29,7 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
 fn table(keys: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
     let keys = Keys::parse(keys, line)?;
     let mut table = keys.table()?;
-    // A plain XYZ may have more columns than those that all programs know.
+    // A plain XYZ file may have more columns than the usual ones.
     let known = table.columns.len();
     let most = if keys.has_properties() { usize::MAX } else { known };
     let mut widest = known;

@@ -69,7 +69,8 @@ impl<R: Read + Seek> Archive<R> {
         self.entries.last().map_or(0, |last| number(last, 0).saturating_add(1))
     }
 
-    /// Returns the names of the chunks with rows in this frame or the first one that were never asked for.
+    /// Returns the names of the chunks that were never requested, although they have rows in this frame or in
+    /// the first one.
     pub(super) fn unread(&self, frame: u64) -> impl Iterator<Item = &str> {
         let is_filled =
             move |entry: &&[u8; ENTRY]| [0, frame].contains(&number(*entry, 0)) && number(*entry, 8) > 0;
@@ -97,7 +98,8 @@ impl<R: Read + Seek> Archive<R> {
 impl Chunk {
     /// Returns a number of the chunk, or NaN if the chunk does not have the number or its type is not known.
     ///
-    /// A single column in single precision has the digits that it shows, so that 0.35 is 0.35.
+    /// A number of a single column in single precision is read from its shortest decimal form, so that 0.35
+    /// stays 0.35.
     pub(super) fn number(&self, row: usize, column: usize) -> f64 {
         let (width, mut eight) = (width(self.kind) as usize, [0; 8]);
         let place = (row * self.columns + column) * width;

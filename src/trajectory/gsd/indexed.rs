@@ -161,7 +161,7 @@ impl Indexed {
                 .map_or(0, |entry| number(entry, 16));
             let time = f64::from_bits(number(&read_at(file, time, 8)?, 0));
             if !time.is_finite() || times.last().is_some_and(|&last| last >= time) {
-                return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
+                return Err(no_frame("a frame later than the previous one", &format!("time {time:?}")));
             }
             times.push(time);
             self.entries.extend(known);

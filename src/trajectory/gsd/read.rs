@@ -109,7 +109,7 @@ impl<R: Read + Seek> View<'_, R> {
     fn table(mut self) -> Result<Table, ReadError> {
         let [count] = self.numbers("particles/N")?.unwrap_or_default();
         let count = count as usize;
-        // Positions show whether the disks lie in a plane, whatever the file says.
+        // The chunk is only marked as known: the positions themselves show whether the disks lie in a plane.
         self.find("configuration/dimensions")?;
         let position = self.rows("particles/position", count, 3)?;
         let Some(position) = position.or_else(|| (count == 0).then(Chunk::default)) else {
@@ -164,7 +164,7 @@ impl<R: Read + Seek> View<'_, R> {
                 let square = 0.25 * sizes[row] * sizes[row];
                 let by_density = || density.map_or(1.0, |density| density * PI * square);
                 let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
-                // Rounding must not turn a homogeneous disk into another.
+                // Rounding must not change the inertia factor of a homogeneous disk.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
                 let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
                 if is_other { moment / unit } else { homogeneous }

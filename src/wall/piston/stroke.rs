@@ -7,13 +7,14 @@ use crate::wall::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
 /// Largest number of pieces. A piston that comes to a stop leaves it from rest or not at all. On a spring, it
-/// can come to the other stop, once: it then swings less far than to the first.
+/// can then come to the other stop, but only once: from there, it swings less far and does not reach the
+/// first stop.
 const MOST_PIECES: usize = 4;
 
-/// Part of a spring's period for which one bound on the acceleration is taken.
+/// Number of parts into which a spring's period is divided; each part has its own bounds on the acceleration.
 const PARTS: f64 = 16.0;
 
-/// Largest speed at a stop that counts as none, relative to the speed of the motion.
+/// Largest speed at a stop that counts as zero, relative to the speed of the motion.
 const GRAZE: f64 = 1e-7;
 
 /// The motion of a piston since the last impact. Phases are offsets from the time origin, since a piston has
@@ -86,7 +87,7 @@ impl Stroke {
 
     /// Returns the same motion with phases that count from this absolute time.
     ///
-    /// An earlier origin belongs to another run, which the piston begins in its present state.
+    /// An earlier origin belongs to another run; the piston begins that run in its present state.
     pub(crate) fn at_origin(&self, origin: f64) -> Self {
         match self.origin.map(|before| origin - before) {
             Some(0.0) => self.clone(),
@@ -118,7 +119,7 @@ impl Stroke {
         Ok(Self::new(self.piston, self.origin, start, displacement, velocity))
     }
 
-    /// Returns a displacement above which the piston stays up to a phase, measured from the last impact.
+    /// Returns a displacement that the piston does not exceed from the last impact to this phase.
     pub(crate) fn highest_until(&self, until: f64) -> f64 {
         let Piece { start, displacement, velocity, .. } = self.pieces[0];
         let elapsed = (until - start).max(0.0);
@@ -189,8 +190,8 @@ impl Swing {
     /// left the stop: an arc cosine near 1 would lose half of the digits, and the piston would come to the
     /// stop immediately.
     ///
-    /// An oscillation that turns at the height, up to rounding, does not rise through it. One that is there
-    /// and rises does.
+    /// An oscillation that turns around at the height, up to rounding, does not rise through it. An
+    /// oscillation that starts at the height and rises does.
     fn rises_through(&self, height: f64) -> Option<f64> {
         let square = (self.a - height) * (self.a + height) + self.b * self.b;
         let may_turn = height > 0.0 && (self.a < height || self.b <= 0.0);
@@ -252,7 +253,8 @@ fn piece(piston: &Piston, start: f64, displacement: f64, velocity: f64) -> Piece
 /// Returns the time until a piece that is not held comes to a stop.
 ///
 /// A piston that turns at a stop, up to rounding, does not reach the stop. Otherwise, rounding would decide
-/// whether it does, and its square root would enter the time of the arrival and all later times.
+/// whether it does, and the square root of the rounding would enter the time of the arrival and all later
+/// times.
 fn wait(piston: &Piston, piece: &Piece) -> f64 {
     let Piece { displacement, velocity, .. } = *piece;
     let (above, below) = (piston.highest - displacement, displacement - piston.lowest);

@@ -57,7 +57,8 @@ fn vertical_exit(above: __m128d, below: __m128d, velocity: __m128d, gravity: f64
     let (square, twice) = (multiply(velocity, velocity), both(2.0 * gravity));
     let reserve = subtract(square, multiply(twice, above));
     let rising = compare::<GREATER>(velocity, zero);
-    // The plain function gives a disk that falls a negative reserve instead. The same numbers are selected.
+    // For a disk that falls, the plain function has a negative reserve instead. Both functions select the
+    // same numbers.
     let up = and(rising, compare::<GREATER>(reserve, zero));
     let radicand = select(up, reserve, add(square, multiply(twice, below)));
     let sum = add(square_root(radicand), size(velocity));

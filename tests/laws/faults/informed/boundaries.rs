@@ -1,7 +1,7 @@
 //! Boundaries that break their contract where a check may not look.
 
 use granular_edmd::boundary::{
-    Boundary, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch, Wall,
+    Boundary, FirstTouch, Impact, Overlap, Part, Probe, Reaction, Region, Surface, Touch, Vessel, Wall,
 };
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Sinusoidal;
@@ -35,6 +35,12 @@ fn pegs() -> Altered {
     Altered::new(board())
 }
 
+/// A peg around which a belt runs.
+fn belt() -> Altered {
+    let belt = Part::peg(DVec2::new(5.0, 6.0), 1.5).and_then(|peg| peg.with_surface_speed(0.4));
+    Altered::new(Vessel::new(resting()).with("belt", belt.expect("a belt")).expect("a vessel"))
+}
+
 /// A box whose lid moves.
 fn lidded() -> Altered {
     let motion = Sinusoidal::new(0.3, 4.0).expect("an amplitude");
@@ -43,7 +49,8 @@ fn lidded() -> Altered {
 
 pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
     List::grown(&[
-        velocities, normals, radii, touches, searches, overlaps, areas, regions, origins, reactions, states,
+        velocities, turnings, normals, radii, touches, searches, overlaps, areas, regions, origins,
+        reactions, states,
     ])
 }
 
@@ -80,6 +87,27 @@ fn velocities(boundaries: &mut Boundaries) {
         "surfaces are faster at offsets above 60",
         Altered { surface, ..shaken() },
     );
+}
+
+fn turnings(boundaries: &mut Boundaries) {
+    type Change = fn(&mut Surface<'_>, DVec2);
+    let all: [(&'static str, &str, fn() -> Altered, Change); 5] = [
+        ("turning", "a turning bar has no angular velocity", stirred, |surface, _| {
+            surface.angular_velocity = 0.0;
+        }),
+        ("turning", "a bar turns clockwise to rules", stirred, |surface, _| surface.angular_velocity *= -1.0),
+        ("turning", "a bar turns faster to rules by 1e-4", stirred, |surface, _| {
+            surface.angular_velocity *= 1.0001;
+        }),
+        ("turning", "a sliding floor turns near its right end", sliding, |surface, position| {
+            surface.angular_velocity = if position.x > 9.0 { 0.01 } else { 0.0 };
+        }),
+        ("belt", "a belt around a peg does not turn", belt, |surface, _| surface.angular_velocity = 0.0),
+    ];
+    for (family, name, honest, change) in all {
+        let surface = Box::new(move |surface: &mut Surface<'_>, position, _| change(surface, position));
+        boundaries.part(family, name, Altered { surface, ..honest() });
+    }
 }
 
 fn normals(boundaries: &mut Boundaries) {
