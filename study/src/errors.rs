@@ -222,6 +222,12 @@ impl StudyError {
         move |source| Self::Io { action, path: path.to_owned(), source }
     }
 
+    /// Returns an error if the plan in a folder differs from the given one.
+    pub(super) fn if_different(path: &Path, differences: Vec<Difference>) -> Result<(), Self> {
+        let path = path.to_owned();
+        if differences.is_empty() { Ok(()) } else { Err(Self::Different { path, differences }) }
+    }
+
     /// Returns the error of a folder or a file that cannot be used.
     pub(super) fn refused(path: &Path, reason: impl Into<String>) -> Self {
         Self::Refused { path: path.to_owned(), reason: reason.into() }

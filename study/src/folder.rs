@@ -62,10 +62,6 @@ impl Folder {
         Ok(found)
     }
 
-    pub(super) fn make_room_for_unfinished(&self) -> Result<(), StudyError> {
-        whole::create(&self.root.join(UNFINISHED))
-    }
-
     /// Removes the remaining files of unfinished values once all values are finished.
     fn clear_unfinished(&self) -> Result<(), StudyError> {
         let unfinished = self.unfinished()?;

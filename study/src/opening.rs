@@ -172,10 +172,7 @@ impl<E: Experiment> Study<E> {
         // A plan that is written in another way may still be the same plan.
         let found = Self::plan_in(&self.folder)?;
         let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
-        if differences.is_empty() {
-            return Ok(());
-        }
-        Err(StudyError::Different { path: self.folder.root().to_owned(), differences })
+        StudyError::if_different(self.folder.root(), differences)
     }
 
     /// Returns the folder of the study.

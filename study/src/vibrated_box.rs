@@ -37,9 +37,8 @@ const MOST_DISKS: usize = 1 << 24;
 /// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
 /// disk are the units.
 ///
-/// Settings without a method of their own are fields: `experiment.base_inelasticity = Some(0.0)`. Disks start
-/// on a lattice with Maxwellian velocities. Values are checked where the box enters a
-/// [`Plan`](super::Plan).
+/// Other settings are fields: `experiment.base_inelasticity = Some(0.0)`. Disks start on a lattice with
+/// Maxwellian velocities. Values are checked where the box enters a [`Plan`](super::Plan).
 ///
 /// ```
 /// use granular_edmd_study::vibrated_box::{Base, VibratedBox};

@@ -234,7 +234,7 @@ fn odd_types_have_a_shape() {
     assert_eq!(kinds(&shape.parts[3].1), [Kind::Word, Kind::Number, Kind::Table, Kind::Any]);
 }
 
-/// Each name with a meaning is that of a parameter or a column.
+/// Each name with a meaning belongs to a parameter or a column.
 #[test]
 fn all_meanings_of_the_box_are_explained() {
     let told = runs(&["explain"]).stdout;

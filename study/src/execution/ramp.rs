@@ -49,7 +49,7 @@ pub(super) fn attempt<E: Experiment>(
     let study = session.study;
     let _claim = match study.claims.claim(ramps)? {
         Claimed::Ours(claim) => Some(claim),
-        // Whoever runs one ramp alone makes sure that no other process runs it.
+        // The caller of a run of one ramp makes sure that no other process runs it.
         Claimed::Collision if session.ramps.len() == 1 => None,
         Claimed::Theirs | Claimed::Collision => return Ok(false),
     };
@@ -208,7 +208,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let partial = active
             .partial()
             .map_err(|source| StudyError::Encode { path: path.clone(), source: source.into() })?;
-        folder.make_room_for_unfinished()?;
+        path.parent().map_or(Ok(()), whole::create)?;
         whole::write_sealed::<Partial<E>>(&path, &partial)
     }
 
