@@ -60,8 +60,11 @@ impl<'a, E: Experiment> Session<'a, E> {
             return Ok(());
         }
         let entries = self.study.store.refreshed()?;
-        let ramps = queue.strike(|ramps| ramps.clone().all(|ramp| entries.is_done(ramp)));
-        self.skip(ramps);
+        queue.strike(|ramps| {
+            let is_done = ramps.clone().all(|ramp| entries.is_done(ramp));
+            self.skip(if is_done { ramps.len() } else { 0 });
+            is_done
+        });
         Ok(())
     }
 
