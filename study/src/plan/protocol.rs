@@ -17,7 +17,7 @@ const MOST: u64 = 1 << 40;
 /// use granular_edmd_study::Protocol;
 /// // The paper: 100 000 oscillations for each value, sampled every 100, the first 500 samples discarded.
 /// let protocol = Protocol::new(50_000, 500, 100)?;
-/// assert_eq!((protocol.samples(), protocol.cycles()), (500, 100_000));
+/// assert_eq!((protocol.every(), protocol.cycles()), (100, 100_000));
 /// assert!(Protocol::new(50_000, 0, 100).is_err());
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
@@ -93,6 +93,11 @@ impl Protocol {
     /// Returns the largest number of collisions in a value, or `None` if there is no limit.
     pub(crate) const fn most_collisions(&self) -> Option<u64> {
         self.most_collisions
+    }
+
+    /// Returns the number of cycles from a sample to the next.
+    pub const fn every(&self) -> u64 {
+        self.every
     }
 
     /// Returns the number of samples of a value.
