@@ -133,7 +133,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
 ///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
 ///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
-///    overlaps none.
+///    overlaps none. On a periodic side or end, it is the same for both images of the disk: a wall near one
+///    side acts on disks at the other side.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
@@ -276,7 +277,7 @@ pub trait Boundary {
     }
 
     /// Returns the displacement of a wall from its position at rest at `time`, and the phase of its motion:
-    /// the time since the motion began, less whole periods.
+    /// the time, less whole periods, as [`WallMotion`](crate::wall::WallMotion) takes it.
     ///
     /// The result is `None` for a wall that does not move, and for a wall that moves together with a wall of
     /// a smaller index, as the bricks of a part do. The phase of a [`Piston`](crate::wall::Piston) is 0. The

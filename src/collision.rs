@@ -73,6 +73,7 @@ pub use contact::Contact;
 pub use contact_duration::ContactDuration;
 pub use elastic::Elastic;
 pub use elastic_below::ElasticBelow;
+pub(crate) use encounter::collide_after;
 pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
 pub use friction::Friction;
 pub use frictional::Frictional;

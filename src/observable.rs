@@ -140,6 +140,7 @@ mod temperatures_about_flow;
 mod time_correlation;
 mod transport;
 mod velocity_distribution;
+mod wall_names;
 mod wall_stress;
 
 #[doc(alias("flow", "flux", "discharge"))]

@@ -125,15 +125,15 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) examines. If the opposite wall is a
-    /// piston that could meet this one.
+    /// phases that [`check_finite`](crate::wall::check_finite) examines. If the wall is a piston already, or
+    /// the opposite wall is a piston that could meet this one.
     pub fn with_motion(
         mut self,
         wall: Wall,
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
         let plane = self.plane_mut(wall)?;
-        plane.set_motion(Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?);
+        plane.set_motion(Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?)?;
         self.check_stops()?;
         Ok(self)
     }
@@ -147,12 +147,12 @@ impl Container {
     /// Only the stops of a piston keep it away from the opposite wall: walls do not collide with each other.
     ///
     /// # Errors
-    /// If the container has no such wall, or the motion of the piston has numbers that are not finite. If its
-    /// highest stop is beyond the nearest position of the opposite wall.
+    /// If the container has no such wall, or the motion of the piston has numbers that are not finite. If the
+    /// wall moves already, or the piston's highest stop is beyond the nearest position of the opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));
         let motion = motion.map_err(|violation| WallError::Motion { wall, violation })?;
-        self.plane_mut(wall)?.set_motion(motion);
+        self.plane_mut(wall)?.set_motion(motion)?;
         self.check_stops()?;
         Ok(self)
     }
@@ -283,7 +283,7 @@ crate::gate::from_file! {
             if let Some(super::plane::Slide::Speed(speed)) = read.slide {
                 crate::quantity::finite("surface speed", speed)?;
             }
-            plane.set_motion(read.motion);
+            plane.set_motion(read.motion)?;
             (plane.conduct, plane.kind, plane.slide) = (read.conduct, read.kind, read.slide);
         }
         container.check_stops()?;

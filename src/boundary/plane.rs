@@ -90,9 +90,15 @@ impl Plane {
         self.place += self.normal.dot(by);
     }
 
-    pub(super) fn set_motion(&mut self, motion: Motion) {
+    /// Sets the motion along the normal. A piston and a motion would replace each other, which is an error.
+    pub(super) fn set_motion(&mut self, motion: Motion) -> Result<(), WallError> {
+        let moves = self.motion.reach() != (0.0, 0.0);
+        if moves && self.motion.stroke().is_some() != motion.stroke().is_some() {
+            return Err(WallError::Lost { wall: self.wall });
+        }
         self.highest = motion.reach().1;
         self.motion = motion;
+        Ok(())
     }
 
     /// Sets the sliding motion of the wall. Returns an error if the wall has one already, which would be

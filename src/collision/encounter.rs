@@ -55,11 +55,21 @@ pub struct WallEncounter {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk) -> Encounter {
+    collide_after(f64::INFINITY, rule, first, second)
+}
+
+/// Collides two disks at this time after the latest collision of either.
+pub(crate) fn collide_after<R: CollisionRule + ?Sized>(
+    time_since_last_collision: f64,
+    rule: &R,
+    first: &Disk,
+    second: &Disk,
+) -> Encounter {
     let normal = (first.position() - second.position()).normalize_or(DVec2::Y);
     let outcome = collide_bodies(
         rule,
         normal,
-        f64::INFINITY,
+        time_since_last_collision,
         (&Body::of(first), &Material::of(first)),
         (&Body::of(second), &Material::of(second)),
     );

@@ -73,7 +73,9 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     let room = Enclosure::new(boundary, below)?;
     let area = room.domain().width() * room.domain().height();
     accept(area > 0.0, "area of the room for the disks", "positive", area)?;
-    let wider = |disk: &Disk| Disk::new(disk.position(), disk.radius() * (1.0 + APART));
+    let wider = |disk: &Disk| {
+        Disk::new(disk.position(), disk.radius() * (1.0 + APART)).map(|wide| wide.with_kind(disk.kind()))
+    };
     let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
     let packing = grown(&room, &wider, area, seed).map_err(|error| match error {
         // A heavy piston hardly moves while disks are packed, so a moving piston is reported only if the

@@ -37,7 +37,7 @@ pub fn placed_in_rows<B: Boundary + ?Sized>(
     let mut most = 0;
     for spacing in spacings() {
         let mut rows = Rows::new(boundary, &disks, spacing);
-        let sites: Vec<DVec2> = disks.iter().map_while(|disk| rows.site(disk.radius())).collect();
+        let sites: Vec<DVec2> = disks.iter().map_while(|disk| rows.site(disk)).collect();
         if sites.len() == disks.len() {
             let placed = disks.into_iter().zip(sites).map(|(disk, site)| disk.with_position(site));
             return Ok(placed.collect::<Result<_, _>>()?);
@@ -70,15 +70,17 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
         Self { boundary, interior, spacing, height: 2.0 * largest * spacing, corner, column: DVec2::ZERO }
     }
 
-    /// Returns the next free position for a disk of this radius.
-    fn site(&mut self, radius: f64) -> Option<DVec2> {
+    /// Returns the next free position for a disk of this radius and kind.
+    fn site(&mut self, disk: &Disk) -> Option<DVec2> {
+        let radius = disk.radius();
         let size = 2.0 * radius * self.spacing;
         for _ in 0..TRIALS {
             if !self.make_room(radius, size) {
                 return None;
             }
             let site = self.corner + DVec2::new(0.5 * size, self.column.y + 0.5 * size);
-            let is_free = self.boundary.overlap(&Probe::new(site, radius, 0.0)).is_none();
+            let is_free =
+                self.boundary.overlap(&Probe::new(site, radius, 0.0).with_kind(disk.kind())).is_none();
             // Next to an obstacle, the search advances in steps of about a radius.
             self.column =
                 DVec2::new(self.column.x.max(size), self.column.y + if is_free { size } else { 0.5 * size });

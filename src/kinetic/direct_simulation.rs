@@ -6,7 +6,7 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::collision::{CollisionRule, collide};
+use crate::collision::{CollisionRule, collide_after};
 use crate::disk::LARGEST;
 use crate::quantity::{accept, finite, positive};
 use crate::random::uniform;
@@ -62,6 +62,8 @@ pub struct DirectSimulation<R> {
     generator: Xoshiro256PlusPlus,
     time: f64,
     collisions: u64,
+    /// Time of the last collision of each disk.
+    last: Vec<f64>,
     /// Largest diameter, and a speed that no disk exceeds.
     widest: f64,
     fastest: f64,
@@ -77,8 +79,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
         accept(disks.len() > 1, "number of disks", "at least 2", disks.len() as f64)?;
         let density = positive("density", density)?;
         let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let (time, collisions) = (0.0, 0);
-        Ok(Self { rule, disks, density, generator, time, collisions, widest: 0.0, fastest: 0.0 })
+        let (time, collisions, last) = (0.0, 0, vec![f64::NEG_INFINITY; disks.len()]);
+        Ok(Self { rule, disks, density, generator, time, collisions, last, widest: 0.0, fastest: 0.0 })
     }
 
     /// Returns the disks.
@@ -149,11 +151,13 @@ impl<R: CollisionRule> DirectSimulation<R> {
         let placed = |disk: Disk, place: DVec2| {
             disk.with_motion(place, disk.velocity(), disk.angle(), disk.angular_velocity())
         };
-        let met = collide(&self.rule, &placed(one, contact * normal), &placed(other, DVec2::ZERO));
+        let since = self.time - self.last[first].max(self.last[second]);
+        let (one, other) = (placed(one, contact * normal), placed(other, DVec2::ZERO));
+        let met = collide_after(since, &self.rule, &one, &other);
         for (disk, met) in [(first, met.first), (second, met.second)] {
             let speed = met.velocity().length();
             accept(speed <= LARGEST, "speed of a disk after a collision", "at most 1e60", speed)?;
-            self.disks[disk] = met;
+            (self.disks[disk], self.last[disk]) = (met, self.time);
             self.fastest = self.fastest.max(speed);
         }
         self.collisions += 1;

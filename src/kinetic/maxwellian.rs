@@ -47,8 +47,8 @@ pub struct Maxwellian {
 }
 
 impl Maxwellian {
-    /// Creates a gas of identical homogeneous disks of mass 1, radius 1/2 and the default kind, with velocities
-    /// and spins at this temperature.
+    /// Creates a gas of identical homogeneous disks of mass 1, radius 1/2 and the default kind, with
+    /// velocities and spins at this temperature.
     ///
     /// # Errors
     /// If the temperature is not in `[1e-30, 1e30]`.
@@ -136,8 +136,8 @@ impl Maxwellian {
         1.0 + (self.mass_ratio() - 1.0) * (self.rotational_temperature / self.translational_temperature)
     }
 
-    /// Returns the contact with these speeds, given in units of √S and √V. The third number is the part of the
-    /// relative spin that is independent of the slip, in units of its standard deviation.
+    /// Returns the contact with these speeds, given in units of √S and √V. The third number is the part of
+    /// the relative spin that is independent of the slip, in units of its standard deviation.
     ///
     /// Slip and relative spin are the sum and the difference of the same two spins, so they are correlated:
     /// ⟨v_t ω⟩ = k T_r, and ⟨ω²⟩ = T_r/I.

@@ -83,8 +83,8 @@ impl MonteCarlo {
         Ok(Self { standard_error: Some(positive("standard error", standard_error)?), ..self })
     }
 
-    /// Samples the mean energy change per collision ⟨dE⟩ of `rule` in `gas`, as the rule sees it: with the kinds,
-    /// the radii and the relative spin of the partners.
+    /// Samples the mean energy change per collision ⟨dE⟩ of `rule` in `gas`, as the rule sees it: with the
+    /// kinds, the radii and the relative spin of the partners.
     ///
     /// The partners have never collided before: a rule that asks for the time since their last collision gets
     /// infinity.

@@ -2,7 +2,7 @@
 
 use super::stretch::Stretch;
 use super::table::Table;
-use super::wall_stress::check_wall;
+use super::wall_names::{WallNames, check_walls};
 use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::{Estimate, block_average};
@@ -37,16 +37,20 @@ pub struct Arrivals {
     times: Vec<f64>,
     counts: Vec<u64>,
     #[cfg_attr(feature = "serde", serde(skip))]
+    names: WallNames,
+    #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }
 
 impl Arrivals {
     /// Creates an observer of arrivals at these walls, counted over the intervals between these times.
     ///
-    /// A run whose boundary lacks one of these walls ends with an error.
+    /// A run ends with an error if its boundary lacks one of these walls, or if other walls have their
+    /// indices by now, as after [`set_boundary`](crate::Simulation::set_boundary).
     pub fn at(walls: impl IntoIterator<Item = usize>, times: SampleTimes) -> Self {
         let (walls, stretch) = (walls.into_iter().collect(), Stretch::new(times));
-        Self { walls, stretch, present: 0, times: Vec::new(), counts: Vec::new(), fault: None }
+        let (times, counts, names) = (Vec::new(), Vec::new(), WallNames::default());
+        Self { walls, stretch, present: 0, times, counts, names, fault: None }
     }
 
     /// Returns the ends of the intervals.
@@ -72,7 +76,7 @@ impl Arrivals {
         self.stretch.forget();
         self.times.clear();
         self.counts.clear();
-        self.present = 0;
+        (self.present, self.names) = (0, WallNames::default());
     }
 
     fn rates(&self) -> impl Iterator<Item = f64> {
@@ -82,8 +86,10 @@ impl Arrivals {
 
 impl Observer for Arrivals {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.fault = self.walls.iter().find_map(|&wall| check_wall(wall, start).err());
-        if self.stretch.begin(start.time()) {
+        let are_there = check_walls(start, &self.walls);
+        let are_same = are_there.and_then(|()| self.names.check(start, |wall| self.walls.contains(&wall)));
+        self.fault = are_same.err();
+        if self.stretch.begin(start) {
             self.present = 0;
         }
     }

@@ -3,10 +3,15 @@
 use std::collections::BTreeMap;
 
 use super::table::Table;
-use super::{Collision, Heading, Observer, Partner};
+use super::wall_names::WallNames;
+use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
+use crate::ParameterError;
 use crate::collision::Regime;
 
 /// An observer that counts collisions by partner and regime, and gives their rates.
+///
+/// A run ends with an error if it has other walls at the indices of walls that were hit: clear the observer
+/// before such a run, or use another one.
 ///
 /// ```
 /// use granular_edmd::observable::CollisionCounts;
@@ -25,6 +30,11 @@ pub struct CollisionCounts {
     contact_duration: u64,
     elastic_below: u64,
     least_rebound: u64,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    names: WallNames,
+    /// The reason why the collisions of this run cannot be added.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
 }
 
 impl CollisionCounts {
@@ -74,6 +84,10 @@ impl CollisionCounts {
 }
 
 impl Observer for CollisionCounts {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.fault = self.names.check(start, |wall| self.walls.contains_key(&wall)).err();
+    }
+
     fn on_collision(&mut self, collision: &Collision) {
         match collision.partner {
             Partner::Disk(_) => self.disks += 1,
@@ -87,6 +101,11 @@ impl Observer for CollisionCounts {
             Regime::LeastRebound => self.least_rebound += 1,
             Regime::Unspecified => {}
         }
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
     }
 }
 
@@ -120,6 +139,6 @@ crate::gate::from_file! {
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
-        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound })
+        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, ..Self::default() })
     }
 }

@@ -1,7 +1,7 @@
 //! Histograms over collisions: angles, speeds and impulses.
 
 use super::table::{Table, histogram_headings, histogram_rows};
-use super::wall_stress::check_wall;
+use super::wall_names::{WallNames, check_walls};
 use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::Histogram;
@@ -39,6 +39,8 @@ pub struct CollisionHistograms {
     obliqueness: Histogram,
     closing_speed: Histogram,
     impulse: Histogram,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    names: WallNames,
     /// The reason why this run's collisions cannot be measured.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -56,13 +58,14 @@ impl CollisionHistograms {
             obliqueness: Histogram::new(-1.0, 1.0, bins)?,
             closing_speed: Histogram::new(0.0, speed, bins)?,
             impulse: Histogram::new(0.0, impulse, bins)?,
+            names: WallNames::default(),
             fault: None,
         })
     }
 
     /// Returns the same histograms for the collisions with the wall of this index.
     ///
-    /// A run ends with an error if there is no such wall.
+    /// A run ends with an error if there is no such wall, or if its index named another wall before.
     pub fn with_wall(self, wall: usize) -> Self {
         Self { wall: Some(wall), ..self }
     }
@@ -87,12 +90,14 @@ impl CollisionHistograms {
         for histogram in [&mut self.obliqueness, &mut self.closing_speed, &mut self.impulse] {
             histogram.clear();
         }
+        self.names = WallNames::default();
     }
 }
 
 impl Observer for CollisionHistograms {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.fault = self.wall.and_then(|wall| check_wall(wall, start).err());
+        let is_there = check_walls(start, &self.wall);
+        self.fault = is_there.and_then(|()| self.names.check(start, |wall| self.wall == Some(wall))).err();
     }
 
     fn on_collision(&mut self, collision: &Collision) {

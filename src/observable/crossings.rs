@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::stretch::Stretch;
 use super::table::Table;
-use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot};
+use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
 use crate::{Disk, ParameterError};
@@ -18,7 +18,9 @@ use crate::{Disk, ParameterError};
 /// A crossing is *forward* if it goes from the right to the left of the direction from `start` to `end`:
 /// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
 /// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
-/// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count.
+/// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count. A run ends with
+/// an error if disks change otherwise than in the collisions that the observer receives, as they do in a
+/// [`BetweenKinds`](super::BetweenKinds).
 ///
 /// On the line of a wall that [absorbs centers](crate::boundary::Part::absorbing_centers), rounding decides
 /// whether a disk that is absorbed there counts: use [`Arrivals`](super::Arrivals) there.
@@ -50,7 +52,13 @@ pub struct Crossings {
     times: Vec<f64>,
     forward: Vec<u64>,
     backward: Vec<u64>,
+    /// The reason why the crossings of this run cannot be found.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
 }
+
+/// Rounding of velocities, relative to the speeds of a flight.
+const ROUNDING: f64 = 1e-6;
 
 /// The free flight of a center since `time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +90,7 @@ impl Crossings {
             times: Vec::new(),
             forward: Vec::new(),
             backward: Vec::new(),
+            fault: None,
         })
     }
 
@@ -175,7 +184,12 @@ impl Crossings {
     /// Counts the crossings of all flights up to a snapshot, and begins new flights with its disks.
     fn look(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
-            self.go_on(disk.id(), Free::of(disk, snapshot.time()));
+            let next = Free::of(disk, snapshot.time());
+            if self.flights.get(&disk.id()).is_some_and(|flight| !flight.leads_to(&next, self.pull)) {
+                let name = "time by which disks have changed otherwise than in the collisions shown";
+                self.fault = Some(ParameterError::new(name, "never, for crossings", next.time));
+            }
+            self.go_on(disk.id(), next);
         }
     }
 }
@@ -198,6 +212,13 @@ impl Free {
     fn of(disk: &Disk, time: f64) -> Self {
         Self { time, position: disk.position(), velocity: disk.velocity() }
     }
+
+    /// Returns whether a disk on this flight has the velocity of the other flight when that begins.
+    fn leads_to(&self, other: &Self, pull: DVec2) -> bool {
+        let gained = (other.time - self.time) * pull;
+        let speeds = self.velocity.length() + gained.length();
+        (self.velocity + gained).distance(other.velocity) <= ROUNDING * speeds
+    }
 }
 
 impl Observer for Crossings {
@@ -205,7 +226,7 @@ impl Observer for Crossings {
         (self.pull, self.periods) = (start.gravity().acceleration(), start.domain().periods());
         let disks = start.disks().iter();
         self.flights = disks.map(|disk| (disk.id(), Free::of(disk, start.time()))).collect();
-        if self.stretch.begin(start.time()) {
+        if self.stretch.begin(start) {
             self.present = [0; 2];
         }
     }
@@ -246,6 +267,11 @@ impl Observer for Crossings {
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.look(end);
         self.stretch.pause(end.time());
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
     }
 }
 

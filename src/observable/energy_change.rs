@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::system::System;
 use super::table::{ENERGY, Table, headings, row};
+use super::wall_names::WallNames;
 use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::BlockedMean;
@@ -15,8 +16,8 @@ use crate::statistics::BlockedMean;
 /// mean whose error accounts for that. At a moving or thermal wall, the energy change is the disk's,
 /// including the work of the wall.
 ///
-/// A run ends with an error if it is of another system than the run before, or goes back in time: clear the
-/// observer before such a run, or use another one.
+/// A run ends with an error if it is of another system than the run before, goes back in time, or has other
+/// walls at the indices of walls that were hit: clear the observer before such a run, or use another one.
 /// [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) is the mean over several systems.
 ///
 /// ```
@@ -33,6 +34,8 @@ pub struct EnergyChange {
     /// The system that is measured, and the end of its latest run.
     #[cfg_attr(feature = "serde", serde(default))]
     system: System,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    names: WallNames,
     /// The reason why the collisions of this run cannot be added.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -41,7 +44,7 @@ pub struct EnergyChange {
 impl Default for EnergyChange {
     fn default() -> Self {
         let (disks, system) = (BlockedMean::with_room(), System::default());
-        Self { disks, walls: BTreeMap::new(), system, fault: None }
+        Self { disks, walls: BTreeMap::new(), system, names: WallNames::default(), fault: None }
     }
 }
 
@@ -67,7 +70,9 @@ impl EnergyChange {
 
 impl Observer for EnergyChange {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.fault = self.system.begin(start).err();
+        let is_same = self.system.begin(start);
+        self.fault =
+            is_same.and_then(|()| self.names.check(start, |wall| self.walls.contains_key(&wall))).err();
     }
 
     #[inline]

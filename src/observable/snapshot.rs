@@ -131,6 +131,14 @@ impl<'a> Snapshot<'a> {
         self.wall_count
     }
 
+    /// Returns the names of all walls; none for a snapshot without walls.
+    pub(super) fn wall_names(&self) -> Vec<String> {
+        let name = |Walls { boundary, .. }: Walls<'_>| {
+            (0..self.wall_count).map(|wall| boundary.wall_name(wall).into_owned()).collect()
+        };
+        self.walls.map_or_else(Vec::new, name)
+    }
+
     /// Returns a point that moves with a wall, or `None` if the boundary knows no such point.
     ///
     /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the
@@ -154,7 +162,8 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the walls that move: the index of each, its displacement from its position at rest, and the
-    /// phase of its motion, which is the time since the motion began, less whole periods.
+    /// phase of its motion, as [`WallMotion`](crate::wall::WallMotion) takes it: the time, less whole
+    /// periods.
     ///
     /// Walls that move together, as the bricks of a part do, appear once.
     ///

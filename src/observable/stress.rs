@@ -199,7 +199,7 @@ impl Observer for Stress {
             self.stretch.forget();
         }
         self.fault = self.check(start).err();
-        if self.stretch.begin(start.time()) {
+        if self.stretch.begin(start) {
             self.transferred = [0.0; 4];
         }
     }

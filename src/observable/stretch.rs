@@ -1,6 +1,7 @@
 //! Intervals of time between samples, over which impulses are summed.
 
-use super::SampleTimes;
+use super::marks::Mark;
+use super::{SampleTimes, Snapshot};
 
 /// The interval of time since the latest sample, called a stretch.
 ///
@@ -14,24 +15,31 @@ pub(super) struct Stretch {
     start: Option<f64>,
     /// End of the latest run.
     end: Option<f64>,
+    /// The system of the latest run.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    system: Mark,
 }
 
 impl Stretch {
     pub(super) const fn new(times: SampleTimes) -> Self {
-        Self { sample_times: times, start: None, end: None }
+        Self { sample_times: times, start: None, end: None, system: Mark::NONE }
     }
 
     fn is_near(&self, one: f64, other: f64) -> bool {
         (one - other).abs() <= self.sample_times.rounding(other)
     }
 
-    /// Notes that a run starts at this time, and returns true if the run begins a new stretch.
-    pub(super) fn begin(&mut self, time: f64) -> bool {
+    /// Notes the start of a run, and returns true if the run begins a new stretch. A run of another system
+    /// always does.
+    pub(super) fn begin(&mut self, start: &Snapshot<'_>) -> bool {
+        let time = start.time();
         self.sample_times.start_at(time);
-        let goes_on = self.start.is_some() && self.end.is_some_and(|end| self.is_near(end, time));
+        let is_same = !self.system.is_other(start.system_mark());
+        let goes_on = is_same && self.start.is_some() && self.end.is_some_and(|end| self.is_near(end, time));
         if !goes_on {
             self.start = Some(time);
         }
+        self.system = start.system_mark();
         !goes_on
     }
 

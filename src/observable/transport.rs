@@ -221,7 +221,8 @@ impl TransportCoefficients {
         self.lags[0].iter().zip(self.lags[2].iter()).map(|((time, shear), (_, heat))| (time, [shear, heat]))
     }
 
-    /// Returns the mean translational temperature about the center of mass.
+    /// Returns the mean translational temperature about the center of mass: twice the energy over the
+    /// $`2(N-1)`$ degrees of freedom.
     pub fn temperature(&self) -> f64 {
         self.temperature.mean()
     }
@@ -304,7 +305,7 @@ impl Observer for TransportCoefficients {
             accept(periods.min_element() > 0.0, "period of the domain", "positive", periods.min_element());
         let gravity = start.gravity().larger();
         let weightless = accept(gravity == 0.0, "gravity", "0 for transport coefficients", gravity);
-        let (begins, is_first) = (self.stretch.begin(start.time()), self.domain.is_none());
+        let (begins, is_first) = (self.stretch.begin(start), self.domain.is_none());
         let (name, previous) =
             ("start of the run", "the end of the previous one, for transport coefficients");
         let goes_on = accept(is_first || !begins, name, previous, start.time());

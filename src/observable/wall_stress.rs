@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
+use super::wall_names::{WallNames, check_walls};
 use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
-use crate::quantity::{accept, positive};
+use crate::quantity::positive;
 use crate::statistics::{BlockedMean, Estimate};
 
 /// An observer of the pressure and the shear stress of the disks on walls.
@@ -23,7 +24,7 @@ use crate::statistics::{BlockedMean, Estimate};
 /// short intervals are anticorrelated, and their errors up to three times too large: take intervals of many
 /// collisions.
 ///
-/// A run ends with an error if an index names no wall.
+/// A run ends with an error if an index names no wall, or another wall than before.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -47,6 +48,8 @@ use crate::statistics::{BlockedMean, Estimate};
 pub struct WallStress {
     stretch: Stretch,
     walls: BTreeMap<usize, Received>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    names: WallNames,
     /// The reason why the stress cannot be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -64,8 +67,13 @@ struct Received {
 
 impl WallStress {
     /// Creates an observer that watches no wall yet and gives a value for each interval of the sample times.
-    pub const fn new(times: SampleTimes) -> Self {
-        Self { stretch: Stretch::new(times), walls: BTreeMap::new(), fault: None }
+    pub fn new(times: SampleTimes) -> Self {
+        Self {
+            stretch: Stretch::new(times),
+            walls: BTreeMap::new(),
+            names: WallNames::default(),
+            fault: None,
+        }
     }
 
     /// Returns the same observer, which also watches the wall of this index and length.
@@ -92,22 +100,20 @@ impl WallStress {
     /// Forgets all measurements so far.
     pub fn clear(&mut self) {
         self.stretch.forget();
+        self.names = WallNames::default();
         for received in self.walls.values_mut() {
             (received.impulse, received.means) = ([0.0; 2], Default::default());
         }
     }
 }
 
-/// Checks that the boundary of a run has the wall of this index.
-pub(super) fn check_wall(wall: usize, start: &Snapshot<'_>) -> Result<f64, ParameterError> {
-    let is_there = wall < start.wall_count();
-    accept(is_there, "index of a wall", "less than the number of walls", wall as f64)
-}
-
 impl Observer for WallStress {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.fault = self.walls.keys().find_map(|&wall| check_wall(wall, start).err());
-        if self.stretch.begin(start.time()) {
+        let are_there = check_walls(start, self.walls.keys());
+        let are_same =
+            are_there.and_then(|()| self.names.check(start, |wall| self.walls.contains_key(&wall)));
+        self.fault = are_same.err();
+        if self.stretch.begin(start) {
             self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
         }
     }

@@ -13,15 +13,19 @@ use script::{Operation, SCRIPTS, Script, Stage};
 
 const PART: &str = "scheduler";
 
+/// Numbers of changes of one disk after which counters of 8 and of 16 bits begin again.
+const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
+
 /// Checks that a scheduler keeps the contract of [`EventScheduler`].
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
 /// have from none to tens of thousands of disks, and up to three million operations. They contain times that
 /// advance, go back, or are before the last result; ties and times that differ only in their last bits, both
 /// zeros, negative and infinite times; a single busy disk among many that wait; and resets to more, to fewer,
-/// to the same number and to no disks. Each query is made twice. At intervals, the scripts call
-/// [`upcoming`](EventScheduler::upcoming) disks, which must not change the order. The page "Validation" says
-/// which planted faults the check finds. The scripts never change within a version.
+/// to the same number and to no disks. Counters of 8 and 16 bits overflow. Each query is made twice. At
+/// intervals, the scripts call [`upcoming`](EventScheduler::upcoming) disks, which must not change the order.
+/// The page "Validation" says which planted faults the check finds. The scripts never change within a
+/// version.
 ///
 /// # Errors
 /// The first law that is broken. A scheduler that panics is not caught.
@@ -59,7 +63,23 @@ const PART: &str = "scheduler";
 pub fn check<S: EventScheduler>(mut make: impl FnMut() -> S) -> Result<(), Violation> {
     SCRIPTS.iter().try_for_each(|script| {
         script.disks.iter().try_for_each(|&disks| Performance::new(script, disks, make()).run())
-    })
+    })?;
+    COUNTS.iter().try_for_each(|&count| check_counters(make(), count))
+}
+
+/// Checks that a disk whose event has moved this number of times is not due at its first time, behind another
+/// disk. A scheduler that numbers its entries may give the same number twice.
+fn check_counters(mut scheduler: impl EventScheduler, count: u32) -> Result<(), Violation> {
+    scheduler.reset(&[5.0, 0.5]);
+    scheduler.set(0, 1.0);
+    for later in 1..=count {
+        scheduler.set(0, 20.0 + f64::from(later));
+    }
+    scheduler.set(1, 1e6);
+    let (expected, found) = ((0, 20.0 + f64::from(count)), scheduler.earliest());
+    require!(PART, "earliest", found == expected;
+        "after disk 0 is set {count} times, the earliest is {}, not {}", told(expected), told(found));
+    Ok(())
 }
 
 /// A script in progress, and the scheduler that is checked.

@@ -27,7 +27,7 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANEDMD", 8);
+const SEAL: Seal = Seal::new(*b"GRANEDMD", 9);
 
 /// A saved run: everything on which its future depends, except its rule and its boundary. The numbers of
 /// walls that [react](Boundary::react) are kept.

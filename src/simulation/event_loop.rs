@@ -203,6 +203,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Event {
         self.counters.wall_collisions += 1;
         self.counters.removals += 1;
+        self.ledger.count(collision.time, self.len());
         let reaction = self.boundary.react(&impact_of(collision, wall, self.clock.now));
         observer.on_collision(collision);
         let gone = self.bodies.disk(disk, self.clock.now);

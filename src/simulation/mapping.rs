@@ -15,8 +15,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// anew. For the bits, see [`insert`](Self::insert).
     ///
     /// # Errors
-    /// If `change` fails, a disk that has moved or grown does not fit, or a disk becomes so fast that times
-    /// as late as the present are too coarse. The simulation then stays unchanged.
+    /// If `change` fails, a disk with another position, radius or kind does not fit, or a disk becomes so
+    /// fast that times as late as the present are too coarse. The simulation then stays unchanged.
     ///
     /// ```
     /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};
@@ -41,8 +41,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn replace_disks(&mut self, disks: &[Disk]) -> Result<(), BuildError> {
         check_speeds(disks.iter().map(Disk::velocity))?;
         let stay = |(index, disk): (usize, &Disk)| {
+            // Some walls are there for some kinds only.
             disk.position() == self.bodies.position(index, self.clock.now)
                 && disk.radius() == self.bodies.radius(index)
+                && disk.kind() == self.bodies.material(index).kind
         };
         let all_stay = disks.iter().enumerate().all(stay);
         let fitted = (!all_stay).then(|| fit(&self.boundary, disks, self.clock.now)).transpose()?;

@@ -57,6 +57,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
         // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
         self.shift_epoch(self.clock.exact_offset());
+        self.ledger.count(self.time(), self.len());
         self.bodies.insert(&new, self.clock.now);
         (self.wall_count, self.cells) = (wall_count, cells);
         self.begin_anew();
@@ -83,6 +84,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         let cells = cells_around(&self.boundary, &rest)?;
         self.shift_epoch(self.clock.exact_offset());
+        self.ledger.count(self.time(), self.len());
         self.bodies.remove(&leaves);
         self.cells = cells;
         self.begin_anew();

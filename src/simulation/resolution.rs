@@ -125,7 +125,9 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         // under any rule.
         Response::Thermal(_) | Response::Absorbing => {
             let leaving = match surface.response {
-                Response::Thermal(thermal) => emitted(&thermal, &arriving, surface, mass, inertia, generator),
+                Response::Thermal(thermal) => {
+                    emitted(&thermal, &arriving, surface, [mass, inertia, material.radius], generator)
+                }
                 _ => Body { angular_velocity: 0.0, ..*partner },
             };
             let kick = (leaving.velocity - arriving.velocity) * mass;
@@ -190,11 +192,13 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
 }
 
 /// Returns whether a surface's normal is a unit vector, its velocities are possible for a disk, its radius is
-/// neither zero nor NaN, and its masses are positive.
+/// neither zero nor NaN, and its masses are positive. A thermal wall must be guided along its surface.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;
-    let has_mass = surface.mass > 0.0 && surface.tangential_mass > 0.0;
+    let is_guided = surface.tangential_mass == f64::INFINITY;
+    let has_mass = surface.mass > 0.0
+        && (is_guided || surface.tangential_mass > 0.0 && !matches!(surface.response, Response::Thermal(_)));
     let turns = surface.angular_velocity.abs() <= LARGEST;
     (surface.normal.length() - 1.0).abs() <= UNIT
         && velocity.x <= LARGEST
@@ -224,22 +228,38 @@ fn emitted(
     thermal: &Thermal,
     arriving: &Body,
     surface: &Surface<'_>,
-    mass: f64,
-    inertia: f64,
+    [mass, inertia, radius]: [f64; 3],
     generator: &mut Xoshiro256PlusPlus,
 ) -> Body {
     let speed = (thermal.temperature() / mass).sqrt();
     // Weighted by the flux, since fast disks cross a plane more often. With half a Gaussian, an elastic gas
     // would settle below the wall's temperature.
     let outward = surface.normal * (speed * rayleigh(generator));
+    let base = if surface.mass.is_finite() {
+        // A piston recoils, so the relative speed is the one of the reduced mass, and the center of mass
+        // keeps its velocity. Otherwise, the gas and the piston would be hotter than the wall.
+        let share = surface.mass / (mass + surface.mass);
+        let closing = surface.normal * (arriving.velocity - surface.velocity).dot(surface.normal);
+        surface.velocity + (1.0 - share) * closing + outward * share.sqrt()
+    } else {
+        surface.velocity + outward
+    };
     let along = surface.normal.perp();
     if thermal.slip() {
         let slip = along * (arriving.velocity - surface.velocity).dot(along);
-        return Body { velocity: surface.velocity + outward + slip, ..*arriving };
+        return Body { velocity: base + slip, ..*arriving };
     }
-    Body {
-        velocity: surface.velocity + outward + along * (speed * normal(generator)),
+    let emitted = Body {
+        velocity: base + along * (speed * normal(generator)),
         angular_velocity: (thermal.temperature() / inertia).sqrt() * normal(generator),
+    };
+    match surface.angular_velocity {
+        0.0 => emitted,
+        // The gas behind a wall that turns, turns with it: this is its velocity at the center of the disk.
+        turning => Body {
+            velocity: emitted.velocity + turning * radius * along,
+            angular_velocity: emitted.angular_velocity + turning,
+        },
     }
 }
 

@@ -78,7 +78,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 self.put_in(&placed)?;
                 self.inlets[number].waiting.pop_front();
                 self.counters.insertions += 1;
-                self.ledger.has_source = true;
+                self.ledger.count(time, self.len() - 1);
                 observer.on_insert(&self.bodies.disk(self.len() - 1, self.clock.now), time);
             }
         }

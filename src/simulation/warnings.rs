@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::errors::named;
 use super::{Counters, Inlet, Simulation};
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Region};
 use crate::collision::CollisionRule;
 use crate::error::Rounded;
 use crate::observable::{Partner, Temperatures};
@@ -84,8 +84,8 @@ pub enum Warning {
         /// Number of collisions, with disks or walls.
         collisions: u64,
     },
-    /// Gravity points upwards, and the boundary is open there: disks that fall out never come back, and the
-    /// run becomes slower and slower.
+    /// Gravity points upwards, the boundary is open there, and a disk has no wall above it: disks that fall
+    /// out never come back, and the run becomes slower and slower.
     EndlessFall {
         /// Upward component of gravity.
         upwards: f64,
@@ -222,9 +222,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn long_contact_duration(&self) -> Option<Warning> {
         let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
         let collisions = self.counters.collisions();
-        let elapsed = self.time() - self.ledger.start;
+        let disk_time = self.ledger.disk_time_at(self.time(), self.len());
         // Both disks take part in a collision of two.
-        let rate = |count: u64| 2.0 * count as f64 / (self.len() as f64 * elapsed);
+        let rate = |count: u64| 2.0 * count as f64 / disk_time;
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;
@@ -241,14 +241,26 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let collisions = self.counters.disk_collisions;
         let speeds = (0..self.len()).map(|disk| self.bodies.velocity(disk, self.clock.now).abs());
         let DVec2 { x, y } = speeds.fold(DVec2::ZERO, DVec2::max);
-        let is_one = collisions >= FEWEST && x.min(y) <= STRAIGHT * x.max(y);
+        // A single disk, and disks that were brought to rest, have no direction to lose.
+        let may_be = collisions >= FEWEST && self.len() > 1 && x.max(y) > 0.0;
+        let is_one = may_be && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })
     }
 
     fn endless_fall(&self) -> Option<Warning> {
         let upwards = self.gravity().acceleration().y;
-        (upwards > 0.0 && self.boundary.domain().top.is_infinite())
+        let is_open = upwards > 0.0 && self.boundary.domain().top.is_infinite();
+        (is_open && (0..self.len()).any(|disk| self.has_no_wall_above(disk)))
             .then_some(Warning::EndlessFall { upwards })
+    }
+
+    /// Returns whether a disk that moves straight up can never touch a wall. A part of the boundary may be a
+    /// lid.
+    fn has_no_wall_above(&self, disk: usize) -> bool {
+        let (place, radius) = (self.bodies.position(disk, self.clock.now), self.bodies.radius(disk));
+        // The region begins a diameter above the center, so that the floor on which a disk lies is not in it.
+        let above = Region::new(place + 2.0 * radius * DVec2::Y, DVec2::new(place.x, f64::INFINITY));
+        !self.boundary.may_touch(&above, radius)
     }
 
     fn closed_sink_so_far(&self) -> Option<Warning> {

@@ -3,6 +3,7 @@
 use granular_edmd::statistics::Estimate;
 
 use super::{Experiment, Leg, Record};
+use crate::experiment::with_error;
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and
 /// different seeds.
@@ -67,7 +68,7 @@ impl<E: Experiment> Point<E> {
     /// has no error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
-        let column = columns.iter().find(|known| known.name() == column && known.has_error())?;
+        let column = with_error(&columns, column)?;
         Some(Estimate::over_repeats(self.records.iter().filter_map(|record| column.estimate(record))))
     }
 }

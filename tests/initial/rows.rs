@@ -1,9 +1,9 @@
 //! Disks of any sizes in rows.
 
-use granular_edmd::Disk;
-use granular_edmd::boundary::{Boundary, Container, Obstacles};
+use granular_edmd::boundary::{Boundary, Container, Obstacles, Part, Probe, Vessel};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError, Radii};
+use granular_edmd::{Disk, Kind};
 
 use super::{assert_apart, assert_same_disks, disks};
 
@@ -89,4 +89,31 @@ fn what_has_no_room_is_told() {
     );
     assert!(matches!(placed(&[0.5; 200]), Err(PlacementError::NoRoom { count: 200, .. })));
     assert_eq!(placed(&[]), Ok(vec![]));
+}
+
+/// Walls that are there for one kind only keep disks of this kind out.
+#[test]
+fn disks_stand_and_are_packed_where_their_kind_may_be() {
+    let kind = Kind::new(1);
+    let corners = [(3.0, 2.0), (9.0, 2.0), (9.0, 7.0), (3.0, 7.0)].map(DVec2::from);
+    let block = Part::block(corners).unwrap().only_for([kind]);
+    let vessel = Vessel::new(Container::closed(12.0, 14.0).unwrap()).with("block", block).unwrap();
+    let disks: Vec<Disk> = disks(vec![0.5; 40]).into_iter().map(|disk| disk.with_kind(kind)).collect();
+    let placed = [
+        initial::placed_in_rows(&vessel, disks.clone()).unwrap(),
+        initial::placed_at_random(&vessel, disks.clone(), 14.0, 1).unwrap(),
+        initial::packed_at_random(&vessel, disks, 14.0, 1).unwrap(),
+    ];
+    for disk in placed.iter().flatten() {
+        assert!(vessel.overlap(&Probe::of(disk, 0.0)).is_none(), "{disk:?}");
+    }
+}
+
+/// A line that takes out centers is in the way of a packing, and is named.
+#[test]
+fn a_packing_names_a_sink_among_the_disks() {
+    let exit = Part::polyline([(0.0, 3.0), (10.0, 3.0)].map(DVec2::from)).unwrap().absorbing_centers();
+    let silo = Vessel::new(Container::closed(10.0, 20.0).unwrap()).with("exit", exit).unwrap();
+    let refused = initial::packed_at_random(&silo, disks(vec![0.5; 100]), 20.0, 1).unwrap_err();
+    assert!(refused.to_string().contains("sink \"exit\""), "{refused}");
 }

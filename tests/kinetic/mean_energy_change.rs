@@ -145,8 +145,8 @@ fn closed_form_is_the_mean_over_colliding_disks() -> Outcome {
     Ok(())
 }
 
-/// Rules that see the relative spin, the kinds and the radii, against thermal disks that collide. Disks of two
-/// sizes have spins that are correlated with their slip.
+/// Rules that see the relative spin, the kinds and the radii, against thermal disks that collide. Disks of
+/// two sizes have spins that are correlated with their slip.
 #[test]
 fn monte_carlo_sees_all_of_a_contact() -> Outcome {
     let (heavy, kind) = (1.3, Kind::new(3));

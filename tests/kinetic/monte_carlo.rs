@@ -1,8 +1,9 @@
 //! Promises of the Monte Carlo average beyond physics: its bits, its stopping, its input.
 
-use granular_edmd::ParameterError;
-use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};
-use granular_edmd::kinetic::{IsoLine, Maxwellian, MonteCarlo, effective_inelasticity};
+use granular_edmd::collision::{Contact, ContactDuration, Frictional, Impulse, Smooth, from_fn};
+use granular_edmd::glam::DVec2;
+use granular_edmd::kinetic::{DirectSimulation, IsoLine, Maxwellian, MonteCarlo, effective_inelasticity};
+use granular_edmd::{Disk, ParameterError, initial};
 
 type Outcome = Result<(), ParameterError>;
 
@@ -95,5 +96,22 @@ fn a_gas_is_read_through_the_same_gate() -> Outcome {
     for (good, bad) in [("2.0", "-2.0"), ("0.5,", "-0.5,"), ("masses", "mass"), ("[1.0,1.0]", "[1.0,0.0]")] {
         assert!(serde_json::from_str::<Maxwellian>(&text.replacen(good, bad, 1)).is_err(), "{bad} in {text}");
     }
+    Ok(())
+}
+
+/// A direct simulation knows when its disks last collided: with a contact duration longer than the run, only
+/// the first collision of two disks loses energy.
+#[test]
+fn direct_simulation_knows_the_contact_duration() -> Outcome {
+    let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; 100];
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    let rule = ContactDuration::new(Smooth::from_restitution(0.9)?, 1e9)?;
+    let mut gas = DirectSimulation::new(rule, disks, 0.1, 1)?;
+    let energy = |gas: &DirectSimulation<_>| gas.disks().iter().map(Disk::translational_energy).sum::<f64>();
+    let start = energy(&gas);
+    gas.run_until(50.0)?;
+    let late = energy(&gas);
+    gas.run_until(100.0)?;
+    assert!(late < 0.99 * start && (energy(&gas) / late - 1.0).abs() < 1e-12, "{start}, {late}");
     Ok(())
 }

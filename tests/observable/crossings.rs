@@ -1,9 +1,9 @@
 //! Crossings of lines: exact balances of the disks on both sides.
 
 use granular_edmd::boundary::{Container, Part, Vessel};
-use granular_edmd::collision::{Frictional, LeastRebound};
+use granular_edmd::collision::{Elastic, Frictional, LeastRebound};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{Crossings, OfKind, SampleTimes};
+use granular_edmd::observable::{BetweenKinds, Crossings, OfKind, SampleTimes};
 use granular_edmd::simulation::Limits;
 use granular_edmd::simulation::{Inlet, WhiteNoise};
 use granular_edmd::{Disk, Kind, Simulation, initial};
@@ -69,5 +69,22 @@ fn a_shower_crosses_a_line_on_its_way_to_a_sink() -> Outcome {
     let entered = run.counters().insertions.cast_signed();
     assert!(entered > 100 && run.counters().removals > 50);
     assert_eq!(-net(&crossings), entered - above(&run.disks(), None));
+    Ok(())
+}
+
+/// Crossings need all collisions of their disks: a filter that keeps some back is noticed.
+#[test]
+fn crossings_that_miss_collisions_are_refused() -> Outcome {
+    let container = Container::periodic(12.0, 12.0)?;
+    let disks = initial::with_maxwellian_velocities(initial::random(&container, 30, 0.5, 12.0, 1)?, 1.0, 2)?;
+    let disks: Vec<Disk> = (0..).zip(disks).map(|(k, disk)| disk.with_kind(Kind::new(k % 2))).collect();
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+    let line = [DVec2::new(0.0, HEIGHT), DVec2::new(12.0, HEIGHT)];
+    let crossings = Crossings::new(line, SampleTimes::every(2.0)?)?;
+    let mut between = BetweenKinds::new(Kind::new(0), Kind::new(1), crossings.clone());
+    let refused = run.run_until(4.0, &mut between).unwrap_err();
+    let refused = std::error::Error::source(&refused).expect("a cause");
+    assert!(refused.to_string().contains("otherwise than in the collisions"), "{refused}");
+    run.run_until(8.0, &mut OfKind::new(Kind::new(1), crossings))?;
     Ok(())
 }

@@ -4,9 +4,10 @@ use granular_edmd::boundary::{Container, Part, Region, Vessel};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Fields, Grid, HeightProfile, Observer, OfKind, SampleTimes, Sampled, Stress,
+    Arrivals, CollisionCounts, CollisionHistograms, EnergyChange, Fields, Grid, HeightProfile, Observer,
+    OfKind, SampleTimes, Sampled, Stress, WallStress,
 };
-use granular_edmd::{Disk, Kind, Simulation};
+use granular_edmd::{Disk, Kind, ParameterError, Simulation};
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
@@ -56,5 +57,48 @@ fn a_region_to_which_no_wall_comes_is_measured() -> Outcome {
     run(Part::block(corners())?, &mut stress)?;
     let mass = Disk::new(DVec2::ZERO, 0.5)?.mass();
     assert!((stress.kinetic().yy.mean() - mass / (1.5 * 7.5)).abs() < 1e-15);
+    Ok(())
+}
+
+type Make<'a> = Box<dyn Fn() -> Result<Box<dyn Observer>, ParameterError> + 'a>;
+
+/// A gate is taken away, and the walls after it have other indices: measures that go by indices notice it.
+/// The second of two systems begins a new interval.
+#[test]
+fn values_of_two_walls_or_two_systems_are_not_added() -> Outcome {
+    let line = |height: f64| Part::polyline([(2.0, height), (10.0, height)].map(DVec2::from));
+    let container = || Container::closed(12.0, 9.0);
+    let with_gate = Vessel::new(container()?).with("gate", line(3.0)?)?.with("shelf", line(6.0)?)?;
+    let without = Vessel::new(container()?).with("shelf", line(6.0)?)?.with("other", line(7.5)?)?;
+    let shelf = with_gate.walls("shelf").expect("a shelf");
+    let times = SampleTimes::every(2.0)?;
+    let disk = |y: f64| Disk::new(DVec2::new(5.0, y), 0.5).and_then(|disk| disk.with_velocity(DVec2::Y));
+    let observers: [Make<'_>; 5] = [
+        Box::new(|| Ok(Box::new(Arrivals::at(shelf.clone(), times)))),
+        Box::new(|| Ok(Box::new(WallStress::new(times).with_wall(shelf.start, 8.0)?))),
+        Box::new(|| Ok(Box::new(CollisionHistograms::new(5.0, 5.0, 4)?.with_wall(shelf.start)))),
+        Box::new(|| Ok(Box::<EnergyChange>::default())),
+        Box::new(|| Ok(Box::<CollisionCounts>::default())),
+    ];
+    for make in &observers {
+        let mut observer = make()?;
+        let mut run = Simulation::builder(Elastic, with_gate.clone()).disks([disk(4.5)?]).build()?;
+        run.run_until(5.0, &mut observer)?;
+        // The same walls again are no reason to refuse.
+        run.set_boundary(with_gate.clone())?;
+        run.run_until(7.0, &mut observer)?;
+        run.set_boundary(without.clone())?;
+        let refused = run.run_until(9.0, &mut observer).unwrap_err();
+        let refused = std::error::Error::source(&refused).expect("a cause").to_string();
+        assert!(refused.contains("clear the observer") && refused.contains("\"shelf\""), "{refused}");
+    }
+    let mut arrivals = Arrivals::at(shelf.clone(), times);
+    Simulation::builder(Elastic, with_gate.clone())
+        .disks([disk(4.5)?])
+        .build()?
+        .run_until(3.0, &mut arrivals)?;
+    let other = Simulation::builder(Elastic, with_gate).disks([disk(4.5)?]).starting_at(3.0);
+    other.build()?.run_until(6.0, &mut arrivals)?;
+    assert_eq!(arrivals.times(), [2.0, 6.0]);
     Ok(())
 }

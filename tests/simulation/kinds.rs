@@ -1,12 +1,12 @@
 //! Kinds in a run: rules and observers see them, and files keep them.
 
-use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::boundary::{Boundary, Container, Part, Vessel, Wall};
 use granular_edmd::collision::{Contact, Elastic, Frictional, RulesByKind};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     BetweenKinds, CollisionCounts, Energies, EnergyChange, OfKind, Partner, SampleTimes, Series, on_collision,
 };
-use granular_edmd::simulation::Simulation;
+use granular_edmd::simulation::{BuildError, Simulation};
 use granular_edmd::{Disk, Kind, initial};
 
 const SMALL: Kind = Kind::new(1);
@@ -151,5 +151,20 @@ fn a_wall_of_a_kind_is_no_disk_of_it() -> Outcome {
     run.run_until(20.0, &mut counts)?;
     assert_eq!(counts.0.inner().wall_collisions(), 0);
     assert!(counts.1.inner().wall_collisions() > 3);
+    Ok(())
+}
+
+/// A block is there for one kind only: a disk inside it cannot become of this kind.
+#[test]
+fn a_kind_that_does_not_fit_is_refused() -> Outcome {
+    let corners = [(2.0, 2.0), (9.0, 2.0), (9.0, 6.0), (2.0, 6.0)].map(DVec2::from);
+    let block = Part::block(corners)?.only_for([LARGE]);
+    let vessel = Vessel::new(Container::closed(12.0, 12.0)?).with("block", block)?;
+    let disk = Disk::new(DVec2::new(5.0, 4.0), 0.5)?.with_kind(SMALL);
+    let mut run = Simulation::builder(Elastic, vessel).disks([disk]).build()?;
+    let refused = run.map_disks(|_, disk| Ok(disk.with_kind(LARGE))).unwrap_err();
+    assert!(matches!(refused, BuildError::OverlapsWall { .. }), "{refused}");
+    assert_eq!(run.disks()[0].kind(), SMALL);
+    run.map_disks(|_, disk| disk.with_position(DVec2::new(10.5, 4.0)).map(|disk| disk.with_kind(LARGE)))?;
     Ok(())
 }

@@ -222,3 +222,15 @@ fn a_piston_that_is_set_during_a_run_begins_then() -> Outcome {
     }
     Ok(())
 }
+
+/// A piston and a motion of the same wall would replace each other.
+#[test]
+fn a_motion_does_not_replace_a_piston() -> Outcome {
+    let (piston, base) = (Piston::new(5.0, [-1.0, 3.0])?, BiParabolic::new(0.1, 10.0)?);
+    let container = Container::closed(10.0, 10.0)?;
+    let refused = container.clone().with_piston(Wall::Lid, piston)?.with_motion(Wall::Lid, base).unwrap_err();
+    assert!(refused.to_string().contains("would be lost"), "{refused}");
+    assert!(container.clone().with_motion(Wall::Lid, base)?.with_piston(Wall::Lid, piston).is_err());
+    container.with_piston(Wall::Lid, piston)?.with_piston(Wall::Lid, piston)?;
+    Ok(())
+}

@@ -40,6 +40,14 @@ fn gravity_upwards_without_a_lid_is_a_warning() -> Outcome {
     assert!(open[0].to_string().contains("a lid or another gravity"), "{}", open[0]);
     assert_eq!(warned(Container::open(20.0)?, 1.0)?, []);
     assert_eq!(warned(Container::closed(20.0, 20.0)?, -1.0)?, []);
+    // A part may be a lid, but not one that leaves half of the top open.
+    for (end, is_open) in [(20.0, false), (10.0, true)] {
+        let roof = Part::polyline([(0.0, 24.0), (end, 24.0)].map(DVec2::from))?;
+        let vessel = Vessel::new(Container::open(20.0)?).with("roof", roof)?;
+        let disks = gas(&walls()?)?;
+        let run = Simulation::builder(Elastic, vessel).disks(disks).gravity(-1.0).build()?;
+        assert_eq!(run.warnings().len(), usize::from(is_open), "{:?}", run.warnings());
+    }
     Ok(())
 }
 
@@ -58,6 +66,14 @@ fn columns_that_hop_in_line_are_a_warning() -> Outcome {
     assert!(matches!(warned[..], [Warning::OneDirection { .. }]), "{warned:?}");
     assert!(warned[0].to_string().contains("small velocities"), "{}", warned[0]);
     assert_eq!(after(initial::with_maxwellian_velocities(columns, 1e-20, 1)?)?, []);
+    // A gas that is brought to rest, or loses all disks but one, has no direction.
+    let mut run = Simulation::builder(Elastic, walls()?).disks(gas(&walls()?)?).build()?;
+    run.run_until(20.0, &mut ())?;
+    run.map_disks(|_, disk| disk.with_velocity(DVec2::ZERO))?;
+    assert_eq!(run.warnings(), []);
+    run.remove(|index, _| index > 0)?;
+    run.map_disks(|_, disk| disk.with_velocity(DVec2::X))?;
+    assert_eq!(run.warnings(), []);
     Ok(())
 }
 
@@ -146,6 +162,19 @@ impl Boundary for Lying {
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         self.0.overlap(probe)
     }
+}
+
+/// Collisions of disks that have left count for the disks that were there.
+#[test]
+fn a_contact_duration_is_judged_by_the_disks_of_its_time() -> Outcome {
+    let rule = ContactDuration::new(Elastic, 0.01)?;
+    let mut run = Simulation::builder(rule, walls()?).disks(gas(&walls()?)?).build()?;
+    run.run_until(60.0, &mut ())?;
+    assert_eq!(run.warnings(), []);
+    run.remove(|index, _| index >= 3)?;
+    run.run_until(61.0, &mut ())?;
+    assert_eq!(run.warnings(), []);
+    Ok(())
 }
 
 fn stall_of<R: CollisionRule, B: Boundary>(rule: R, boundary: B, disks: Vec<Disk>) -> Outcome<Remedy> {

@@ -101,7 +101,7 @@ impl Container {
                 if plane.motion.reach() != (0.0, 0.0) {
                     return Err(WallError::Lost { wall });
                 }
-                plane.set_motion(motion);
+                plane.set_motion(motion)?;
             }
         }
         for wall in others {

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::LATEST;
 use super::reaction::check_reaction;
 use super::surface::check_surface;
-use super::trial::{PART, Trial, restarted};
+use super::trial::{PART, Trial, in_words, restarted};
 use crate::boundary::{Boundary, Overlap, Response, Surface, Touch};
 use crate::violation::require;
 use crate::{Flight, Violation};
@@ -25,6 +25,9 @@ const SAME: f64 = 1e-9;
 
 /// Closing speeds of flights that graze a wall, as fractions of the speed along it.
 const GRAZES: [f64; 4] = [3e-2, 3e-3, 3e-4, 3e-5];
+
+/// Number of contacts in which the rule of a wall is compared.
+const CONTACTS: usize = 20;
 
 /// A touch, and how the disk meets the wall.
 struct Meeting {
@@ -211,11 +214,17 @@ fn check_origin(
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());
-    let before = meeting.map(|meeting| seen(trial, meeting, 0.0));
+    let response = |trial: &Trial<'_>, meeting: &Meeting, shift: f64| {
+        let Touch { wall, time, .. } = meeting.touch;
+        // Only the response is compared as text: the other numbers have rounding.
+        let Surface { response, .. } = trial.boundary.surface(wall, meeting.place, time + shift);
+        in_words(&Surface::new(DVec2::Y, DVec2::ZERO).with_response(response), CONTACTS)
+    };
+    let before = meeting.map(|meeting| (seen(trial, meeting, 0.0), response(trial, meeting, 0.0)));
     trial.set_origin(origin - shift);
     let found = trial.first_touch(&shifted, until + shift)?;
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
-    let after = meeting.map(|meeting| seen(trial, meeting, shift));
+    let after = meeting.map(|meeting| (seen(trial, meeting, shift), response(trial, meeting, shift)));
     trial.set_origin(origin);
     trial.take_state(&state)?;
     let other = other?;
@@ -232,9 +241,12 @@ fn check_origin(
     let (time, other) = (meeting.map(|one| one.touch.time), other.as_ref().map(later));
     require!(PART, "time origin", agree;
         "an origin {shift:?} before {origin:?} moves a touch at {time:?} to {other:?}: {flight:?}");
-    let is_same = before.zip(after).is_none_or(|(one, other)| is_same(trial, &one, &other));
+    let Some(((before, response), (after, other))) = before.zip(after) else { return Ok(()) };
+    let is_same = is_same(trial, &before, &after);
     require!(PART, "time origin", is_same;
         "an origin {shift:?} before {origin:?} changes the surface {before:?} to {after:?}: {flight:?}");
+    require!(PART, "time origin", response == other;
+        "an origin {shift:?} before {origin:?} changes the response {response} to {other}: {flight:?}");
     Ok(())
 }
 
@@ -251,13 +263,16 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();
     let slack = SAME * (one.velocity.length() + trial.speed * late);
-    let numbers = |seen: &Surface<'_>| (seen.mass, seen.tangential_mass, seen.kind);
-    // The difference of two straight walls, which have infinite radii, is NaN.
-    let has_other_radius = (one.radius - other.radius).abs() > SAME * late * one.radius.abs();
+    // The difference of two infinite numbers is NaN.
+    let is_near = |one: f64, other: f64| {
+        one == other || (one - other).abs() <= SAME * late * one.abs().min(other.abs())
+    };
     one.normal.distance(other.normal) <= 100.0 * SAME * late
         && one.velocity.distance(other.velocity) <= slack
-        && (one.radius == other.radius || !has_other_radius)
-        && numbers(one) == numbers(other)
+        && is_near(one.radius, other.radius)
+        && is_near(one.mass, other.mass)
+        && is_near(one.tangential_mass, other.tangential_mass)
+        && one.kind == other.kind
 }
 
 /// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding.

@@ -4,10 +4,9 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::trial::{PART, Trial};
+use super::trial::{PART, Trial, in_words};
 use super::{KINDS, Random};
-use crate::boundary::{Boundary, FirstTouch, Region, Response, Surface};
-use crate::collision::laws::hostile_contacts;
+use crate::boundary::{Boundary, FirstTouch, Region};
 use crate::fingerprint::check_pair;
 use crate::{Flight, Kind, Violation};
 
@@ -21,7 +20,7 @@ const CONTACTS: usize = 300;
 /// with equal results on a thousand flights have the same fingerprint. Boundaries without a fingerprint are
 /// not compared.
 ///
-/// The check sets the time origins of both boundaries.
+/// The check sets the time origins of both boundaries, and gives the second the state of the first.
 ///
 /// # Errors
 /// If the fingerprints contradict the results.
@@ -56,8 +55,12 @@ where
         other.kind = one.kind;
         // `check` refuses a boundary without room. Here, nothing is left to compare.
         let Ok((origin, flight)) = random.flight(&mut one) else { break };
-        one.set_origin(origin);
+        // Fingerprints do not depend on the state of the walls, so the results are compared in the same one.
+        one.begin(origin)?;
         other.set_origin(origin);
+        if other.take_state(&one.state).is_err() {
+            return check_pair(PART, fingerprints, Some("in their states".to_owned()));
+        }
         let until = flight.time() + one.length() / speed;
         let answers = [answer(&one, &flight, until), answer(&other, &flight, until)];
         if answers[0] != answers[1] {
@@ -77,17 +80,9 @@ fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
     let touch = boundary.first_touch(flight, until);
     let surface = match touch {
         FirstTouch::At(touch) => {
-            in_words(&boundary.surface(touch.wall, flight.position(touch.time), touch.time))
+            in_words(&boundary.surface(touch.wall, flight.position(touch.time), touch.time), CONTACTS)
         }
         FirstTouch::NotBefore(_) => String::new(),
     };
     format!("{depth:?}, {area:?}, {touch:?}, {surface}")
-}
-
-/// Returns all data of a surface as text; rules are represented by their impulses.
-fn in_words(surface: &Surface<'_>) -> String {
-    let Response::Rule(rule) = surface.response else { return format!("{surface:?}") };
-    let contacts = hostile_contacts().take(CONTACTS);
-    let impulses: Vec<_> = contacts.map(|contact| rule.impulse(&contact)).collect();
-    format!("{surface:?} {impulses:?}")
 }

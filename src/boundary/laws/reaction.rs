@@ -18,6 +18,10 @@ const ROUNDING: f64 = 1e-12;
 pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let (state, before) = (trial.boundary.state(), answers(trial, touch, place));
+    let surface = trial.boundary.surface(wall, place, time);
+    if surface.mass == f64::INFINITY && surface.tangential_mass == f64::INFINITY {
+        return check_fixed(trial, touch, place, surface.normal);
+    }
     for (number, share) in BLOWS.into_iter().enumerate() {
         let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
         check_blow(trial, touch, place, [-share, sign * share, 0.0])?;
@@ -32,6 +36,34 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
         }
     }
     Ok(())
+}
+
+/// Checks that a blow on a wall that does not react moves no wall.
+fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2) -> Result<(), Violation> {
+    let Touch { wall, time, .. } = touch;
+    let state = trial.boundary.state();
+    if state.is_empty() {
+        return Ok(());
+    }
+    let before = gaps(trial, time);
+    let impulse = trial.speed * (trial.length() * normal.perp() - trial.length() * normal);
+    trial.boundary.react(&Impact::new(wall, impulse, place - trial.radius * normal, time));
+    let moved =
+        gaps(trial, time).iter().zip(before).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
+    require!(PART, "reaction", moved <= trial.rounding();
+        "a blow on wall {wall} at {time:?}, whose masses are infinite, moves other walls by {moved:?}");
+    trial.take_state(&state)
+}
+
+/// Returns the distances from the walls at places all over the domain, at a time and soon after it.
+fn gaps(trial: &Trial<'_>, time: f64) -> Vec<f64> {
+    let (low, high) = trial.rectangle();
+    let shares = [0.05, 0.35, 0.65, 0.95];
+    let places =
+        shares.iter().flat_map(|&x| shares.iter().map(move |&y| low + DVec2::new(x, y) * (high - low)));
+    let times = [time, time + 0.1 * trial.length() / trial.speed];
+    let depth = |(place, time)| trial.depth(place, trial.length(), time).map_or(0.0, |found| found.depth);
+    places.flat_map(|place| times.map(|time| (place, time))).map(depth).collect()
 }
 
 /// Returns numbers that show the present and the later motion of a wall: its velocity, and depths of

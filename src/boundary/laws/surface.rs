@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::trial::{PART, Trial};
+use super::trial::{PART, Trial, in_words};
 use crate::Violation;
-use crate::boundary::{Boundary, Surface, Touch};
+use crate::boundary::{Boundary, Response, Surface, Touch};
 use crate::violation::require;
 
 /// Fraction of the radius by which a disk is moved to probe a wall from afar.
@@ -19,6 +19,9 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
+/// Number of contacts in which the rule of a wall is compared.
+const CONTACTS: usize = 5;
+
 /// Largest errors. `UNIT` holds for the squared length of a normal, and `SLOPE` for the direction of a normal
 /// if another wall is equally near. `EXACT` holds for the direction of any other normal, for speeds and for
 /// curvatures.
@@ -31,6 +34,9 @@ const SAME: f64 = 1e-6;
 pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let surface = trial.boundary.surface(wall, place, time);
+    let words = in_words(&surface, CONTACTS);
+    let again = in_words(&trial.boundary.surface(wall, place, time), CONTACTS);
+    require!(PART, "repeatable", again == words; "the surface {words} is {again} when asked for again");
     let (normal, velocity, radius) = (surface.normal, surface.velocity, surface.radius);
     let is_unit = normal.is_finite() && (normal.length_squared() - 1.0).abs() <= UNIT;
     require!(PART, "unit normal", is_unit;
@@ -38,7 +44,9 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
     require!(PART, "finite velocity", velocity.is_finite();
         "the velocity {velocity:?} of wall {wall} at {time:?}");
     let masses = [surface.mass, surface.tangential_mass];
-    let are_possible = radius != 0.0 && !radius.is_nan() && masses.iter().all(|&mass| mass > 0.0);
+    let is_guided = masses[1] == f64::INFINITY || !matches!(surface.response, Response::Thermal(_));
+    let has_masses = masses.iter().all(|&mass| mass > 0.0);
+    let are_possible = radius != 0.0 && !radius.is_nan() && has_masses && is_guided;
     require!(PART, "surface", are_possible;
         "wall {wall} has the radius {radius:?} and the masses {masses:?}");
     let around = Around { trial, wall, place, time };
@@ -134,7 +142,12 @@ impl Around<'_, '_> {
             if deeper.abs() > self.trial.rounding() {
                 continue;
             }
-            let other = self.trial.boundary.surface(wall, place + size * step, time).velocity;
+            // Beyond a tip, the disk may touch the side of the wall, at another point.
+            let beside = self.trial.boundary.surface(wall, place + size * step, time);
+            if (size * (step + normal - beside.normal)).length() > EXACT * size {
+                continue;
+            }
+            let other = beside.velocity;
             let is_same = (other - velocity).dot(step.normalize()).abs() <= slack;
             require!(PART, "velocity", is_same;
                 "a tip of wall {wall} at {time:?} moves at {velocity:?} for a disk at {place:?}, and at {other:?} for \

@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Touch};
+use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch};
+use crate::collision::laws::hostile_contacts;
 use crate::violation::require;
-use crate::{Flight, Kind, Violation};
+use crate::{Fingerprint, Flight, Kind, Violation};
 
 pub(super) const PART: &str = "boundary";
 
@@ -113,6 +114,24 @@ impl<'a> Trial<'a> {
         self.boundary.overlap(&Probe::new(place, self.radius + more, time).with_kind(self.kind))
     }
 
+    /// Checks that a disk finds the same walls on both sides of each seam of a periodic domain, at the height
+    /// or the width of this position.
+    pub(super) fn check_seams(&self, place: DVec2, time: f64) -> Result<(), Violation> {
+        let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
+        let sides = [left, right].map(|x| DVec2::new(x, place.y));
+        let ends = [bottom, top].map(|y| DVec2::new(place.x, y));
+        for seam in [(periodic_sides, sides), (periodic_ends, ends)].iter().filter(|(is_seam, _)| *is_seam) {
+            let [here, there] =
+                seam.1.map(|place| self.depth(place, 0.0, time).map_or(0.0, |found| found.depth));
+            // Deep inside a wall, depths need not be continuous.
+            let is_same = (here.min(self.radius) - there.min(self.radius)).abs() <= 2.0 * self.rounding();
+            require!(PART, "periodic images", is_same;
+                "a disk of radius {:?} at {:?} is {here:?} deep in a wall at {time:?}, but {there:?} at its image {:?}",
+                self.radius, seam.1[0], seam.1[1]);
+        }
+        Ok(())
+    }
+
     /// Checks that the domain and the number of walls have not changed.
     pub(super) fn check_constants(&self) -> Result<(), Violation> {
         let (before, now, walls) = (self.domain, self.boundary.domain(), self.boundary.wall_count());
@@ -185,4 +204,15 @@ impl<'a> Trial<'a> {
 pub(super) fn restarted(flight: &Flight, time: f64) -> Flight {
     let (place, velocity) = (flight.position(time), flight.velocity(time));
     Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
+}
+
+/// Returns all data of a surface as text; a rule is represented by a digest of its impulses in this number of
+/// contacts, since the impulses would fill a page.
+pub(super) fn in_words(surface: &Surface<'_>, contacts: usize) -> String {
+    let Response::Rule(rule) = surface.response else { return format!("{surface:?}") };
+    let impulses = hostile_contacts().take(contacts).map(|contact| rule.impulse(&contact));
+    let digest = impulses.fold(Fingerprint::of("impulses"), |digest, impulse| {
+        digest.number(impulse.normal()).number(impulse.tangential()).number(impulse.couple())
+    });
+    format!("{surface:?} with impulses of the digest {digest}")
 }

@@ -31,9 +31,10 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
         Ok(Self { boundary, room: cut(boundary.interior(), below)? })
     }
 
-    /// Checks that no wall that reacts moves before it is hit.
+    /// Checks that no wall that reacts moves before it is hit, and that no wall takes disks out.
     ///
-    /// The interior ends where such a wall is at the start. If it moves far, it comes among the disks.
+    /// The interior ends where a wall that reacts is at the start. If it moves far, it comes among the disks.
+    /// A line that takes out centers is in the middle of disks that it should hold here.
     pub(super) fn check_walls(&self) -> Result<(), ParameterError> {
         (0..self.boundary.wall_count()).try_for_each(|wall| stands(self.boundary, wall, &self.room))
     }
@@ -49,10 +50,19 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     }
 }
 
-/// Checks that a wall that reacts stands still until it is hit.
+/// Checks that a wall stands still until it is hit, and is no sink.
 fn stands<B: Boundary + ?Sized>(boundary: &B, wall: usize, room: &Domain) -> Result<(), ParameterError> {
     let middle = DVec2::new(0.5 * (room.left + room.right), 0.5 * (room.bottom + room.top));
-    if boundary.surface(wall, middle, 0.0).mass == f64::INFINITY {
+    let surface = boundary.surface(wall, middle, 0.0);
+    if let Response::Absorbing = surface.response {
+        let name = format!("number of the sink \"{}\"", boundary.wall_name(wall));
+        return Err(ParameterError::new(
+            name,
+            "absent while disks are packed (add the sink afterwards)",
+            wall as f64,
+        ));
+    }
+    if surface.mass == f64::INFINITY {
         return Ok(());
     }
     let place = |time| boundary.wall_motion(wall, time).map_or(DVec2::ZERO, |(displacement, _)| displacement);

@@ -104,7 +104,7 @@ impl<'a> Packing<'a> {
         for index in 0..self.grown.len() {
             let disk = self.grown[index];
             let radius = self.free_radius(index, &domain, &squares);
-            let radius = radius.min(radius_inside(room, disk.position(), radius));
+            let radius = radius.min(radius_inside(room, &disk, radius));
             // Disks that grow later see this disk as it is now, so that no two grow into the same gap.
             if radius > disk.radius() {
                 self.grown[index] = resized(&disk, radius)?;
@@ -145,7 +145,7 @@ fn placed<B: Boundary + ?Sized>(
     let small = |&index: &usize| {
         let radius = full[index].radius();
         let mass = (radius / largest) * (radius / largest);
-        Disk::new(DVec2::ZERO, scale * radius)?.with_mass(mass.max(LEAST_MASS))
+        Disk::new(DVec2::ZERO, scale * radius)?.with_kind(full[index].kind()).with_mass(mass.max(LEAST_MASS))
     };
     let disks = order.iter().map(small).collect::<Result<Vec<_>, _>>()?;
     let disks = placed_at_random(room, disks, room.domain().top, seed)?;
@@ -158,17 +158,17 @@ fn placed<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns a radius of at most `radius` with which a disk at this position overlaps no wall; 0 if there is no
-/// such radius.
-fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
-    let probe = Probe::new(place, radius, 0.0);
+/// Returns a radius of at most `radius` with which this disk overlaps no wall; 0 if there is no such radius.
+fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, disk: &Disk, radius: f64) -> f64 {
+    let probe = Probe::of(disk, 0.0).with_radius(radius);
     let Some(overlap) = room.overlap(&probe) else { return radius };
     let free = radius - overlap.depth / SHARE;
     if room.overlap(&probe.with_radius(free)).is_none() { free } else { 0.0 }
 }
 
 fn resized(disk: &Disk, radius: f64) -> Result<Disk, ParameterError> {
-    Disk::new(disk.position(), radius)?.with_velocity(disk.velocity())?.with_mass(disk.mass())
+    let resized = Disk::new(disk.position(), radius)?.with_kind(disk.kind());
+    resized.with_velocity(disk.velocity())?.with_mass(disk.mass())
 }
 
 fn largest(disks: &[Disk]) -> f64 {

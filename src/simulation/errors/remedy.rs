@@ -14,7 +14,8 @@ pub enum Remedy {
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
-    /// Slow collisions are lossless already, but the disks are too slow: a disk is at rest or squeezed.
+    /// Slow collisions are lossless already, but the disks are too slow: a disk is at rest or squeezed, or
+    /// walls drive it without end.
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
@@ -41,7 +42,8 @@ impl fmt::Display for Remedy {
             }
             Self::FasterDisks => {
                 "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or the rule LeastRebound with a higher speed; for custom walls see boundary::laws::check"
+                 room, or the rule LeastRebound with a higher speed; a disk that walls drive needs a rule that loses \
+                 energy; for custom walls see boundary::laws::check"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
             Self::WallVelocity => {

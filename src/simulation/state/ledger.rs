@@ -4,8 +4,10 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Ledger {
-    /// Absolute time at which the run was built.
-    pub(in crate::simulation) start: f64,
+    /// Absolute time of the latest change of the number of disks, or at which the run was built.
+    since: f64,
+    /// Sum of the times that all disks have spent in the run before.
+    disk_time: f64,
     /// Kinetic and potential energy at that time.
     pub(in crate::simulation) energy: f64,
     /// True once a disk hit a moving or thermal wall, or disks were changed, added or removed.
@@ -16,6 +18,16 @@ pub(in crate::simulation) struct Ledger {
 
 impl Ledger {
     pub(in crate::simulation) const fn new(start: f64, energy: f64, has_source: bool) -> Self {
-        Self { start, energy, has_source, is_running: false }
+        Self { since: start, disk_time: 0.0, energy, has_source, is_running: false }
+    }
+
+    /// Returns the sum of the times that all disks have spent in the run, whose number is now `disks`.
+    pub(in crate::simulation) fn disk_time_at(&self, now: f64, disks: usize) -> f64 {
+        self.disk_time + disks as f64 * (now - self.since)
+    }
+
+    /// Notes that the number of disks changes. It was `before` until now.
+    pub(in crate::simulation) fn count(&mut self, now: f64, before: usize) {
+        (self.disk_time, self.since, self.has_source) = (self.disk_time_at(now, before), now, true);
     }
 }

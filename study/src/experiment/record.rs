@@ -9,6 +9,7 @@ use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
 use super::origin::{Leg, Origin};
+use super::with_error;
 use crate::parameters;
 use crate::{Experiment, ExperimentError, Interval, Scalar};
 
@@ -245,8 +246,7 @@ impl<E: Experiment> Record<E> {
     /// Returns the mean of the column of this name; `None` if there is no such column, or it has no error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
-        let mut named = columns.iter().filter(|known| known.name() == column);
-        named.find_map(|known| known.estimate(self))
+        with_error(&columns, column)?.estimate(self)
     }
 }
 

@@ -20,6 +20,8 @@ fn a_study_records_what_it_was_asked_for() {
         let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
         approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
         assert!(record.energy_change().mean() < 0.0 && record.energy_change().standard_error() > 0.0);
+        // Samples have a column of this name, too, whose mean would count samples without collisions.
+        assert_eq!(record.estimate("energy_change"), Some(record.energy_change()));
         assert!(
             !record.energy_change().is_converged() && !record.mean(|sample| sample.height).is_converged()
         );

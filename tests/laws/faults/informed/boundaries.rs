@@ -1,11 +1,15 @@
 //! Boundaries that break their contract where a check may not look.
 
+use std::cell::Cell;
+
 use granular_edmd::boundary::{
-    Boundary, FirstTouch, Impact, Overlap, Part, Probe, Reaction, Region, Surface, Touch, Vessel, Wall,
+    Boundary, Container, FirstTouch, Impact, Obstacles, Overlap, Part, Probe, Reaction, Region, Response,
+    Surface, Touch, Vessel, Wall,
 };
+use granular_edmd::collision::{CollisionRule, Contact, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Sinusoidal;
-use granular_edmd::{Flight, Kind};
+use granular_edmd::{Disk, Flight, Kind};
 
 use crate::faults::blind::boundaries::Walled;
 use crate::faults::blind::boundaries::altered::Altered;
@@ -50,7 +54,7 @@ fn lidded() -> Altered {
 pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
     List::grown(&[
         velocities, turnings, normals, radii, touches, searches, overlaps, areas, regions, origins,
-        reactions, states,
+        reactions, states, seams, responses,
     ])
 }
 
@@ -379,6 +383,66 @@ fn reactions(boundaries: &mut Boundaries) {
     ];
     for (family, name, react, honest) in all {
         boundaries.part(family, name, Altered { react: Box::new(react), ..honest() });
+    }
+}
+
+/// A peg near a side of a periodic box whose image at the other side is forgotten.
+fn seams(boundaries: &mut Boundaries) {
+    let walls = Container::open(10.0).expect("a box").with_periodic_sides().expect("periodic sides");
+    let pegs = Obstacles::new(walls, [Disk::new(DVec2::new(0.4, 6.0), 1.5).expect("a radius")]);
+    let touch =
+        Box::new(|honest: &dyn Boundary, flight: &Flight, until| match honest.first_touch(flight, until) {
+            FirstTouch::At(touch) if flight.position(touch.time).x > 5.0 && touch.wall > 0 => {
+                FirstTouch::NONE
+            }
+            other => other,
+        });
+    let overlap = Box::new(|honest: &dyn Boundary, probe: &Probe| {
+        honest.overlap(probe).filter(|found| probe.position().x < 5.0 || found.with == 0)
+    });
+    boundaries.part("seam", "a peg has no image", Altered { touch, overlap, ..Altered::new(pegs) });
+}
+
+fn responses(boundaries: &mut Boundaries) {
+    type Change = fn(&mut Surface<'_>, f64, u32);
+    let all: [(&'static str, &str, Change); 3] = [
+        ("rule", "walls lose energy at offsets above 3", |surface, time, _| {
+            if time > 3.0 {
+                surface.response = Response::Rule(&LOSSY);
+            }
+        }),
+        ("rule", "walls lose energy in every second call", |surface, _, calls| {
+            if calls % 2 == 0 {
+                surface.response = Response::Rule(&LOSSY);
+            }
+        }),
+        ("kind", "the kind of walls alternates", |surface, _, calls| {
+            surface.kind = Kind::new((calls % 2) as u16);
+        }),
+    ];
+    for (family, name, change) in all {
+        let calls = Cell::new(0);
+        let surface = Box::new(move |surface: &mut Surface<'_>, _, time| {
+            calls.set(calls.get() + 1);
+            change(surface, time, calls.get());
+        });
+        boundaries.part(family, name, Altered { surface, ..shaken() });
+    }
+    let react = Box::new(|honest: &mut dyn Boundary, impact: &Impact| {
+        let lowest = honest.wall_count() - 1;
+        honest.react(&Impact::new(lowest, impact.impulse, impact.point, impact.time))
+    });
+    boundaries.part("wrong wall", "the floor reacts to blows on all walls", Altered { react, ..sprung() });
+}
+
+/// A rule without restitution.
+static LOSSY: Lossy = Lossy;
+
+struct Lossy;
+
+impl CollisionRule for Lossy {
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        Impulse::new(contact.normal_impulse(0.0), 0.0)
     }
 }
 

@@ -1,8 +1,10 @@
 //! Schedulers that break their contract where a check may not look.
 
 use std::cell::Cell;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
-use granular_edmd::scheduler::{EventScheduler, LinearScan};
+use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE};
 
 use crate::faults::blind::schedulers::Maker;
 use crate::faults::{List, Planted};
@@ -81,7 +83,63 @@ impl Schedulers {
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Maker>> {
-    List::grown(&[sets, resets, answers])
+    List::grown(&[sets, resets, answers, numbers])
+}
+
+/// A heap whose entries carry a number of this many bits: entries with another number than the latest one of
+/// their disk are out of date, and stay until they come to the top.
+#[derive(Default)]
+struct Numbered {
+    bits: u32,
+    entries: BinaryHeap<Reverse<(u64, usize, u64)>>,
+    numbers: Vec<u64>,
+}
+
+impl Numbered {
+    /// Maps times to numbers of the same order.
+    fn key(due: f64) -> u64 {
+        let bits = (due + 0.0).to_bits();
+        if due.is_sign_negative() && due != 0.0 { !bits } else { bits | 1 << 63 }
+    }
+
+    fn due(key: u64) -> f64 {
+        f64::from_bits(if key >> 63 == 1 { key ^ 1 << 63 } else { !key })
+    }
+
+    fn tidy(&mut self) {
+        while self.entries.peek().is_some_and(|&Reverse((_, disk, number))| self.numbers[disk] != number) {
+            self.entries.pop();
+        }
+    }
+}
+
+impl EventScheduler for Numbered {
+    fn reset(&mut self, due: &[f64]) {
+        self.numbers = vec![0; due.len()];
+        self.entries =
+            due.iter().enumerate().map(|(disk, &due)| Reverse((Self::key(due), disk, 0))).collect();
+    }
+
+    fn set(&mut self, disk: usize, due: f64) {
+        self.numbers[disk] = (self.numbers[disk] + 1) % (1 << self.bits);
+        self.entries.push(Reverse((Self::key(due), disk, self.numbers[disk])));
+        self.tidy();
+    }
+
+    fn earliest(&self) -> (usize, f64) {
+        let first = self.entries.peek().map(|&Reverse((key, disk, _))| (disk, Self::due(key)));
+        first.unwrap_or(NOTHING_DUE)
+    }
+
+    fn upcoming(&mut self, _: &mut Vec<usize>) {}
+}
+
+fn numbers(schedulers: &mut Schedulers) {
+    for bits in [8, 16] {
+        schedulers.family = "numbered entries";
+        let make = move || -> Box<dyn EventScheduler> { Box::new(Numbered { bits, ..Numbered::default() }) };
+        schedulers.plant(format!("entries have numbers of {bits} bits"), Box::new(make));
+    }
 }
 
 fn sets(schedulers: &mut Schedulers) {
