@@ -116,19 +116,23 @@ impl Cause {
             _ => bi_parabolic(AMPLITUDE),
         };
         let width = if let Self::Width(width) = self { width } else { 60.0 };
-        let experiment = VibratedBox::new(1000, width, base)
+        let mut experiment = VibratedBox::new(1000, width, base)
             .with_height(HEIGHT)
             .with_gravity(GRAVITY)
             .with_inelasticity(q)
             .with_friction(FRICTION)
             .with_contact_duration(1e-4);
         match self {
-            Self::ElasticNormal => experiment.with_base_inelasticities(0.0, q),
-            Self::LosslessBase => experiment.with_base_inelasticity(0.0),
-            Self::LosslessWalls => experiment.with_wall_inelasticity(0.0),
-            Self::DynamicFriction(ratio) => experiment.with_dynamic_friction(ratio * FRICTION),
-            _ => experiment,
+            Self::ElasticNormal => {
+                experiment.base_inelasticity = Some(0.0);
+                experiment.base_tangential_inelasticity = Some(q);
+            }
+            Self::LosslessBase => experiment.base_inelasticity = Some(0.0),
+            Self::LosslessWalls => experiment.wall_inelasticity = Some(0.0),
+            Self::DynamicFriction(ratio) => experiment.dynamic_friction = Some(ratio * FRICTION),
+            _ => {}
         }
+        experiment
     }
 
     fn disks(self, seed: u64) -> Result<Vec<Disk>, Box<dyn Error + Send + Sync>> {

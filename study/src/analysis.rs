@@ -2,7 +2,6 @@
 //!
 //! | question | answer | source |
 //! |---|---|---|
-//! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
 //! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
 //! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
 //!
@@ -26,14 +25,11 @@
 
 mod classification;
 mod clusters;
-mod distinct;
 mod k_means;
 mod state;
 mod transitions;
 
 pub use classification::{Classification, StateCriteria, thermal_noise};
 pub use clusters::{Cluster, Clusters};
-pub use distinct::distinct_clusters;
-pub use k_means::KMeans;
 pub use state::{ConvectiveRegime, ConvectiveState};
 pub use transitions::{Transition, TransitionLine, transitions};

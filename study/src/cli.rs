@@ -36,7 +36,6 @@
 
 mod arguments;
 mod bench;
-mod collision_rows;
 mod convert;
 mod diff;
 mod files;

@@ -68,9 +68,9 @@ pub enum PlanError {
     /// A number of the protocol, or the seed, is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// The text is not a plan, or the plan cannot be written as text.
+    /// The text is not a plan, the plan cannot be written as text, or a name or a value in it cannot be used.
     #[error("{0}")]
-    Toml(String),
+    Refused(String),
     /// The experiment rejects the parameters of a value.
     #[error("the experiment cannot be{place}")]
     Experiment {
@@ -78,51 +78,6 @@ pub enum PlanError {
         place: String,
         /// The reason.
         source: ExperimentError,
-    },
-    /// There is no parameter of this name.
-    #[error("there is no parameter `{parameter}` ({reason}); there are {}", known.join(", "))]
-    UnknownParameter {
-        /// The name.
-        parameter: String,
-        /// The names of the parameters that have a value.
-        known: Vec<String>,
-        /// The reason why it is not a parameter.
-        reason: String,
-    },
-    /// A short name stands for several parameters.
-    #[error("`{parameter}` may be any of {}", known.join(", "))]
-    Ambiguous {
-        /// The name.
-        parameter: String,
-        /// The parameters for which the short name may stand.
-        known: Vec<String>,
-    },
-    /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order,
-    /// it varies twice, or it is ramped and cannot change with the disks in place.
-    #[error("{parameter} {reason}")]
-    Varied {
-        /// The parameter.
-        parameter: String,
-        /// The reason.
-        reason: String,
-    },
-    /// There are too many ramps or values to number.
-    #[error("{count} ramps and values are too many: at most {most} are possible")]
-    TooMany {
-        /// The number of ramps and values.
-        count: u128,
-        /// The largest possible number.
-        most: usize,
-    },
-    /// A column, a table or a varied parameter has a name that is taken or not valid.
-    #[error("{name:?} cannot be the name of a {what}: {reason}")]
-    Name {
-        /// The name.
-        name: String,
-        /// The item with this name: `column`, `table` or `varied parameter`.
-        what: &'static str,
-        /// The reason.
-        reason: String,
     },
 }
 
@@ -146,29 +101,24 @@ pub enum StudyError {
     /// The path of the folder is empty.
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
-    /// The folder holds other files but no plan. A study does not mix its files with others.
-    #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
-    Occupied {
-        /// The folder.
+    /// A folder or a file cannot be used for this: for example, the folder holds other files, no study, or a
+    /// study already, the file belongs to another plan, or a record was made by code that has changed.
+    #[error("{} {reason}", path.display())]
+    Refused {
+        /// The folder or the file.
         path: PathBuf,
-        /// One of the files.
-        name: String,
+        /// The reason.
+        reason: String,
     },
-    /// The study has no such ramp.
-    #[error("there is no ramp {ramp}: the study has {ramps}, counted from 0")]
-    NoSuchRamp {
+    /// The study has no such ramp, or its grid no such point.
+    #[error("there is no {what} {index}: the study has {count}, counted from 0")]
+    Absent {
+        /// `ramp` or `point`.
+        what: &'static str,
         /// The requested index.
-        ramp: usize,
-        /// The number of ramps.
-        ramps: usize,
-    },
-    /// The grid of the study has no such point.
-    #[error("there is no point {point}: the study has {points}, counted from 0")]
-    NoSuchPoint {
-        /// The requested index.
-        point: usize,
-        /// The number of points.
-        points: usize,
+        index: usize,
+        /// The number of ramps or points.
+        count: usize,
     },
     /// A file or folder cannot be read or written.
     #[error("cannot {action} {}", path.display())]
@@ -191,34 +141,6 @@ pub enum StudyError {
         /// The error that the system returned.
         source: io::Error,
     },
-    /// A table would overwrite another file.
-    #[error("{} exists already; choose another folder for tables", path.display())]
-    Taken {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The folder holds a study already.
-    #[error("{} holds a study already", path.display())]
-    Exists {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The folder holds no study.
-    #[error("{} holds no study", path.display())]
-    Missing {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The folder holds a study of version 0.3, whose records this version does not read.
-    #[error(
-        "{} holds a study of version 0.3, whose records this version does not read; \
-         finish it by version 0.3 (`cargo install granular-edmd@0.3 --features cli`), or take a new folder: its tables stay as they are",
-        path.display()
-    )]
-    Outdated {
-        /// The folder.
-        path: PathBuf,
-    },
     /// The folder holds a study with another plan.
     #[error("{} holds a study with another plan; choose another folder: {}", path.display(), told(differences))]
     Different {
@@ -234,24 +156,6 @@ pub enum StudyError {
         path: PathBuf,
         /// The description of the damage.
         reason: String,
-    },
-    /// A record belongs to another plan, so the record or the plan has been changed.
-    #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A record was made with another rule, other walls or another revision than the experiment has now: its
-    /// code changed.
-    #[error(
-        "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
-        path.display()
-    )]
-    Changed {
-        /// The file.
-        path: PathBuf,
-        /// The part that differs.
-        part: &'static str,
     },
     /// The study was begun by code with other results, or with another revision of the experiment.
     #[error(
@@ -292,13 +196,13 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
 
 impl PlanError {
     /// Returns the error of a parameter that cannot vary, for the given reason.
-    pub(super) fn varied(parameter: &str, reason: impl Into<String>) -> Self {
-        Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
+    pub(super) fn varied(parameter: &str, reason: impl fmt::Display) -> Self {
+        Self::Refused(format!("{parameter} {reason}"))
     }
 
     /// Returns the error of a text that is not TOML, or not a plan.
     pub(super) fn toml(error: &impl fmt::Display) -> Self {
-        Self::Toml(shortened(&error.to_string()))
+        Self::Refused(shortened(&error.to_string()))
     }
 }
 
@@ -316,6 +220,29 @@ impl StudyError {
     /// Returns a function that turns an error of the system into an error that names the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { action, path: path.to_owned(), source }
+    }
+
+    /// Returns an error if the plan in a folder differs from the given one.
+    pub(super) fn if_different(path: &Path, differences: Vec<Difference>) -> Result<(), Self> {
+        let path = path.to_owned();
+        if differences.is_empty() { Ok(()) } else { Err(Self::Different { path, differences }) }
+    }
+
+    /// Returns the error of a folder or a file that cannot be used.
+    pub(super) fn refused(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Refused { path: path.to_owned(), reason: reason.into() }
+    }
+
+    /// Returns the error of a record that was made with another rule, other walls or another revision than
+    /// the experiment has now: its code changed.
+    pub(super) fn changed(path: &Path, part: &str) -> Self {
+        let now = "than the experiment has now at these parameters; take a new folder for changed code";
+        Self::refused(path, format!("was made with another {part} {now}"))
+    }
+
+    /// Returns the error of a file that belongs to another plan.
+    pub(super) fn foreign(path: &Path) -> Self {
+        Self::refused(path, "is of another plan than that in its folder; take a new folder for a new one")
     }
 }
 

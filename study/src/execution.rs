@@ -9,8 +9,10 @@ mod session;
 mod sliced;
 
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
+
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 use super::store::blocks;
 use super::{Experiment, Study, StudyError};
@@ -94,7 +96,8 @@ fn all<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<Vec<usi
     session.strike_done(queue)?;
     let mut patience = PATIENCE[0];
     loop {
-        work_in_parallel(session, queue)?;
+        let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
+        threads.try_for_each(|_| work(session, queue))?;
         session.strike_done(queue)?;
         let elsewhere = queue.elsewhere();
         if elsewhere.is_empty() || !session.control.waits || session.must_stop() {
@@ -107,26 +110,12 @@ fn all<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<Vec<usi
     }
 }
 
-fn work_in_parallel<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<(), StudyError> {
-    let failed = Mutex::new(None);
-    rayon::scope(|scope| {
-        for _ in 0..rayon::current_num_threads() {
-            scope.spawn(|_| {
-                if let Err(error) = work(session, queue) {
-                    failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-                }
-            });
-        }
-    });
-    failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
-}
-
 /// Runs blocks of the queue until it is empty.
 fn work<E: Experiment>(session: &Session<'_, E>, queue: &Queue) -> Result<(), StudyError> {
     while !session.must_stop()
         && let Some(ramps) = queue.next()
     {
-        if !ramp::attempt(session, &ramps).inspect_err(|_| session.break_off())? {
+        if !ramp::attempt(session, &ramps).inspect_err(|_| session.broken.store(true, Ordering::Relaxed))? {
             queue.leave(ramps);
         }
     }

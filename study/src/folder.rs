@@ -5,37 +5,16 @@
 
 use std::collections::HashSet;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use granular_edmd::file::{Locked, is_temporary};
 
 use super::provenance::Provenance;
-use super::whole::{self, damaged, if_there};
+use super::whole::{self, damaged, files_in, if_there};
 use super::{PlanError, StudyError};
 
 /// Text of the README in the folder of a study.
-const ABOUT: &str = "\
-A study by granular-edmd (event-driven molecular dynamics of frictional, inelastic, rotating disks).
-
-plan.toml             what is simulated: experiment, protocol, ramp, sweep, repeats, seed
-provenance.json       what began it: program, versions, target, revision of the experiment
-values.csv            a row for each value: parameters, means, standard errors, counts
-samples.csv           a row for each sample
-points.csv            a row for each value, all repeats of it together
-transitions.csv       a row for each transition that a refined ramp brackets
-columns.csv           the names, units and meanings of all columns of all tables
-logs/L.records        finished values as processes have added them, each with a checksum
-logs/L.jsonl          when values were finished, and the seconds that they took; not a result. It is locked while
-                      a process writes this log
-locks/                files that are locked while processes do some ramps
-unfinished/R-V        value V of ramp R, half done (0000-0000 is the first)
-complete              there once all ramps are done and in the tables
-lock                  locked while a process makes the plan or the tables
-
-Tables are written when all ramps are done, or on demand. Lost or damaged files come back, the same bytes, when the study is
-run again with --verify. Any number of processes may run it at the same time.
-";
+const ABOUT: &str = include_str!("folder.txt");
 
 const PLAN: &str = "plan.toml";
 const PROVENANCE: &str = "provenance.json";
@@ -45,6 +24,8 @@ const UNFINISHED: &str = "unfinished";
 /// The folder of the records of version 0.3.
 const RAMPS: &str = "ramps";
 const LOCK: &str = "lock";
+const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
+    finish it by version 0.3 (`cargo install granular-edmd@0.3 --features cli`), or take a new folder: its tables stay as they are";
 
 /// The folder of a study.
 #[derive(Debug, Clone)]
@@ -72,22 +53,13 @@ impl Folder {
 
     /// Returns the ramp and value indices of the unfinished values.
     pub(super) fn unfinished(&self) -> Result<HashSet<[usize; 2]>, StudyError> {
-        let files = self.unfinished_files()?;
-        let of = |path: &PathBuf| {
-            let (ramp, value) = path.file_name()?.to_str()?.split_once('-')?;
-            Some([ramp.parse().ok()?, value.parse().ok()?])
-        };
-        Ok(files.iter().filter_map(of).collect())
-    }
-
-    fn unfinished_files(&self) -> Result<Vec<PathBuf>, StudyError> {
-        let folder = self.root.join(UNFINISHED);
-        let files = if_there("read", &folder, fs::read_dir(&folder))?.into_iter().flatten();
-        files.map(|file| file.map(|file| file.path()).map_err(StudyError::io("read", &folder))).collect()
-    }
-
-    pub(super) fn make_room_for_unfinished(&self) -> Result<(), StudyError> {
-        create(&self.root.join(UNFINISHED))
+        let mut found = HashSet::new();
+        for file in files_in(&self.root.join(UNFINISHED))? {
+            let name = file.file_name();
+            let place = name.to_str().and_then(|name| name.split_once('-'));
+            found.extend(place.and_then(|(ramp, value)| Some([ramp.parse().ok()?, value.parse().ok()?])));
+        }
+        Ok(found)
     }
 
     /// Removes the remaining files of unfinished values once all values are finished.
@@ -106,7 +78,7 @@ impl Folder {
     /// Returns an error if the folder has records of version 0.3, which this version does not read.
     pub(super) fn check_format(&self) -> Result<(), StudyError> {
         if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
-            return Err(StudyError::Outdated { path: self.root.clone() });
+            return Err(StudyError::refused(&self.root, OUTDATED));
         }
         Ok(())
     }
@@ -131,16 +103,19 @@ impl Folder {
         check: impl FnOnce() -> Result<(), PlanError>,
     ) -> Result<bool, StudyError> {
         self.check_free()?;
-        fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
+        whole::create(&self.root)?;
         let _lock = self.take_lock()?;
-        if !self.plan().exists() {
+        let is_new = !self.plan().exists();
+        if is_new {
             check()?;
         }
         whole::remove_temporaries(&self.root)?;
-        let is_new = whole::publish(&self.plan(), plan.as_bytes())?;
+        if is_new {
+            whole::write(&self.plan(), plan.as_bytes())?;
+        }
         // If a process is killed here, the folder has a plan but no provenance and no records.
-        if !self.root.join(LOGS).exists() {
-            whole::publish(&self.provenance_file(), provenance.text().as_bytes())?;
+        if !self.root.join(LOGS).exists() && !self.provenance_file().exists() {
+            whole::write(&self.provenance_file(), provenance.text().as_bytes())?;
         }
         self.write_about()?;
         Ok(is_new)
@@ -167,43 +142,31 @@ impl Folder {
     /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
     fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
-        match fs::read(&path) {
-            Ok(found) if found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found) => {
-                whole::write(&path, ABOUT.as_bytes())
-            }
-            _ => whole::publish(&path, ABOUT.as_bytes()).map(drop),
+        let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
+        if path.exists() && !fs::read(&path).is_ok_and(is_cut) {
+            return Ok(());
         }
+        whole::write(&path, ABOUT.as_bytes())
     }
 
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
     /// a plan.
     fn check_free(&self) -> Result<(), StudyError> {
-        let Some(stranger) = self.stranger()? else { return Ok(()) };
-        // Another process may have written the plan while the folder was read.
-        if self.holds_study() {
+        if !self.root.is_dir() {
+            // The attempt to create it gives the error, if that fails.
             return Ok(());
         }
-        Err(StudyError::Occupied { path: self.root.clone(), name: stranger })
-    }
-
-    fn stranger(&self) -> Result<Option<String>, StudyError> {
-        let cannot_read = || StudyError::io("read", &self.root);
-        let entries = match fs::read_dir(&self.root) {
-            // The folder does not exist. The attempt to create it gives the error, if that fails.
-            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
-                return Ok(None);
-            }
-            entries => entries.map_err(cannot_read())?,
-        };
-        for entry in entries {
-            let entry = entry.map_err(cannot_read())?;
+        for entry in files_in(&self.root)? {
             let name = entry.file_name();
             let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));
-            if !is_lock && !is_temporary(&name) {
-                return Ok(Some(name.to_string_lossy().into_owned()));
+            // Another process may have written the plan while the folder was read.
+            if !is_lock && !is_temporary(&name) && !self.holds_study() {
+                let name = name.display();
+                let reason = format!("holds other files ({name}) and no study; choose an empty folder");
+                return Err(StudyError::refused(&self.root, reason));
             }
         }
-        Ok(None)
+        Ok(())
     }
 
     pub(super) fn read_plan(&self) -> Result<String, StudyError> {
@@ -245,11 +208,6 @@ impl Folder {
         self.write_about()?;
         Ok(lock)
     }
-}
-
-/// Creates a folder, with the folders that contain it.
-pub(super) fn create(folder: &Path) -> Result<(), StudyError> {
-    fs::create_dir_all(folder).map_err(StudyError::io("create", folder))
 }
 
 /// Returns whether a file with the name of a lock is a lock, and thus empty.

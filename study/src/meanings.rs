@@ -1,32 +1,7 @@
 //! The meanings of the columns of tables, for `columns.csv` and the command `explain`.
 
-use super::experiment::columns::{Column, error_names};
+use super::experiment::columns::{Column, OF_TABLES, error_names};
 use super::{Experiment, Plan};
-
-/// The columns that the tables of every study have.
-pub(super) const OF_TABLES: [(&str, &str); 15] = [
-    ("ramp", "Index of the ramp, counted from 0. The repeats of a point are ramps that follow one another."),
-    ("value", "Index of the value in its ramp, counted from 0."),
-    ("leg", "Direction from which the ramp comes to the value: up or down. Empty without a ramp."),
-    ("repeat", "Index of the repeat of the point, counted from 0."),
-    ("point", "Index of the point: all repeats of the same parameters together."),
-    ("repeats", "Number of finished repeats of the point, failed ones among them."),
-    ("failed", "Number of repeats that stalled, failed or reached a limit."),
-    ("seed", "Seed of the ramp, in hexadecimal digits behind a letter."),
-    (
-        "made_by",
-        "Program that made the value: its version, the number of its results, and the revision of the experiment.",
-    ),
-    ("outcome", "`completed`, or `stopped`, `stalled`, `limited` or `failed`."),
-    ("samples", "Number of samples of the value."),
-    ("time", "Time of the sample since the start of the ramp."),
-    ("from_state", "State on the side from which the ramp came to the transition."),
-    ("to_state", "State on the far side of the transition; empty if none is known."),
-    (
-        "not_converged",
-        "Names of the columns whose error is only a lower bound, since they have too few independent samples.",
-    ),
-];
 
 /// Returns the meaning of a column of a table of a plan; empty if the experiment gives none.
 pub(super) fn of_column<E: Experiment>(plan: &Plan<E>, table: &str, column: &str) -> String {

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use super::experiment::record::Origin;
+use super::experiment::origin::{Maker, Origin};
 use super::folder::Folder;
-use super::maker::Maker;
 use super::parameters::{self, tree};
 use super::provenance::{self, Provenance};
 use super::store::{Claims, Store};
@@ -39,7 +38,7 @@ impl<E: Experiment> Study<E> {
     pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
         if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
-            return Err(StudyError::Exists { path: study.folder.root().to_owned() });
+            return Err(StudyError::refused(study.folder(), "holds a study already"));
         }
         study.checked()
     }
@@ -104,7 +103,7 @@ impl<E: Experiment> Study<E> {
     fn found_in(folder: &Path) -> Result<Self, StudyError> {
         let folder = Folder::new(folder)?;
         if !folder.holds_study() {
-            return Err(StudyError::Missing { path: folder.root().to_owned() });
+            return Err(StudyError::refused(folder.root(), "holds no study"));
         }
         let plan = Self::plan_in(&folder)?;
         Self::in_folder(folder, plan)
@@ -145,7 +144,7 @@ impl<E: Experiment> Study<E> {
     fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
         let provenance = self.folder.provenance()?;
         if provenance.as_ref().is_some_and(|provenance| !provenance.is_of(&self.hash)) {
-            return Err(StudyError::Foreign { path: self.folder.provenance_file() });
+            return Err(StudyError::foreign(&self.folder.provenance_file()));
         }
         Ok(provenance)
     }
@@ -173,10 +172,7 @@ impl<E: Experiment> Study<E> {
         // A plan that is written in another way may still be the same plan.
         let found = Self::plan_in(&self.folder)?;
         let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
-        if differences.is_empty() {
-            return Ok(());
-        }
-        Err(StudyError::Different { path: self.folder.root().to_owned(), differences })
+        StudyError::if_different(self.folder.root(), differences)
     }
 
     /// Returns the folder of the study.
@@ -191,8 +187,8 @@ impl<E: Experiment> Study<E> {
 
     /// Checks that a ramp of this index exists.
     pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
-        let ramps = self.plan.ramp_count();
-        if ramp < ramps { Ok(()) } else { Err(StudyError::NoSuchRamp { ramp, ramps }) }
+        let count = self.plan.ramp_count();
+        if ramp < count { Ok(()) } else { Err(StudyError::Absent { what: "ramp", index: ramp, count }) }
     }
 
     pub(super) fn origin(&self, ramp: usize, value: usize) -> Origin {
@@ -209,7 +205,7 @@ impl<E: Experiment> Study<E> {
         path: &Path,
     ) -> Result<(), StudyError> {
         if found.study != *self.hash.as_bytes() {
-            return Err(StudyError::Foreign { path: path.to_owned() });
+            return Err(StudyError::foreign(path));
         }
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
             return Err(damaged(path, "it is of another value"));
@@ -217,7 +213,7 @@ impl<E: Experiment> Study<E> {
         if self.is_ours(found) || self.provenance.as_ref().is_some_and(|code| code.takes(&found.maker)) {
             return Ok(());
         }
-        Err(StudyError::Changed { path: path.to_owned(), part: "revision" })
+        Err(StudyError::changed(path, "revision"))
     }
 
     /// Returns whether a file comes from code with the same results as this program.

@@ -64,7 +64,7 @@ pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> 
     match found.len() {
         0 => Ok(name.to_owned()),
         1 => Ok(found.remove(0)),
-        _ => Err(PlanError::Ambiguous { parameter: name.to_owned(), known: found }),
+        _ => Err(PlanError::Refused(format!("`{name}` may be any of {}", found.join(", ")))),
     }
 }
 
@@ -79,25 +79,24 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
     let known = get(base, name);
     let to = known.and_then(Scalar::of_toml).map_or_else(|| to.clone(), |known| to.clone().like(&known));
     let mut changed = base.clone();
-    let unknown = |reason: String| PlanError::UnknownParameter {
-        parameter: parameter.to_owned(),
-        known: names(base),
-        reason,
+    let unknown = |reason: &str| {
+        let known = names(base).join(", ");
+        PlanError::Refused(format!("there is no parameter `{parameter}` ({reason}); there are {known}"))
     };
     if !set(&mut changed, name, &to) {
-        return Err(unknown("a part of its name is that of a parameter without parts".to_owned()));
+        return Err(unknown("a part of its name is that of a parameter without parts"));
     }
     let refused = |reason: String| match known {
-        Some(_) => PlanError::Experiment { place: place(&[(parameter, &to)]), source: reason.into() },
-        None => unknown(reason),
+        Some(_) => PlanError::Experiment { place: place(&[(parameter, to.clone())]), source: reason.into() },
+        None => unknown(&reason),
     };
     let read = experiment::<E>(changed).map_err(refused)?;
     let found = get(&tree(&read)?, name).and_then(Scalar::of_toml);
-    found.ok_or_else(|| unknown("the experiment ignores it".to_owned()))
+    found.ok_or_else(|| unknown("the experiment ignores it"))
 }
 
 /// Returns the names and values of parameters as the text of an error.
-pub(super) fn place(varied: &[(&str, &Scalar)]) -> String {
+pub(super) fn place(varied: &[(&str, Scalar)]) -> String {
     let varied: Vec<String> = varied.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if varied.is_empty() { String::new() } else { format!(" at {}", varied.join(", ")) }
 }

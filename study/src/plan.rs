@@ -19,7 +19,6 @@ use super::{Experiment, ExperimentError, Leg, PlanError, Scalar};
 use axis::Axis;
 use protocol::Protocol;
 use ramp::Ramp;
-use refinement::{Seen, Step};
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
@@ -197,11 +196,6 @@ impl<E: Experiment> Plan<E> {
         derived_seed(point, (ramp % self.repeats) as u64)
     }
 
-    /// Returns the direction from which a ramp comes to a value; `None` without a ramp.
-    pub fn leg(&self, value: usize) -> Option<Leg> {
-        self.step(value).map(|(leg, _)| leg)
-    }
-
     /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
     pub fn parameters(&self, ramp: usize, value: usize) -> Vec<(&str, Scalar)> {
         if ramp >= self.ramp_count() || value >= self.value_count() {
@@ -257,14 +251,6 @@ impl<E: Experiment> Plan<E> {
         self.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
     }
 
-    /// Returns the next value of a ramp after the finished values, or `None` if the ramp is complete.
-    pub(super) fn next(&self, seen: &[Seen]) -> Option<Step> {
-        match &self.ramp {
-            Some(ramp) => ramp.next(seen),
-            None => seen.is_empty().then_some(Step { leg: None, at: None, before: None }),
-        }
-    }
-
     fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
         let mut tree = self.tree.clone();
         for (name, (_, to)) in self.varied.iter().zip(varied) {
@@ -278,8 +264,7 @@ impl<E: Experiment> Plan<E> {
     }
 
     fn refused(varied: &[(&str, Scalar)], source: ExperimentError) -> PlanError {
-        let varied: Vec<(&str, &Scalar)> = varied.iter().map(|(name, value)| (*name, value)).collect();
-        PlanError::Experiment { place: place(&varied), source }
+        PlanError::Experiment { place: place(varied), source }
     }
 
     pub(super) fn step(&self, value: usize) -> Option<(Leg, f64)> {

@@ -3,7 +3,7 @@
 use granular_edmd::statistics::Estimate;
 
 use super::{Experiment, Leg, Record};
-use crate::experiment::columns::with_error;
+use crate::experiment::with_error;
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and
 /// different seeds.
@@ -27,19 +27,13 @@ use crate::experiment::columns::with_error;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Point<E: Experiment> {
-    index: usize,
-    value: usize,
-    experiment: E,
-    records: Vec<Record<E>>,
+    pub(super) index: usize,
+    pub(super) value: usize,
+    /// The records of the finished repeats, at least one.
+    pub(super) records: Vec<Record<E>>,
 }
 
 impl<E: Experiment> Point<E> {
-    /// Creates a point from the records of its repeats, or returns `None` if there are no records.
-    pub(super) fn of(index: usize, value: usize, records: Vec<Record<E>>) -> Option<Self> {
-        let experiment = records.first()?.experiment().clone();
-        Some(Self { index, value, experiment, records })
-    }
-
     /// Returns the index of the point in the grid.
     pub const fn index(&self) -> usize {
         self.index
@@ -52,12 +46,12 @@ impl<E: Experiment> Point<E> {
 
     /// Returns the direction from which the ramp came to the value; `None` without a ramp.
     pub fn leg(&self) -> Option<Leg> {
-        self.records.first().and_then(Record::leg)
+        self.records[0].leg()
     }
 
     /// Returns the experiment, with the parameters of this value.
-    pub const fn experiment(&self) -> &E {
-        &self.experiment
+    pub fn experiment(&self) -> &E {
+        self.records[0].experiment()
     }
 
     /// Returns the records of the finished repeats.

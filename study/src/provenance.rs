@@ -4,7 +4,7 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::{Fingerprint, RESULTS};
 
-use super::maker::Maker;
+use super::experiment::origin::Maker;
 use super::{Difference, Experiment, Plan};
 
 /// Returns the maker of this program's records.

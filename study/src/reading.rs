@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
-use super::folder;
 use super::plan::refinement::{Bracket, Seen};
 use super::plan::values::MOST_TRIED;
 use super::store::{Claimed, Entry, Marks};
 use super::tables::{self, Tables};
-use super::whole::damaged;
+use super::whole::{self, damaged};
 use super::{Experiment, Plan, Point, Study, StudyError};
 
 /// Progress of a ramp.
@@ -56,7 +55,7 @@ impl<E: Experiment> Study<E> {
         let is_ours = self.is_ours(&record.contents.origin);
         let last = self.plan.protocol().last_of(record.contents.steps);
         match record.changed_part(&last).filter(|_| is_ours) {
-            Some(part) => Err(StudyError::Changed { path: self.store.log_of(entry), part }),
+            Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
             None => Ok(record),
         }
     }
@@ -112,14 +111,15 @@ impl<E: Experiment> Study<E> {
     }
 
     fn known_point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        let points = self.plan.point_count();
-        if index >= points {
-            return Err(StudyError::NoSuchPoint { point: index, points });
+        let count = self.plan.point_count();
+        if index >= count {
+            return Err(StudyError::Absent { what: "point", index, count });
         }
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
         let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
-        Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
+        let records = records.collect::<Result<Vec<_>, _>>()?;
+        Ok((!records.is_empty()).then_some(Point { index, value, records }))
     }
 
     /// Reads, one by one, all values that have a finished repeat, at all points of the grid.
@@ -142,11 +142,7 @@ impl<E: Experiment> Study<E> {
             .ramp_records(ramp)
             .map(|record| Ok(self.plan.seen(&record?)))
             .collect::<Result<_, StudyError>>()?;
-        Ok(self.brackets(&seen))
-    }
-
-    fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
-        self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(seen))
+        Ok(self.plan.brackets(&seen))
     }
 
     /// Returns the progress of a ramp.
@@ -268,9 +264,9 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::write_tables`], and if the folder has a table of one of these names.
     pub fn write_tables_to(&self, folder: impl AsRef<Path>) -> Result<usize, StudyError> {
         let folder = folder.as_ref();
-        folder::create(folder)?;
+        whole::create(folder)?;
         if let Some(path) = tables::files(&self.plan, folder).find(|path| path.exists()) {
-            return Err(StudyError::Taken { path });
+            return Err(StudyError::refused(&path, "exists already; choose another folder for tables"));
         }
         self.tables(folder)
     }
@@ -296,7 +292,7 @@ impl<E: Experiment> Study<E> {
                 let missing = || damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
                 return Err(self.store.damage().unwrap_or_else(missing));
             }
-            tables.end_ramp(ramp, &self.brackets(&seen))?;
+            tables.end_ramp(ramp, &self.plan.brackets(&seen))?;
         }
         tables.finish()?;
         Ok(finished)

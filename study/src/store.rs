@@ -9,7 +9,7 @@ mod log;
 mod writer;
 
 use std::collections::HashSet;
-use std::fs::{self, File};
+use std::fs::{DirEntry, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -23,7 +23,7 @@ use log::{Log, read_piece};
 use writer::Writer;
 
 use super::StudyError;
-use super::whole::{damaged, decoded, encoded, if_there};
+use super::whole::{damaged, decoded, encoded, files_in};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
@@ -89,7 +89,7 @@ impl Store {
                 Some(file) => Ok(file),
                 none => File::open(&log.path).map(|file| none.insert(file)),
             };
-            (log.path.clone(), file.and_then(|file| read_piece(file, &entry.piece())))
+            (log.path.clone(), file.and_then(|file| read_piece(file, entry)))
         };
         let contents = contents.map_err(StudyError::io("read", &path))?;
         let read = contents.map_err(|_| "its checksum does not match");
@@ -104,9 +104,7 @@ impl Store {
         record: &impl serde::Serialize,
         line: &str,
     ) -> Result<(), StudyError> {
-        let contents = encoded::<T>(record)
-            .map_err(|source| StudyError::Encode { path: self.folder.clone(), source })?;
-        self.push(head, &contents, Some(line))
+        self.push(head, &encoded::<T>(&self.folder, record)?, Some(line))
     }
 
     /// Marks values as unfinished.
@@ -149,10 +147,10 @@ impl State {
         let sorted = self.entries.count();
         for (number, log) in self.logs.iter_mut().enumerate() {
             let entries = &mut self.entries;
-            let show = |piece| Arc::make_mut(entries).push(Entry::new(piece, number as u32));
+            let show = |piece| Arc::make_mut(entries).push(Entry { log: number as u32, ..piece });
             // The file is opened anew each time, since a client of NFS asks for the present length only then.
             let read = Log::each(&log.path, SEAL, log.end, show);
-            let (end, is_damaged) = read.map_err(|error| unreadable(&log.path, error))?;
+            let (end, is_damaged) = read.map_err(|error| failed("read", &log.path, error))?;
             log.end = end;
             log.is_damaged |= is_damaged;
         }
@@ -172,18 +170,15 @@ impl State {
 
 /// Returns the logs in a folder.
 fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let cannot_read = || StudyError::io("read", folder);
-    let mut found = Vec::new();
-    for entry in if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten() {
-        let path = entry.map_err(cannot_read())?.path();
-        found.extend(path.extension().is_some_and(|ending| ending == "records").then_some(path));
-    }
+    let mut found: Vec<PathBuf> = files_in(folder)?.iter().map(DirEntry::path).collect();
+    found.retain(|path| path.extension().is_some_and(|ending| ending == "records"));
     Ok(found)
 }
 
-fn unreadable(path: &Path, error: io::Error) -> StudyError {
+/// Returns the error of a log that cannot be read or written, or is of another format.
+fn failed(action: &'static str, path: &Path, error: io::Error) -> StudyError {
     match error.kind() {
         io::ErrorKind::InvalidData => damaged(path, error.to_string()),
-        _ => StudyError::io("read", path)(error),
+        _ => StudyError::io(action, path)(error),
     }
 }

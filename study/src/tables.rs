@@ -1,19 +1,16 @@
 //! Tables of records, written row by row, with the header and the rows from the same columns.
 
-mod leading;
-mod points;
 mod rows;
 
 use std::path::{Path, PathBuf};
 
 use granular_edmd::observable::Heading;
+use granular_edmd::statistics::Estimate;
 
-use super::experiment::columns::{Column, Kind, Table, error_names};
+use super::experiment::columns::{Column, Kind, Table};
 use super::meanings;
 use super::{Bracket, Experiment, Plan, Record, Scalar, StudyError};
-use leading::{Place, leading, row};
-use points::{Repeat, Repeats};
-use rows::{Row, Rows, not_converged};
+use rows::{Place, Row, Rows, leading, row};
 
 /// The growing tables of a study. A table takes its place in the folder when all of them are whole.
 pub(super) struct Tables<'a, E: Experiment> {
@@ -25,7 +22,16 @@ pub(super) struct Tables<'a, E: Experiment> {
     transitions: Option<Rows>,
     more: Vec<(Table<E>, Rows)>,
     described: Rows,
-    repeats: Repeats,
+    /// For each value of the present point, its repeats so far.
+    repeats: Vec<Vec<Repeat>>,
+}
+
+/// One repeat of a value.
+struct Repeat {
+    /// The estimates of the columns with errors, in their order.
+    estimates: Vec<Estimate>,
+    /// True if the engine could not finish this repeat.
+    is_failed: bool,
 }
 
 /// Returns the files of all tables of a plan in a folder.
@@ -57,11 +63,18 @@ impl<'a, E: Experiment> Tables<'a, E> {
             rows.push(Row::of(headings.iter().map(Heading::name)))?;
             Ok(rows)
         };
-        let first = Place::in_plan(plan, 0, 0);
+        let (leg, at) = plan.step(0).unzip();
+        let first = Place { ramp: 0, value: Some(0), leg, at, is_point: false };
         let transition = Place { value: None, at: None, ..first };
-        let values = begin("values", first, of_values(&columns))?;
-        let samples = begin("samples", first, of_samples(&columns))?;
-        let points = begin("points", Place { is_point: true, ..first }, of_points(&columns))?;
+        let in_values = columns.iter().filter(|column| column.in_values);
+        let own = in_values.clone().flat_map(Column::headings);
+        let values = begin("values", first, between(&["seed", "made_by", "outcome", "samples"], own))?;
+        let sampled = columns.iter().filter(|column| column.in_samples).map(|column| column.heading.clone());
+        let time = std::iter::once(Heading::new("time", "time"));
+        let samples = begin("samples", first, time.chain(sampled).collect())?;
+        let own = in_values.filter(|column| column.has_error()).flat_map(Column::headings);
+        let point = Place { is_point: true, ..first };
+        let points = begin("points", point, between(&["repeats", "failed"], own))?;
         let refined = plan.ramp().filter(|_| plan.is_refined());
         let transitions = refined.map(|ramp| {
             let near = ["near", "far"].map(|side| format!("{}_{side}", ramp.parameter()));
@@ -74,13 +87,15 @@ impl<'a, E: Experiment> Tables<'a, E> {
             Ok((table, rows))
         });
         let more = more.collect::<Result<_, StudyError>>()?;
-        let repeats = Repeats::default();
+        let repeats = Vec::new();
         Ok(Self { plan, columns, values, samples, points, transitions, more, described, repeats })
     }
 
     /// Adds the rows of a record; records come in their order.
     pub(super) fn add(&mut self, record: &Record<E>) -> Result<(), StudyError> {
-        let row = row(self.plan, Place::of(record));
+        let (ramp, value) = (record.ramp_index(), Some(record.value_index()));
+        let place = Place { ramp, value, leg: record.leg(), at: record.ramped_value(), is_point: false };
+        let row = row(self.plan, place);
         self.add_value(record, row.clone())?;
         self.add_samples(record, &row)?;
         for (table, rows) in &mut self.more {
@@ -102,9 +117,34 @@ impl<'a, E: Experiment> Tables<'a, E> {
             rows.push(cells.iter().fold(row(self.plan, place), Row::with))?;
         }
         if (ramp + 1).is_multiple_of(self.plan.repeats()) {
-            std::mem::take(&mut self.repeats).write(self.plan, ramp, &mut self.points)?;
+            self.end_point(ramp)?;
         }
         Ok(())
+    }
+
+    /// Adds a row for each value of a point: all its finished repeats together.
+    fn end_point(&mut self, ramp: usize) -> Result<(), StudyError> {
+        let all = std::mem::take(&mut self.repeats).into_iter().enumerate();
+        for (value, repeats) in all.filter(|(_, repeats)| !repeats.is_empty()) {
+            let (leg, at) = self.plan.step(value).unzip();
+            let place = Place { ramp, value: Some(value), leg, at, is_point: true };
+            let failed = repeats.iter().filter(|repeat| repeat.is_failed).count();
+            let row = row(self.plan, place).with(&repeats.len().into()).with(&failed.into());
+            let of_column = |column: usize| repeats.iter().map(move |repeat| repeat.estimates[column]);
+            let columns = 0..repeats[0].estimates.len();
+            let together: Vec<_> = columns.map(|column| Estimate::over_repeats(of_column(column))).collect();
+            let row = together.iter().fold(row, Row::with_estimate);
+            self.points.push(row.with(&self.not_converged(&together)))?;
+        }
+        Ok(())
+    }
+
+    /// Returns the names of the columns whose error is only a lower bound, separated by spaces: they have too
+    /// few samples for their correlations.
+    fn not_converged(&self, estimates: &[Estimate]) -> Scalar {
+        let columns = self.columns.iter().filter(|column| column.in_values && column.has_error());
+        let found = columns.zip(estimates).filter(|(_, estimate)| !estimate.is_converged());
+        found.map(|(column, _)| column.name()).collect::<Vec<_>>().join(" ").into()
     }
 
     /// Renames the finished tables to their final names.
@@ -124,16 +164,17 @@ impl<'a, E: Experiment> Tables<'a, E> {
         for column in self.columns.iter().filter(|column| column.in_values) {
             if let Some(estimate) = column.estimate(record) {
                 row = row.with_estimate(&estimate);
-                estimates.push((column.name().to_owned(), estimate));
+                estimates.push(estimate);
             } else if let Kind::Record(value) = &column.kind {
                 row = row.with(&value(record));
             }
         }
-        self.values.push(row.with(&not_converged(&estimates).into()))?;
+        self.values.push(row.with(&self.not_converged(&estimates)))?;
         // A refinement has different values in each repeat.
-        if record.value_index() < self.plan.value_count() {
-            let is_failed = record.outcome().reason().is_some();
-            self.repeats.add(record.value_index(), Repeat { estimates, is_failed });
+        let value = record.value_index();
+        if value < self.plan.value_count() {
+            self.repeats.resize_with(self.repeats.len().max(value + 1), Vec::new);
+            self.repeats[value].push(Repeat { estimates, is_failed: record.outcome().reason().is_some() });
         }
         Ok(())
     }
@@ -152,43 +193,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     }
 }
 
-/// Describes the columns of the table of values after the leading ones. The last one names the columns whose
-/// error is only a lower bound, separated by spaces: they have too few samples for their correlations.
-fn of_values<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
-    let mut all = plain(["seed", "made_by", "outcome", "samples"]);
-    for column in columns.iter().filter(|column| column.in_values) {
-        if column.has_error() {
-            all.extend(of_estimate(column));
-        } else {
-            all.push(column.heading.clone());
-        }
-    }
-    all.extend(plain(["not_converged"]));
-    all
-}
-
-fn of_samples<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
-    let sampled = columns.iter().filter(|column| column.in_samples);
-    let sampled = sampled.map(|column| column.heading.clone());
-    std::iter::once(Heading::new("time", "time")).chain(sampled).collect()
-}
-
-/// Describes the columns of the table of points: the repeats of each value together.
-fn of_points<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
-    let mut all = plain(["repeats", "failed"]);
-    let estimated = columns.iter().filter(|column| column.in_values && column.has_error());
-    all.extend(estimated.flat_map(of_estimate));
-    all.extend(plain(["not_converged"]));
-    all
-}
-
-fn plain<const N: usize>(names: [&str; N]) -> Vec<Heading> {
-    names.map(|name| Heading::new(name, "")).into()
-}
-
-/// Describes a mean, its error, and its number of independent samples.
-fn of_estimate<E: Experiment>(column: &Column<E>) -> [Heading; 3] {
-    let (name, unit) = (column.name(), column.unit());
-    let [error, independent] = error_names(name);
-    [column.heading.clone(), Heading::new(error, unit), Heading::new(independent, "")]
+/// Returns the headings of a table between its leading columns and the last one.
+fn between(first: &[&str], own: impl Iterator<Item = Heading>) -> Vec<Heading> {
+    let plain = |name: &&str| Heading::new(*name, "");
+    first.iter().map(plain).chain(own).chain([Heading::new("not_converged", "")]).collect()
 }

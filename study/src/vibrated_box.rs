@@ -5,7 +5,6 @@
 
 mod base;
 mod convection;
-mod meanings;
 mod rule;
 mod sample;
 
@@ -14,6 +13,9 @@ pub use rule::BoxRule;
 use rule::Kind;
 pub use sample::{Measurement, Sample};
 
+use std::sync::LazyLock;
+
+use super::experiment::columns::{Meanings, meanings};
 use super::{Column, Experiment, ExperimentError, Record, Table};
 use crate::analysis::StateCriteria;
 use granular_edmd::boundary::{Container, Wall};
@@ -22,6 +24,9 @@ use granular_edmd::observable::Snapshot;
 use granular_edmd::quantity::accept;
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
+
+/// The meanings of the parameters and of the columns of the tables.
+static MEANINGS: Meanings = LazyLock::new(|| meanings(include_str!("vibrated_box/meanings.txt")));
 
 /// Radius of the disks: their diameter and mass are the units.
 const RADIUS: f64 = 0.5;
@@ -32,8 +37,8 @@ const MOST_DISKS: usize = 1 << 24;
 /// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
 /// disk are the units.
 ///
-/// Disks start on a lattice with Maxwellian velocities. Values are checked where the box enters a
-/// [`Plan`](super::Plan).
+/// Other settings are fields: `experiment.base_inelasticity = Some(0.0)`. Disks start on a lattice with
+/// Maxwellian velocities. Values are checked where the box enters a [`Plan`](super::Plan).
 ///
 /// ```
 /// use granular_edmd_study::vibrated_box::{Base, VibratedBox};
@@ -131,34 +136,9 @@ impl VibratedBox {
         Self { inelasticity, tangential_inelasticity: None, ..self }
     }
 
-    /// Returns the same box with this tangential inelasticity $`q_t`$.
-    pub const fn with_tangential_inelasticity(self, tangential: f64) -> Self {
-        Self { tangential_inelasticity: Some(tangential), ..self }
-    }
-
     /// Returns the same box with the friction $`\kappa = \kappa_s = \kappa_d`$.
     pub const fn with_friction(self, friction: f64) -> Self {
         Self { friction, dynamic_friction: None, ..self }
-    }
-
-    /// Returns the same box with this dynamic friction $`\kappa_d`$.
-    pub const fn with_dynamic_friction(self, dynamic: f64) -> Self {
-        Self { dynamic_friction: Some(dynamic), ..self }
-    }
-
-    /// Returns the same box with this inelasticity of the walls, normal and tangential.
-    pub const fn with_wall_inelasticity(self, inelasticity: f64) -> Self {
-        Self { wall_inelasticity: Some(inelasticity), ..self }
-    }
-
-    /// Returns the same box with this inelasticity of the base, normal and tangential.
-    pub const fn with_base_inelasticity(self, inelasticity: f64) -> Self {
-        Self { base_inelasticity: Some(inelasticity), base_tangential_inelasticity: None, ..self }
-    }
-
-    /// Returns the same box with a base of these inelasticities, normal and tangential.
-    pub const fn with_base_inelasticities(self, normal: f64, tangential: f64) -> Self {
-        Self { base_tangential_inelasticity: Some(tangential), ..self.with_base_inelasticity(normal) }
     }
 
     /// Returns the same box under the contact-duration model, [`ContactDuration`].
@@ -175,8 +155,8 @@ impl VibratedBox {
         if normal.or(tangential).or(self.wall_friction).is_none() {
             return Ok(None);
         }
-        let walls = normal.into_iter().fold(self.clone(), Self::with_inelasticity);
-        let walls = tangential.into_iter().fold(walls, Self::with_tangential_inelasticity);
+        let mut walls = normal.into_iter().fold(self.clone(), Self::with_inelasticity);
+        walls.tangential_inelasticity = tangential.or(walls.tangential_inelasticity);
         let walls = self.wall_friction.into_iter().fold(walls, Self::with_friction);
         walls.rule().map(Some)
     }
@@ -259,7 +239,7 @@ impl Experiment for VibratedBox {
     }
 
     fn meanings() -> &'static [(&'static str, &'static str)] {
-        &meanings::MEANINGS
+        &MEANINGS
     }
 
     fn columns() -> Vec<Column<Self>> {

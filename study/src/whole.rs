@@ -1,11 +1,11 @@
 //! The small files of a study. Each file is complete or absent, and the file of an unfinished value is
 //! sealed.
 
-use std::fs;
+use std::fs::{self, DirEntry, File};
 use std::io;
 use std::path::Path;
 
-use granular_edmd::file::{Damage, Seal, is_temporary, unique_name, write_whole};
+use granular_edmd::file::{Damage, Seal, is_temporary, write_whole};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -19,40 +19,40 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Writes a new file, completely or not at all. An existing file stays, and the function then returns false.
-///
-/// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
-/// file system.
-pub(crate) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
-    // Without this check, a late process that is killed here would leave its draft in a complete study, from
-    // which no process removes drafts any more.
-    if path.exists() {
-        return Ok(false);
-    }
-    let draft = path.with_file_name(unique_name());
-    write(&draft, bytes)?;
-    let published = match fs::hard_link(&draft, path) {
-        Ok(()) => Ok(true),
-        Err(_) if path.exists() => Ok(false),
-        // The file system has no links; the lock of the folder keeps other writers away.
-        Err(_) => write(path, bytes).map(|()| true),
+/// Opens the file of a lock, and creates it and its folder if necessary.
+pub(crate) fn open_lock(path: &Path) -> Result<File, StudyError> {
+    let mut options = File::options();
+    options.read(true).write(true).create(true).truncate(false);
+    let opened = options.open(path);
+    let opened = match (&opened, path.parent()) {
+        (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
+            create(folder)?;
+            options.open(path)
+        }
+        _ => opened,
     };
-    remove(&draft)?;
-    published
+    opened.map_err(StudyError::io("write", path))
 }
 
-/// Returns data as bytes, which read back as they were written.
+/// Creates a folder, with the folders that contain it.
+pub(crate) fn create(folder: &Path) -> Result<(), StudyError> {
+    fs::create_dir_all(folder).map_err(StudyError::io("create", folder))
+}
+
+/// Returns data for a file as bytes, which read back as they were written.
 pub(crate) fn encoded<T: DeserializeOwned + Serialize>(
+    path: &Path,
     data: &impl Serialize,
-) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
-    let contents = postcard::to_stdvec(data)?;
+) -> Result<Vec<u8>, StudyError> {
+    let refused = |source| StudyError::Encode { path: path.to_owned(), source };
+    let contents = postcard::to_stdvec(data).map_err(|error| refused(error.into()))?;
     let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
     if again.is_ok_and(|again| again == contents) {
         return Ok(contents);
     }
-    Err("a sample or observer does not read back as it is written: its type must not have `#[serde(untagged)]`, \
-         `flatten`, `skip` or `skip_serializing_if`"
-        .into())
+    let reason = "a sample or observer does not read back as it is written: its type must not have \
+                  `#[serde(untagged)]`, `flatten`, `skip` or `skip_serializing_if`";
+    Err(refused(reason.into()))
 }
 
 /// Reads data that [`encoded`] has made.
@@ -69,29 +69,23 @@ pub(crate) fn write_sealed<T: DeserializeOwned + Serialize>(
     path: &Path,
     data: &impl Serialize,
 ) -> Result<(), StudyError> {
-    let contents = encoded::<T>(data);
-    let contents = contents.map_err(|source| StudyError::Encode { path: path.to_owned(), source })?;
-    write(path, &SEAL.seal(&contents))
+    write(path, &SEAL.seal(&encoded::<T>(path, data)?))
 }
 
 /// Reads data that [`write_sealed`] has written, or returns `None` if the file does not exist.
 pub(crate) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
     let Some(bytes) = if_there("read", path, fs::read(path))? else { return Ok(None) };
-    unseal(&bytes).map(Some).map_err(|reason| damaged(path, reason))
-}
-
-pub(crate) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
-    StudyError::Damaged { path: path.to_owned(), reason: reason.into() }
-}
-
-fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
-    let contents = SEAL.open(bytes).map_err(|broken| match broken {
+    let contents = SEAL.open(&bytes).map_err(|broken| match broken {
         Damage::Foreign => "it does not begin as a value half done",
         Damage::Version(_) => "it has another version of the format",
         Damage::Cut => "it was cut",
         _ => "its checksum does not match",
-    })?;
-    decoded(contents)
+    });
+    contents.and_then(decoded).map(Some).map_err(|reason| damaged(path, reason))
+}
+
+pub(crate) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
+    StudyError::Damaged { path: path.to_owned(), reason: reason.into() }
 }
 
 /// Removes a file if it exists.
@@ -111,15 +105,16 @@ pub(crate) fn if_there<T>(
     }
 }
 
+/// Returns the files in a folder; none if it does not exist.
+pub(crate) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
+    let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
+    files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))
+}
+
 /// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
 /// be locked.
 pub(crate) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
-    let cannot_read = || StudyError::io("read", folder);
-    for entry in fs::read_dir(folder).map_err(cannot_read())? {
-        let entry = entry.map_err(cannot_read())?;
-        if is_temporary(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file()) {
-            remove(&entry.path())?;
-        }
-    }
-    Ok(())
+    let mut files = files_in(folder)?;
+    files.retain(|file| is_temporary(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
+    files.iter().try_for_each(|file| remove(&file.path()))
 }

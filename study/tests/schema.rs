@@ -1,14 +1,20 @@
 //! The schema of plans: it knows each key that the types accept, with its meaning, and all plans of the
 //! documentation fit it.
 
+#[path = "../src/cli/shape.rs"]
+#[allow(dead_code, reason = "only the command asks for keys")]
+mod shape;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use granular_edmd_study::Plan;
 use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Experiment, Plan};
+use serde::Deserialize;
 use serde_json::Value;
+use shape::{Kind, Shape};
 
 /// A plan in which each group of keys occurs, with `PLACE` as one more key of it.
 const GROUPS: [(&str, &str); 8] = [
@@ -186,4 +192,54 @@ fn keys_are_required_as_plans_require_them() {
             assert_eq!(required.contains(&name.as_str()), is_missed, "{group} {name}");
         }
     }
+}
+
+#[derive(Deserialize)]
+#[expect(dead_code, reason = "its shape alone is of interest")]
+struct Odd {
+    below: Option<Box<Self>>,
+    value: toml::Value,
+    none: NoNumber,
+    way: Way,
+    last: bool,
+}
+
+#[derive(Deserialize)]
+#[expect(dead_code, reason = "its shape alone is of interest")]
+enum Way {
+    Straight,
+    To(f64),
+    Round { turns: Vec<u32> },
+    Both(u8, u8),
+}
+
+#[derive(Deserialize)]
+#[serde(try_from = "u8")]
+struct NoNumber;
+
+impl TryFrom<u8> for NoNumber {
+    type Error = &'static str;
+
+    fn try_from(_: u8) -> Result<Self, &'static str> {
+        Err("no number is right")
+    }
+}
+
+/// A type may contain itself, look at the value before it decides, and refuse whatever it reads.
+#[test]
+fn odd_types_have_a_shape() {
+    let kinds = |shape: &Shape| shape.parts.iter().map(|(_, part)| part.kind).collect::<Vec<_>>();
+    let shape = Shape::of::<Odd>();
+    assert_eq!(kinds(&shape), [Kind::Table, Kind::Any, Kind::Integer, Kind::Choice, Kind::Flag]);
+    assert_eq!(kinds(&shape.parts[3].1), [Kind::Word, Kind::Number, Kind::Table, Kind::Any]);
+}
+
+/// Each name with a meaning belongs to a parameter or a column.
+#[test]
+fn all_meanings_of_the_box_are_explained() {
+    let told = runs(&["explain"]).stdout;
+    let told = std::str::from_utf8(&told).unwrap();
+    let is_told = |name: &str| told.lines().any(|line| line.split([':', ' ']).next() == Some(name));
+    let unknown: Vec<_> = VibratedBox::meanings().iter().filter(|(name, _)| !is_told(name)).collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
 }

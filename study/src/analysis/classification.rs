@@ -5,9 +5,12 @@ use granular_edmd::observable::{ConvectionOrder, DenseLayer};
 use granular_edmd::quantity::{accept, non_negative, positive};
 
 use super::clusters::{Cluster, Clusters};
-use super::distinct::distinct_clusters;
+use super::k_means::distinct_clusters;
 use super::state::{ConvectiveRegime, ConvectiveState};
 use granular_edmd::glam::DVec2;
+
+/// Seed of the clustering. Distinct clusters do not depend on it.
+const SEED: u64 = 0;
 
 /// Returns the standard deviation of Ψ₁ and of Ψ₂, which are velocities, in a gas at rest.
 ///
@@ -39,8 +42,10 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 
 /// The criteria by which a state gets its name.
 ///
-/// The samples of $`(\Psi_1, \Psi_2)`$ are divided into [distinct clusters](distinct_clusters). The names
-/// follow from these clusters and the [`thermal_noise`] $`\sigma`$:
+/// The samples of $`(\Psi_1, \Psi_2)`$ are divided into the largest number of clusters, from 1 to 4, whose
+/// pairs are all separated by more than 4 ([`Clusters::separation`]). A cloud of symmetric density with one
+/// maximum, cut in two by a k-means search, has at most $`2\sqrt3 = 3.46`$. The names follow from these
+/// clusters and the [`thermal_noise`] $`\sigma`$:
 ///
 /// 1. A run as a whole is **collapsed** if two conditions hold. First, its height profile has a compact
 ///    layer, of packing fraction above 0.60, on a gas of less than half of that. Second, its two-roll flow
@@ -82,7 +87,6 @@ pub struct StateCriteria {
     collapsed_order: f64,
     two_rolls: f64,
     least_weight: f64,
-    seed: u64,
 }
 
 impl Default for StateCriteria {
@@ -93,7 +97,6 @@ impl Default for StateCriteria {
             collapsed_order: 0.03,
             two_rolls: 2.0,
             least_weight: 0.05,
-            seed: 0,
         }
     }
 }
@@ -152,13 +155,6 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Sets the seed of the clustering; 0 unless given.
-    ///
-    /// Distinct clusters do not depend on it.
-    pub const fn with_seed(self, seed: u64) -> Self {
-        Self { seed, ..self }
-    }
-
     /// Finds the states of these samples above the thermal noise `noise`.
     ///
     /// `layer` is the [densest layer](granular_edmd::observable::HeightProfile::densest_layer) of the height
@@ -175,7 +171,7 @@ impl StateCriteria {
     ) -> Result<Classification, ParameterError> {
         let points: Vec<DVec2> =
             samples.iter().map(|order| DVec2::new(order.one_roll, order.two_rolls)).collect();
-        let clusters = distinct_clusters(&points, noise, self.seed)?;
+        let clusters = distinct_clusters(&points, noise, SEED)?;
         let compact = layer.is_some_and(|layer| self.is_compact(layer));
         let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::NoRoll };
         let has_died = compact && mean_of_two_rolls(&clusters).abs() < self.collapsed_order;

@@ -63,7 +63,7 @@ impl Cluster {
 
 /// Clusters of points in a plane, in ascending order of their centers (by x, then y).
 ///
-/// Made by [`KMeans::fit`](super::KMeans::fit) and [`distinct_clusters`](super::distinct_clusters).
+/// Made by [`StateCriteria::classify`](super::StateCriteria::classify).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
     clusters: Vec<Cluster>,

@@ -1,14 +1,14 @@
-//! A given number of clusters, found by k-means.
+//! Clusters of points, found by k-means.
 
 use granular_edmd::ParameterError;
-use granular_edmd::quantity::accept;
+use granular_edmd::quantity::{accept, non_negative};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::clusters::Clusters;
 use granular_edmd::glam::DVec2;
 
-/// Default number of restarts. With four clusters or fewer, most of them find the same best result.
+/// Number of restarts. With four clusters or fewer, most of them find the same best result.
 const RESTARTS: usize = 16;
 
 /// Largest number of iterations from one start, far above the usual number.
@@ -17,72 +17,77 @@ const ROUNDS: usize = 1000;
 /// Largest coordinate. Its square, summed over all points, stays finite.
 const LARGEST: f64 = 1e100;
 
-/// k-means clustering in a plane, the best of several restarts.
+/// Largest number of clusters to look for: one roll of either sense, and two rolls of either sense.
+const MOST: usize = 4;
+
+/// Separation above which two clusters are distinct.
+const DISTINCT: f64 = 4.0;
+
+/// Finds the distinct clusters of these points.
+///
+/// The result has the largest number of clusters, from 1 to 4, whose pairs are all separated by $`D > 4`$
+/// ([`Clusters::separation`]).
+///
+/// A k-means search finds as many clusters as requested, so the number must follow from the result itself.
+/// Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each half the
+/// density falls away from the cut. The mean of the half is therefore at most $`\sqrt3`$ of its standard
+/// deviations away from the cut, with equality for the uniform density. A single cloud has
+/// $`D \le 2\sqrt3 = 3.46`$ (a Gaussian one 2.65), so above 4 there are two clouds. Neither the width of a
+/// cloud nor the correlation of its samples enters, as long as the series fills the cloud. A series of only a
+/// few correlation times can look like several clouds.
+///
+/// `noise` is the least standard deviation of a single state, such as
+/// [`thermal_noise`](super::thermal_noise). Clusters closer than four times this noise are never distinct,
+/// however sharp they are.
+///
+/// # Errors
+/// If there is no point, a coordinate is not finite or above 1e100 in magnitude, or the noise is negative or
+/// not finite.
+pub(crate) fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Result<Clusters, ParameterError> {
+    non_negative("noise", noise)?;
+    let mut distinct = k_means(points, 1, RESTARTS, seed)?;
+    // The search continues after the first number that fails. Three clouds in a row, cut in two, make a wide
+    // cluster that is not separated from the other; cut in three, they are.
+    for clusters in 2..=MOST.min(points.len()) {
+        let found = k_means(points, clusters, RESTARTS, seed)?;
+        if found.separation(noise) > DISTINCT {
+            distinct = found;
+        }
+    }
+    Ok(distinct)
+}
+
+/// Finds this number of clusters in a plane by k-means, the best of several restarts.
 ///
 /// The search looks for the centers $`c_j`$ that minimize the scatter $`\sum_i \min_j |r_i - c_j|^2`$
 /// (MacQueen 1967, the paper's reference 14). It starts from centers that k-means++ chooses (Arthur &
 /// Vassilvitskii 2007). The result depends on the points and the seed, but not on the order of the points,
-/// which are sorted first.
+/// which are sorted first. If there are fewer distinct points than requested clusters, there are fewer
+/// clusters.
 ///
-/// ```
-/// use granular_edmd_study::analysis::KMeans;
-/// use granular_edmd::glam::DVec2;
-/// let points = [(0.0, 0.1), (5.0, 0.1), (0.0, -0.1), (5.0, -0.1), (5.0, 0.0)];
-/// let points = points.map(|(x, y)| DVec2::new(x, y));
-/// let clusters = KMeans::new(2, 1)?.fit(&points)?;
-/// assert_eq!(clusters.labels(), [0, 1, 0, 1, 1]);
-/// assert_eq!(clusters.iter().nth(1).map(|cluster| cluster.center()), Some(DVec2::new(5.0, 0.0)));
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct KMeans {
+/// # Errors
+/// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in magnitude.
+pub(crate) fn k_means(
+    points: &[DVec2],
     clusters: usize,
     restarts: usize,
     seed: u64,
-}
-
-impl KMeans {
-    /// Creates a search for this number of clusters.
-    ///
-    /// # Errors
-    /// If the number of clusters is zero.
-    pub fn new(clusters: usize, seed: u64) -> Result<Self, ParameterError> {
-        accept(clusters > 0, "number of clusters", "at least 1", 0.0)?;
-        Ok(Self { clusters, restarts: RESTARTS, seed })
-    }
-
-    /// Returns the same search with this number of restarts; 16 unless given.
-    ///
-    /// # Errors
-    /// If it is zero.
-    pub fn with_restarts(self, restarts: usize) -> Result<Self, ParameterError> {
-        accept(restarts > 0, "number of restarts", "at least 1", 0.0)?;
-        Ok(Self { restarts, ..self })
-    }
-
-    /// Finds the clusters of these points.
-    ///
-    /// If there are fewer distinct points than requested clusters, there are fewer clusters.
-    ///
-    /// # Errors
-    /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in magnitude.
-    pub fn fit(&self, points: &[DVec2]) -> Result<Clusters, ParameterError> {
-        check(points, self.clusters)?;
-        // Sums of sorted points round alike, so the bits do not depend on the order in which points are
-        // given.
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        order.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(points[a].y.total_cmp(&points[b].y)));
-        let sorted: Vec<DVec2> = order.iter().map(|&point| points[point]).collect();
-        let mut generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
-        let mut best = descend(&sorted, plus_plus(&sorted, self.clusters, &mut generator));
-        for _ in 1..self.restarts {
-            let next = descend(&sorted, plus_plus(&sorted, self.clusters, &mut generator));
-            if next.scatter < best.scatter {
-                best = next;
-            }
+) -> Result<Clusters, ParameterError> {
+    check(points, clusters)?;
+    // Sums of sorted points round alike, so the bits do not depend on the order in which points are
+    // given.
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(points[a].y.total_cmp(&points[b].y)));
+    let sorted: Vec<DVec2> = order.iter().map(|&point| points[point]).collect();
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut best = descend(&sorted, plus_plus(&sorted, clusters, &mut generator));
+    for _ in 1..restarts {
+        let next = descend(&sorted, plus_plus(&sorted, clusters, &mut generator));
+        if next.scatter < best.scatter {
+            best = next;
         }
-        Ok(Clusters::new(&sorted, &best.labels, &order))
     }
+    Ok(Clusters::new(&sorted, &best.labels, &order))
 }
 
 fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {

@@ -7,8 +7,7 @@ use granular_edmd::Disk;
 use granular_edmd::quantity::non_negative;
 use granular_edmd::replay::{Differences, Replay};
 
-use super::collision_rows::{HEADINGS, row};
-use super::source::{Place, Source, tell, tell_end};
+use super::source::{HEADINGS, Place, Source, row, tell, tell_end};
 use super::watch::end_at_once;
 use super::{End, Failure, PlanError, say};
 use crate::{Experiment, Run};

@@ -52,7 +52,7 @@ impl Ending {
         Self::of(path).filter(|&ending| accepts(ending)).ok_or_else(|| {
             let accepted = ENDINGS.iter().filter(|(_, ending)| accepts(*ending));
             let names: Vec<String> = accepted.map(|(ending, _)| format!(".{ending}")).collect();
-            PlanError::Toml(format!("{} must end in one of {}", path.display(), names.join(", ")))
+            PlanError::Refused(format!("{} must end in one of {}", path.display(), names.join(", ")))
         })
     }
 

@@ -1,72 +1,14 @@
 //! The meanings of the keys of plans, for the command `explain`, its schema, and the comments of a new plan.
 
+use std::sync::LazyLock;
+
 use super::shape::Shape;
-use crate::meanings::{OF_TABLES, find, of_error};
+use crate::experiment::columns::{Meanings, OF_TABLES, meanings};
+use crate::meanings::{find, of_error};
 use crate::{Column, Experiment, Table};
 
 /// The keys that every plan has, whatever its experiment, by section.
-const OF_PLANS: [(&str, &str); 24] = [
-    (
-        "seed",
-        "Seed of all random numbers, a whole number below 2^63: the same plan gives the same bytes. Required.",
-    ),
-    (
-        "repeats",
-        "Number of times that each point is done, each with another seed. 1 if not given. Eight give a mean an error that can be trusted; fewer do if all together have 120 independent samples: see not_converged in points.csv.",
-    ),
-    (
-        "end_states",
-        "`true` keeps the state at the end of each value, so that a later plan with more samples goes on from it. `false` if not given.",
-    ),
-    ("experiment", "The system: each of its parameters can be ramped or swept. Required."),
-    ("protocol", "What is measured at each value, and when. Required."),
-    (
-        "protocol.settle",
-        "Cycles that are run and not measured before each value, at least 0. A cycle is a period of the base, or a unit of time without one. Required.",
-    ),
-    (
-        "protocol.samples",
-        "Number of samples of each value, at least 1. Errors are trustworthy from some hundred independent ones on. Required.",
-    ),
-    (
-        "protocol.every",
-        "Cycles from one sample to the next, at least 1. Samples so close that they resemble each other add little. Required.",
-    ),
-    (
-        "protocol.phase",
-        "Part of a cycle at which samples are taken, above 0 and at most 1. 1 if not given: the end of the cycle.",
-    ),
-    (
-        "protocol.most_collisions",
-        "Number of collisions after which a value is ended, the same on every machine. No limit if not given.",
-    ),
-    ("ramp", "A hysteresis experiment: one run, whose parameter changes step by step. None if not given."),
-    (
-        "ramp.parameter",
-        "Parameter that changes step by step, each value from the last state of the one before. Required.",
-    ),
-    ("ramp.values", "Values of the ramp, which increase: a list, or a rule. Required."),
-    ("ramp.course", "`up`, `down`, or `up_and_down`, which shows hysteresis. `up` if not given."),
-    (
-        "ramp.refine",
-        "Width to which each change of the state between two values is bisected, absolute or relative. None if not given.",
-    ),
-    ("ramp.refine.absolute", "Width in the unit of the parameter, above 0."),
-    ("ramp.refine.relative", "Width as a fraction of the value, above 0; all values must then be positive."),
-    ("sweep", "Independent runs. None if not given."),
-    (
-        "sweep.parameter",
-        "Parameter that differs between ramps, which are independent of each other and may run side by side. Required.",
-    ),
-    (
-        "sweep.values",
-        "Values of the sweep: a list in any order, or a rule. Several sweeps make all combinations. Required.",
-    ),
-    ("values.from", "First value of a rule. Required."),
-    ("values.to", "Last value of a rule. Required."),
-    ("values.step", "Difference of neighbors, for equal steps. A rule has either this or `log`."),
-    ("values.log", "Number of values, for equal ratios. A rule has either this or `step`."),
-];
+static OF_PLANS: Meanings = LazyLock::new(|| meanings(include_str!("keys.txt")));
 
 /// Returns the meaning of a key of a plan by its whole name, such as `protocol.settle` or
 /// `experiment.friction`.
@@ -116,7 +58,7 @@ fn all<E: Experiment>() -> impl Iterator<Item = (&'static str, &'static str)> {
             || tables.iter().flat_map(Table::columns).any(|heading| heading.name() == name)
     };
     let own = E::meanings().iter().copied().filter(move |(name, _)| exists(name));
-    OF_PLANS.into_iter().chain(own).chain(OF_TABLES)
+    OF_PLANS.iter().copied().chain(own).chain(OF_TABLES.iter().copied())
 }
 
 /// Returns the name with the unit of its column, and the meaning.
@@ -125,93 +67,5 @@ fn line<E: Experiment>(name: &str, meaning: &str) -> String {
     match columns.iter().find(|column| column.name() == name).map(Column::unit) {
         Some(unit) if !unit.is_empty() => format!("{name} [{unit}]: {meaning}"),
         _ => format!("{name}: {meaning}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use granular_edmd::boundary::Container;
-    use granular_edmd::collision::Elastic;
-    use granular_edmd::observable::Snapshot;
-    use granular_edmd::{Disk, Fingerprint};
-    use serde::{Deserialize, Serialize};
-
-    use super::*;
-    use crate::ExperimentError;
-    use crate::vibrated_box::VibratedBox;
-
-    #[derive(Clone, Serialize, Deserialize)]
-    struct Gas {
-        width: f64,
-        disks: Vec<Size>,
-    }
-
-    #[derive(Clone, Serialize, Deserialize)]
-    struct Size {
-        radius: f64,
-    }
-
-    impl Experiment for Gas {
-        type Rule = Elastic;
-        type Boundary = Container;
-        type Observer = ();
-        type Sample = f64;
-
-        fn meanings() -> &'static [(&'static str, &'static str)] {
-            &[
-                ("width", "Width."),
-                ("disks", "Disks."),
-                ("disks.radius", "Radius."),
-                ("speed", "Mean speed."),
-                ("widht", "Misspelled."),
-                ("disks.mass", "Removed."),
-            ]
-        }
-        fn revision() -> Fingerprint {
-            Fingerprint::of("Gas")
-        }
-        fn rule(&self) -> Result<Elastic, ExperimentError> {
-            Ok(Elastic)
-        }
-        fn boundary(&self) -> Result<Container, ExperimentError> {
-            Ok(Container::closed(self.width, 10.0)?)
-        }
-        fn disks(&self, _: u64) -> Result<Vec<Disk>, ExperimentError> {
-            Ok(Vec::new())
-        }
-        fn observer(&self) -> Result<(), ExperimentError> {
-            Ok(())
-        }
-        fn sample(&self, snapshot: &Snapshot<'_>, (): &mut ()) -> f64 {
-            snapshot.mean(|disk| disk.velocity().length())
-        }
-        fn columns() -> Vec<Column<Self>> {
-            vec![Column::sampled("speed", "length/time", |speed: &f64| *speed)]
-        }
-    }
-
-    /// A misspelled name has a meaning, but a plan with it would be refused.
-    #[test]
-    fn only_parameters_and_columns_are_explained() {
-        let told = explained::<Gas>(None).unwrap();
-        for (name, is_known) in
-            [("width", true), ("disks.radius", true), ("widht", false), ("disks.mass", false)]
-        {
-            assert_eq!(told.contains(&format!("\n{name}: ")), is_known, "{told}");
-            assert_eq!(explained::<Gas>(Some(name)).is_ok(), is_known, "{name}");
-            assert_eq!(explained::<Gas>(Some(&format!("experiment.{name}"))).is_ok(), is_known, "{name}");
-        }
-        assert_eq!(explained::<Gas>(Some("speed")).unwrap(), "speed [length/time]: Mean speed.");
-        let nearest = explained::<Gas>(Some("widht")).unwrap_err();
-        assert!(nearest.contains("there is no key `widht`; the nearest is `width`"), "{nearest}");
-        assert!(unknown::<VibratedBox>().is_empty(), "{:?}", unknown::<VibratedBox>());
-    }
-
-    /// Returns the names with a meaning that are not explained.
-    fn unknown<E: Experiment>() -> Vec<&'static str> {
-        let told = explained::<E>(None).unwrap();
-        let names = E::meanings().iter().map(|(name, _)| *name);
-        let is_told = |name: &str| told.lines().any(|line| line.split([':', ' ']).next() == Some(name));
-        names.filter(|name| !is_told(name)).collect()
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn explain<E: Experiment>(key: Option<&str>, schema: bool) -> Result<
     say(&if schema {
         serde_json::to_string_pretty(&schema::schema::<E>())?
     } else {
-        keys::explained::<E>(key).map_err(PlanError::Toml)?
+        keys::explained::<E>(key).map_err(PlanError::Refused)?
     })?;
     Ok(End::Done)
 }

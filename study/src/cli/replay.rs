@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 use granular_edmd::replay::{Replayed, Steps};
 use granular_edmd::trajectory::State;
 
-use super::collision_rows::{HEADINGS, row};
 use super::files::Ending;
-use super::source::{Place, Source, tell_end};
+use super::source::{HEADINGS, Place, Source, row, tell_end};
 use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
 use crate::{Experiment, Run};
@@ -74,10 +73,10 @@ impl Wishes {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
         match (self.from, self.disk.filter(|id| !is_there(id))) {
             (Some(from), _) if from.is_nan() || from >= *end => {
-                Err(PlanError::Toml(format!("no time is after {from} and until {end}")))
+                Err(PlanError::Refused(format!("no time is after {from} and until {end}")))
             }
             (_, Some(id)) => {
-                Err(PlanError::Toml(format!("there is no disk {id} among the {} of the run", run.len())))
+                Err(PlanError::Refused(format!("there is no disk {id} among the {} of the run", run.len())))
             }
             _ => Ok(()),
         }
@@ -137,7 +136,7 @@ fn state_before<E: Experiment>(
     let (first, end, show) = (source.run.counters().collisions() + 1, source.end, source.clock());
     if number < first {
         let message = format!("the first collision of this run has the number {first}, not {number}");
-        return Err(PlanError::Toml(message).into());
+        return Err(PlanError::Refused(message).into());
     }
     let ended = source.advance(end, number - 1, show);
     let found = source.run.counters().collisions();
@@ -159,6 +158,6 @@ fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<
     let path = path.unwrap_or(Path::new("-.csv"));
     let Some(ending) = Ending::of(path) else { return Ok(run.checkpoint().to_bytes()?) };
     let text = ending.text(path, &State::of(&run.snapshot())).transpose()?;
-    let advice = || PlanError::Toml(format!("`convert` makes {} of a file in .xyz", path.display()));
+    let advice = || PlanError::Refused(format!("`convert` makes {} of a file in .xyz", path.display()));
     text.ok_or_else(|| advice().into())
 }

@@ -4,7 +4,8 @@ use serde_json::{Map, Value, json};
 
 use super::keys::of_key;
 use super::shape::{Kind, Shape};
-use crate::{Experiment, Plan, Steps};
+use crate::plan::steps::Steps;
+use crate::{Experiment, Plan};
 
 /// Returns the schema of the plans of an experiment.
 pub(super) fn schema<E: Experiment>() -> Value {

@@ -7,14 +7,16 @@ use std::time::Duration;
 
 use granular_edmd::Simulation;
 use granular_edmd::boundary::Boundary;
-use granular_edmd::collision::CollisionRule;
+use granular_edmd::collision::{CollisionRule, Regime};
+use granular_edmd::observable::Partner;
+use granular_edmd::replay::Replayed;
 use granular_edmd::simulation::{Checkpoint, CheckpointError, Limits, RunEnd, RunError};
 use granular_edmd::trajectory::Reader;
 
 use super::watch::{Watch, is_stopped};
 use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
 use crate::seed::derived_seed;
-use crate::{Experiment, ExperimentError, Progress, Run, Study};
+use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 
 /// Wall-clock time between two checks for signals.
 const LOOK: Duration = Duration::from_millis(200);
@@ -71,7 +73,7 @@ impl<E: Experiment> Source<E> {
             return Ok(Self { run, cycle, end: until });
         }
         let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
-        Err(PlanError::Toml(message).into())
+        Err(PlanError::Refused(message).into())
     }
 
     /// Returns a display of the simulated time, in cycles.
@@ -146,4 +148,27 @@ pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, er
     };
     let id = id.map_or_else(String::new, |disk| format!("; that disk has the id {}", disk.id()));
     tell(&format!("the run ended: {}{id}", chain(error)));
+}
+
+/// Names of the columns of a table of collisions.
+pub(super) const HEADINGS: &str = "number,time,disk,partner,wall,x,y,closing_speed,slip_speed,normal_impulse,\
+                                   tangential_impulse,energy_change,regime";
+
+/// Returns a collision as a row.
+pub(super) fn row(replayed: &Replayed, boundary: &impl Boundary) -> String {
+    let Replayed { number, id, partner_id, collision: it, .. } = replayed;
+    let wall = match it.partner {
+        Partner::Wall(wall) => boundary.wall_name(wall).to_string(),
+        Partner::Disk(_) => String::new(),
+    };
+    let (contact, impulse) = (&it.contact, &it.impulse);
+    let [x, y, time] = [it.position.x, it.position.y, it.time].map(Scalar::from);
+    let speeds = [contact.closing_speed(), contact.slip_speed()];
+    let changes = [impulse.normal(), impulse.tangential(), it.energy_change];
+    let partner = partner_id.map_or_else(|| String::new().into(), Scalar::from);
+    let regime = Some(impulse.regime()).filter(|regime| *regime != Regime::Unspecified);
+    let regime = regime.map_or_else(String::new, |regime| format!("{regime:?}"));
+    let cells = [(*number).into(), time, (*id).into(), partner, wall.into(), x, y].into_iter();
+    let cells = cells.chain(speeds.into_iter().chain(changes).map(Scalar::from)).chain([regime.into()]);
+    cells.map(|cell| cell.to_string()).collect::<Vec<_>>().join(",")
 }

@@ -9,7 +9,8 @@ use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
 use super::sliced::{self, Riders};
 use crate::errors::{ExperimentError, StudyError, chain};
-use crate::experiment::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
+use crate::experiment::origin::Origin;
+use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
 #[cfg(feature = "cli")]
 use crate::opening::Study;
 use crate::plan::refinement::Step;
@@ -30,8 +31,9 @@ pub(super) struct Value<'a, E: Experiment> {
 }
 
 /// The saved data of an unfinished value: its origin, the work so far, the state of its run and its driving.
-pub(super) type Partial<E> =
-    (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint, Option<Vec<u8>>);
+pub(super) type Partial<E> = (Origin, WorkOf<E>, Checkpoint, Option<Vec<u8>>);
+
+type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 
 /// The finished work of a value.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
@@ -52,21 +54,9 @@ pub(super) struct Work<S, O> {
 /// A value that is being run.
 pub(super) struct Active<'a, E: Experiment> {
     value: &'a Value<'a, E>,
-    work: Work<E::Sample, E::Observer>,
+    work: WorkOf<E>,
     run: Run<E>,
     riders: Riders,
-}
-
-/// The reason why a value ends before its last step.
-pub(super) enum Early {
-    /// The observer ends the value.
-    Stopped,
-    /// The value has reached a limit.
-    Limited(String),
-    /// The engine gives up.
-    Run(RunError),
-    /// The experiment cannot prepare a step.
-    Prepare(ExperimentError),
 }
 
 impl<'a, E: Experiment> Value<'a, E> {
@@ -74,20 +64,26 @@ impl<'a, E: Experiment> Value<'a, E> {
     pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
+        let work = |steps, measured| Work {
+            start,
+            steps,
+            is_prepared: false,
+            is_under_way: false,
+            counters,
+            measured,
+        };
         if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
             let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
-            let steps = self.plan.protocol().steps() - missing;
-            let work = Work { start, steps, is_prepared: false, is_under_way: false, counters, measured };
+            let work = work(self.plan.protocol().steps() - missing, measured);
             match self.go_on((self.origin.clone(), work, state, driving), self.folder) {
                 Err(StudyError::Damaged { .. }) => {}
                 made => return made,
             }
         }
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
-        let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
-        let work = Work { start, steps: 0, is_prepared: false, is_under_way: false, counters, measured };
+        let work = work(0, Measured { times: Vec::new(), samples: Vec::new(), observer });
         let riders = self.riders(run.time(), self.driving()?, false)?;
         Ok(Active { value: self, work, run, riders })
     }
@@ -145,11 +141,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run, riders })
     }
 
-    #[expect(clippy::type_complexity, reason = "the parts of a value that goes on")]
-    fn state_of(
-        &self,
-        (_, work, state, _): Partial<E>,
-    ) -> Result<(Work<E::Sample, E::Observer>, Run<E>), String> {
+    fn state_of(&self, (_, work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
         let protocol = self.plan.protocol();
         work.check(protocol)?;
         check(work.start == self.start(), "it starts elsewhere")?;
@@ -211,7 +203,7 @@ impl<E: Experiment> Study<E> {
         let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
         // Other code may give other results.
         if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
-            return Err(StudyError::Changed { path: self.folder().to_owned(), part: "revision" });
+            return Err(StudyError::changed(self.folder(), "revision"));
         }
         let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
         let experiment = self.plan.experiment_at(ramp, step.at)?;
@@ -240,32 +232,42 @@ impl<E: Experiment> Active<'_, E> {
 
     /// Runs the next step, which settles or takes a sample, for at most this wall-clock time. The observer
     /// may end the value during the step. The next call continues a step that takes longer, with the same
-    /// bits. Returns whether the step is done.
-    pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Early> {
+    /// bits. Returns whether the step is done; the error is the outcome of a value that ends early.
+    pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
         self.prepare()?;
-        match self.advance(slice).map_err(Early::Run)? {
-            RunEnd::Time => {
+        let ended = self.advance(slice);
+        let time = self.run.time();
+        match ended {
+            Ok(RunEnd::Time) => {
                 self.work.steps += 1;
                 self.work.is_prepared = false;
                 Ok(true)
             }
-            RunEnd::WallClock => Ok(false),
-            RunEnd::Collisions => {
+            Ok(RunEnd::WallClock) => Ok(false),
+            Ok(RunEnd::Collisions) => {
                 let most = self.value.plan.protocol().most_collisions().unwrap_or(u64::MAX);
-                Err(Early::Limited(format!("it has reached the limit of {most} collisions")))
+                Err(self.limited(format!("it has reached the limit of {most} collisions")))
             }
-            _ => Err(Early::Stopped),
+            Ok(_) => Err(Outcome::Stopped { time }),
+            Err(error @ RunError::Stalled { .. }) => Err(Outcome::Stalled { time, reason: chain(&error) }),
+            Err(error) => Err(Outcome::Failed { time, reason: chain(&error) }),
         }
     }
 
+    /// Returns the outcome of a value that has reached a limit now.
+    pub(super) fn limited(&self, reason: String) -> Outcome {
+        Outcome::Limited { time: self.run.time(), reason }
+    }
+
     /// Calls the experiment's `prepare` for the next step, unless it was called already.
-    fn prepare(&mut self) -> Result<(), Early> {
+    fn prepare(&mut self) -> Result<(), Outcome> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
         }
         let interval: Interval = self.value.plan.protocol().interval(self.work.steps);
         let observer = &mut self.work.measured.observer;
-        self.value.experiment.prepare(&interval, &mut self.run, observer).map_err(Early::Prepare)
+        let prepared = self.value.experiment.prepare(&interval, &mut self.run, observer);
+        prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
     }
 
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
@@ -310,38 +312,20 @@ impl<E: Experiment> Active<'_, E> {
     #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
     pub(super) fn partial(
         &self,
-    ) -> Result<(&Origin, &Work<E::Sample, E::Observer>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
+    ) -> Result<(&Origin, &WorkOf<E>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
         Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
-    /// Returns the record of a finished value.
-    pub(super) fn record(self) -> Result<Record<E>, StudyError> {
-        let mut end = self.work.start;
-        end.count += self.value.plan.protocol().cycles();
-        let state = self.run.checkpoint();
-        self.into_record(Outcome::Completed, end, state)
-    }
-
-    /// Returns the record of a value that ended early. Unless the observer stopped the value, the next value
-    /// starts from the state in which this value started.
-    pub(super) fn ended(self, early: Early) -> Result<Record<E>, StudyError> {
-        let time = self.run.time();
-        let outcome = match early {
-            Early::Stopped => {
-                let (state, end) = (self.run.checkpoint(), Cycles { since: time, count: 0 });
-                return self.into_record(Outcome::Stopped { time }, end, state);
-            }
-            Early::Limited(reason) => Outcome::Limited { time, reason },
-            Early::Run(error @ RunError::Stalled { .. }) => Outcome::Stalled { time, reason: chain(&error) },
-            Early::Run(error) => Outcome::Failed { time, reason: chain(&error) },
-            Early::Prepare(error) => Outcome::Failed { time, reason: chain(&error) },
-        };
-        let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
-        self.into_record(outcome, start, state)
-    }
-
-    fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Result<Record<E>, StudyError> {
+    /// Returns the record of the value after its last step. A value that stalled, failed or reached a limit
+    /// leaves the next value the state in which it started.
+    pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
         let Self { value, work, run, riders } = self;
+        let (start, cycles) = (work.start, value.plan.protocol().cycles());
+        let (end, state) = match outcome {
+            Outcome::Completed => (Cycles { count: start.count + cycles, ..start }, run.checkpoint()),
+            Outcome::Stopped { time } => (Cycles { since: time, count: 0 }, run.checkpoint()),
+            _ => (start, value.first_state()?.checkpoint()),
+        };
         let driving = riders.saved().map_err(|source| value.cannot_start(source))?;
         let parts = [state.rule(), state.boundary()];
         let state = value.plan.keeps_state(value.origin.value).then_some(state);

@@ -17,10 +17,7 @@ impl<E: Experiment> Earlier<E> {
     pub(super) fn open(folders: &[PathBuf], plan: &Plan<E>) -> Result<Self, StudyError> {
         let open = |folder: &PathBuf| {
             let study = Study::open(folder)?;
-            let differences = differences(&study.plan, plan)?;
-            if !differences.is_empty() {
-                return Err(StudyError::Different { path: folder.clone(), differences });
-            }
+            StudyError::if_different(folder, differences(&study.plan, plan)?)?;
             study.store.refreshed()?;
             let ramps = (0..study.plan.ramp_count()).map(|ramp| (study.plan.ramp_seed(ramp), ramp)).collect();
             Ok((study, ramps))

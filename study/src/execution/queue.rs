@@ -37,18 +37,12 @@ impl Queue {
         blocks.waiting = begun_anywhere(std::mem::take(&mut blocks.waiting));
     }
 
-    /// Removes the finished blocks, and returns the number of their ramps.
-    pub(super) fn strike(&self, is_done: impl Fn(&Range<usize>) -> bool) -> usize {
+    /// Removes the finished blocks.
+    pub(super) fn strike(&self, is_done: impl Fn(&Range<usize>) -> bool) {
         let Blocks { waiting, elsewhere } = &mut *self.blocks();
-        let mut count = 0;
         for blocks in [waiting, elsewhere] {
-            blocks.retain(|ramps| {
-                let is_done = is_done(ramps);
-                count += if is_done { ramps.len() } else { 0 };
-                !is_done
-            });
+            blocks.retain(|ramps| !is_done(ramps));
         }
-        count
     }
 
     /// Returns the ramps of other processes.

@@ -5,10 +5,10 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use super::active::{Active, Early, Partial, Value};
+use super::active::{Active, Partial, Value};
 use super::earlier::SameRamps;
 use super::session::{LOOK, Session};
-use crate::experiment::record::{Contents, Record};
+use crate::experiment::record::{Contents, Outcome, Record};
 use crate::plan::refinement::{Seen, Step};
 use crate::store::{Claimed, Entries, Head, Marks};
 use crate::whole::{self, damaged};
@@ -17,18 +17,11 @@ use crate::{Experiment, StudyError};
 /// Shortest part of a run between two saves, so that a run advances even if it is saved all the time.
 const SHORTEST: Duration = Duration::from_millis(20);
 
-/// The reason why a value does not continue.
-enum Pause {
-    Done,
-    Interrupted,
-    Early(Early),
-}
-
 /// A new value in the store.
 struct Made<E: Experiment> {
     record: Record<E>,
-    /// True if the value comes from an earlier study.
-    is_taken: bool,
+    /// The time that the value took; `None` if it comes from an earlier study.
+    time: Option<Duration>,
     /// Warnings of the value's simulation.
     warnings: Vec<String>,
 }
@@ -56,7 +49,8 @@ pub(super) fn attempt<E: Experiment>(
     let study = session.study;
     let _claim = match study.claims.claim(ramps)? {
         Claimed::Ours(claim) => Some(claim),
-        Claimed::Collision if session.is_of_one_ramp() => None,
+        // The caller of a run of one ramp makes sure that no other process runs it.
+        Claimed::Collision if session.ramps.len() == 1 => None,
         Claimed::Theirs | Claimed::Collision => return Ok(false),
     };
     // Other processes may have finished some ramps before this process had the claim.
@@ -106,10 +100,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
             Some(before) if before + 1 < value => study.record(self.ramp, before)?,
             _ => self.last.take(),
         };
-        let started = Instant::now();
         let Some(made) = self.new_value(step, before.as_ref())? else { return Ok(false) };
         self.seen.push(study.plan().seen(&made.record));
-        self.keep(&made, (!made.is_taken).then(|| started.elapsed()))?;
+        self.keep(&made)?;
         self.last = Some(made.record);
         Ok(true)
     }
@@ -138,7 +131,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Runs the next value from a record, or takes the value over from an earlier study. Returns `None` if
     /// the value was interrupted.
     fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<Option<Made<E>>, StudyError> {
-        let (study, value) = (self.session.study, self.seen.len());
+        let (study, value, started) = (self.session.study, self.seen.len(), Instant::now());
         // A plan with many values was checked at only some of them.
         let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
         let origin = study.origin(self.ramp, value);
@@ -148,21 +141,17 @@ impl<E: Experiment> Walk<'_, '_, E> {
             self.advance(study.plan.protocol().steps());
             let record = work.taken_over(record);
             let warnings = record.counters().warnings().iter().map(ToString::to_string).collect();
-            return Ok(Some(Made { record, is_taken: true, warnings }));
+            return Ok(Some(Made { record, time: None, warnings }));
         }
         let mut active = match self.saved(&work)? {
             Some(active) => active,
             None => work.begin(earlier)?,
         };
         self.advance(active.steps());
-        let pause = self.steps(&mut active)?;
+        let Some(outcome) = self.steps(&mut active)? else { return Ok(None) };
         let warnings = active.warnings();
-        let record = match pause {
-            Pause::Done => active.record()?,
-            Pause::Interrupted => return Ok(None),
-            Pause::Early(early) => active.ended(early)?,
-        };
-        Ok(Some(Made { record, is_taken: false, warnings }))
+        let record = active.record(outcome)?;
+        Ok(Some(Made { record, time: Some(started.elapsed()), warnings }))
     }
 
     /// Returns the saved data of an unfinished value, or `None` if there are none.
@@ -180,14 +169,15 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.session.if_sound(read)
     }
 
-    /// Runs the steps of a value until it is finished, and saves it at intervals.
-    fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Pause, StudyError> {
+    /// Runs the steps of a value until it is finished, and saves it at intervals. Returns `None` if it was
+    /// interrupted.
+    fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Option<Outcome>, StudyError> {
         let control = self.session.control;
         let (began, mut saved) = (Instant::now(), Instant::now());
         while !active.is_done() {
             if self.session.must_stop() {
                 self.save(active)?;
-                return Ok(Pause::Interrupted);
+                return Ok(None);
             }
             if saved.elapsed() > control.save_interval {
                 self.save(active)?;
@@ -196,19 +186,19 @@ impl<E: Experiment> Walk<'_, '_, E> {
             let rest = self.session.study.plan.protocol().steps() - active.steps();
             let until_save = control.save_interval.saturating_sub(saved.elapsed());
             let ended = match control.most_seconds.filter(|most| began.elapsed().as_secs_f64() > *most) {
-                Some(most) => Err(Early::Limited(format!("it has taken more than {most} s"))),
+                Some(most) => Err(active.limited(format!("it has taken more than {most} s"))),
                 None => active.step(until_save.clamp(SHORTEST, LOOK)),
             };
             match ended {
                 Ok(true) => self.advance(1),
                 Ok(false) => {}
-                Err(early) => {
+                Err(outcome) => {
                     self.advance(rest);
-                    return Ok(Pause::Early(early));
+                    return Ok(Some(outcome));
                 }
             }
         }
-        Ok(Pause::Done)
+        Ok(Some(Outcome::Completed))
     }
 
     fn save(&mut self, active: &Active<'_, E>) -> Result<(), StudyError> {
@@ -218,21 +208,21 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let partial = active
             .partial()
             .map_err(|source| StudyError::Encode { path: path.clone(), source: source.into() })?;
-        folder.make_room_for_unfinished()?;
+        path.parent().map_or(Ok(()), whole::create)?;
         whole::write_sealed::<Partial<E>>(&path, &partial)
     }
 
     /// Stores the record of a value as the last record.
-    fn keep(&self, made: &Made<E>, time: Option<Duration>) -> Result<(), StudyError> {
+    fn keep(&self, made: &Made<E>) -> Result<(), StudyError> {
         let (study, record) = (self.session.study, &made.record);
         self.session.open_study()?;
         let is_last = study.plan.next(&self.seen).is_none();
         let marks = Marks::default().with(Marks::LAST, is_last);
         let marks = marks.with(Marks::FAILED, record.outcome().reason().is_some());
         let marks = marks.with(Marks::WARNED, !made.warnings.is_empty());
-        let seconds = time.map_or(f32::NAN, |time| time.as_secs_f32());
+        let seconds = made.time.map_or(f32::NAN, |time| time.as_secs_f32());
         let head = Head { ramp: self.ramp, value: record.value_index(), edition: 0, marks, seconds };
-        let line = line(made, time);
+        let line = line(made);
         study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents, &line)?;
         self.forget_partial(record.value_index())
     }
@@ -269,7 +259,7 @@ struct Line<'a> {
     unix_time: u64,
 }
 
-fn line<E: Experiment>(Made { record, warnings, is_taken }: &Made<E>, time: Option<Duration>) -> String {
+fn line<E: Experiment>(Made { record, warnings, time }: &Made<E>) -> String {
     let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
     let line = Line {
         ramp: record.ramp_index(),
@@ -278,7 +268,7 @@ fn line<E: Experiment>(Made { record, warnings, is_taken }: &Made<E>, time: Opti
         reason: record.outcome().reason(),
         warnings: &warnings.join("; "),
         collisions: record.counters().disk_collisions,
-        taken_over: *is_taken,
+        taken_over: time.is_none(),
         seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),
         unix_time,
     };

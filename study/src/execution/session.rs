@@ -22,7 +22,7 @@ pub(super) struct Session<'a, E: Experiment> {
     pub(super) control: &'a Control<'a>,
     pub(super) earlier: Earlier<E>,
     /// The ramps to be run.
-    ramps: Range<usize>,
+    pub(super) ramps: Range<usize>,
     /// Number of finished steps, and number of steps in all values.
     steps: [AtomicU64; 2],
     /// Files that were damaged and have been replaced.
@@ -30,7 +30,7 @@ pub(super) struct Session<'a, E: Experiment> {
     /// True once a thread has met an error.
     ///
     /// The others then stop as if interrupted.
-    broken: AtomicBool,
+    pub(super) broken: AtomicBool,
     /// True once this run has removed the mark that the study is complete.
     is_opened: AtomicBool,
 }
@@ -54,20 +54,17 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Returns whether this run is for one ramp alone. The caller then makes sure that no other process runs
-    /// this ramp.
-    pub(super) fn is_of_one_ramp(&self) -> bool {
-        self.ramps.len() == 1
-    }
-
     /// Marks the finished blocks of a queue as taken. A verification keeps all blocks.
     pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
         }
         let entries = self.study.store.refreshed()?;
-        let ramps = queue.strike(|ramps| ramps.clone().all(|ramp| entries.is_done(ramp)));
-        self.skip(ramps);
+        queue.strike(|ramps| {
+            let is_done = ramps.clone().all(|ramp| entries.is_done(ramp));
+            self.skip(if is_done { ramps.len() } else { 0 });
+            is_done
+        });
         Ok(())
     }
 
@@ -111,11 +108,6 @@ impl<'a, E: Experiment> Session<'a, E> {
             return Ok(());
         }
         self.study.folder.mark_incomplete()
-    }
-
-    /// Makes all threads stop, since one has met an error.
-    pub(super) fn break_off(&self) {
-        self.broken.store(true, Ordering::Relaxed);
     }
 
     pub(super) fn must_stop(&self) -> bool {

@@ -35,19 +35,19 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     observer: &mut O,
     is_under_way: &mut bool,
 ) -> Result<RunEnd, RunError> {
-    let mut sliced = Sliced { observer, is_under_way: *is_under_way };
+    let mut sliced = Sliced { observer, is_under_way };
     let driving = riders.driving.as_deref_mut();
     let ended = match &mut riders.companion {
         None => run_to(simulation, limits, driving, &mut sliced),
         Some(companion) => {
-            let mut other = Sliced { observer: companion, is_under_way: riders.is_under_way };
+            let mut other = Sliced { observer: companion, is_under_way: &mut riders.is_under_way };
             // A single additional event loop serves all companions.
             let both: &mut dyn Observer = &mut (&mut sliced, &mut other);
             let ended = run_to(simulation, limits, driving, both);
-            other.end(ended, &mut riders.is_under_way, &simulation.snapshot())
+            other.end(ended, &simulation.snapshot())
         }
     };
-    sliced.end(ended, is_under_way, &simulation.snapshot())
+    sliced.end(ended, &simulation.snapshot())
 }
 
 fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
@@ -65,19 +65,14 @@ fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
 /// A wrapper that shows its observer the start of the first slice only, and no end.
 struct Sliced<'a, O> {
     observer: &'a mut O,
-    is_under_way: bool,
+    is_under_way: &'a mut bool,
 }
 
 impl<O: Observer> Sliced<'_, O> {
     /// Reports the end of an uncut run to the observer.
-    fn end(
-        self,
-        ended: Result<RunEnd, RunError>,
-        is_under_way: &mut bool,
-        moment: &Snapshot<'_>,
-    ) -> Result<RunEnd, RunError> {
-        *is_under_way = matches!(ended, Ok(RunEnd::WallClock));
-        if *is_under_way {
+    fn end(self, ended: Result<RunEnd, RunError>, moment: &Snapshot<'_>) -> Result<RunEnd, RunError> {
+        *self.is_under_way = matches!(ended, Ok(RunEnd::WallClock));
+        if *self.is_under_way {
             return ended;
         }
         self.observer.on_end(moment);
@@ -92,7 +87,7 @@ impl<O: Observer> Sliced<'_, O> {
 impl<O: Observer> Observer for Sliced<'_, O> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
         // A driven run starts anew after each kick.
-        if !std::mem::replace(&mut self.is_under_way, true) {
+        if !std::mem::replace(self.is_under_way, true) {
             self.observer.on_start(start);
         }
     }

@@ -1,6 +1,7 @@
 //! Columns of tables, each defined once by its name, unit and value.
 
 use std::fmt;
+use std::sync::LazyLock;
 
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
@@ -33,13 +34,6 @@ pub(crate) enum Kind<E: Experiment> {
     Sample(OfSample<E>),
     Record(OfRecord<E, Scalar>),
     Estimate(OfRecord<E, Estimate>),
-}
-
-/// Returns the column of this name that has an error. If the tables of samples and of values have a column of
-/// this name each, it is the column of the table of values.
-pub(crate) fn with_error<'a, E: Experiment>(columns: &'a [Column<E>], name: &str) -> Option<&'a Column<E>> {
-    let named = columns.iter().filter(|column| column.name() == name && column.has_error());
-    named.max_by_key(|column| column.in_values)
 }
 
 impl<E: Experiment> Column<E> {
@@ -102,6 +96,17 @@ impl<E: Experiment> Column<E> {
     /// Returns the unit of the column.
     pub fn unit(&self) -> &str {
         self.heading.unit()
+    }
+
+    /// Returns the headings in the table of values: the mean is followed by its error, and its number of
+    /// independent samples.
+    pub(crate) fn headings(&self) -> Vec<Heading> {
+        let mut all = vec![self.heading.clone()];
+        if self.has_error() {
+            let [error, independent] = error_names(self.name());
+            all.extend([Heading::new(error, self.unit()), Heading::new(independent, "")]);
+        }
+        all
     }
 
     /// Returns whether the values of the column have an error.
@@ -178,22 +183,22 @@ impl<E: Experiment> fmt::Debug for Table<E> {
     }
 }
 
-/// Reserved names: the tables of every study (`TABLES`) and the columns of every table (`PLACE`).
+/// The columns that the tables of every study have.
+pub(crate) static OF_TABLES: Meanings = LazyLock::new(|| meanings(include_str!("columns.txt")));
+
+/// Names with their meanings.
+pub(crate) type Meanings = LazyLock<Vec<(&'static str, &'static str)>>;
+
+/// Reads a text that has a name and its meaning on each line.
+pub(crate) fn meanings(text: &'static str) -> Vec<(&'static str, &'static str)> {
+    text.lines().filter_map(|line| line.split_once(": ")).collect()
+}
+
+/// The names of the tables of every study.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-const PLACE: [&str; 12] = [
-    "ramp",
-    "point",
-    "value",
-    "leg",
-    "repeat",
-    "repeats",
-    "failed",
-    "seed",
-    "made_by",
-    "outcome",
-    "samples",
-    "not_converged",
-];
+
+/// The columns of [`OF_TABLES`] that some tables alone have, so that others may have columns of these names.
+const OF_SOME: [&str; 3] = ["time", "from_state", "to_state"];
 
 /// Returns the names of the two columns that follow a column of means: the error, and the number of
 /// independent samples.
@@ -205,7 +210,9 @@ pub(crate) fn error_names(name: &str) -> [String; 2] {
 /// parameters and the built-in columns.
 pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
-    let taken = [PLACE.as_slice(), varied].concat();
+    let names = OF_TABLES.iter().map(|(name, _)| *name);
+    let of_all: Vec<&str> = names.filter(|name| !OF_SOME.contains(name)).collect();
+    let taken = [of_all.as_slice(), varied].concat();
     let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
         columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
     };
@@ -214,7 +221,7 @@ pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
     let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
     let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
     check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
-    let all = [PLACE.as_slice(), &["time"], &errors].concat();
+    let all = [of_all.as_slice(), &["time"], &errors].concat();
     if let Some(name) = varied.iter().find(|name| all.contains(name)) {
         return Err(refused("varied parameter", name, "a column of the tables has it"));
     }
@@ -224,7 +231,7 @@ pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
     check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
 }
 
-fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
+fn check(what: &str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
     for (index, name) in names.iter().enumerate() {
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if name.is_empty() || !name.chars().all(is_plain) {
@@ -237,6 +244,6 @@ fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanE
     Ok(())
 }
 
-fn refused(what: &'static str, name: &str, reason: &str) -> PlanError {
-    PlanError::Name { name: name.to_owned(), what, reason: reason.to_owned() }
+fn refused(what: &str, name: &str, reason: &str) -> PlanError {
+    PlanError::Refused(format!("{name:?} cannot be the name of a {what}: {reason}"))
 }

@@ -8,10 +8,10 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
-use super::columns::with_error;
-use crate::maker::Maker;
+use super::origin::{Leg, Origin};
+use super::with_error;
 use crate::parameters;
-use crate::{Experiment, ExperimentError, Interval, Leg, Scalar};
+use crate::{Experiment, ExperimentError, Interval, Scalar};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -124,18 +124,6 @@ pub(crate) struct Measured<S, O> {
     pub(crate) observer: O,
 }
 
-/// The study, ramp and value to which a file belongs.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Origin {
-    /// Hash of the plan.
-    pub(crate) study: [u8; 32],
-    pub(crate) maker: Maker,
-    pub(crate) ramp: usize,
-    pub(crate) value: usize,
-    pub(crate) seed: u64,
-}
-
 /// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
 /// does not drift as a sum of cycles does.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -168,11 +156,6 @@ impl<E: Experiment> Record<E> {
     /// Returns the seed of the ramp.
     pub const fn seed(&self) -> u64 {
         self.contents.origin.seed
-    }
-
-    /// Returns the version of this crate that made the record.
-    pub fn version(&self) -> &str {
-        &self.contents.origin.maker.version
     }
 
     /// Returns the direction from which the ramp came to the value; `None` without a ramp.

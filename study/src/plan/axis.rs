@@ -1,7 +1,7 @@
 //! Axes: the values of a parameter in independent ramps.
 
 use super::values::Values;
-use crate::{PlanError, Scalar, Steps};
+use crate::{PlanError, Scalar};
 
 /// A parameter that differs between ramps, so that each of its values starts afresh, independent of all
 /// others.
@@ -35,11 +35,6 @@ impl Axis {
     ) -> Result<Self, PlanError> {
         let values = Values::List(values.into_iter().map(Into::into).collect());
         Self { parameter: parameter.into(), values }.checked()
-    }
-
-    /// Creates an axis of the parameter of this name with values that follow from a rule.
-    pub fn by_rule(parameter: impl Into<String>, steps: Steps) -> Self {
-        Self { parameter: parameter.into(), values: Values::Rule(steps) }
     }
 
     fn checked(self) -> Result<Self, PlanError> {

@@ -91,23 +91,13 @@ impl Protocol {
     }
 
     /// Returns the largest number of collisions in a value, or `None` if there is no limit.
-    pub const fn most_collisions(&self) -> Option<u64> {
+    pub(crate) const fn most_collisions(&self) -> Option<u64> {
         self.most_collisions
-    }
-
-    /// Returns the number of cycles that a value settles before its samples.
-    pub const fn settle(&self) -> u64 {
-        self.settle
     }
 
     /// Returns the number of cycles from a sample to the next.
     pub const fn every(&self) -> u64 {
         self.every
-    }
-
-    /// Returns the phase of the samples in their cycle.
-    pub const fn phase(&self) -> f64 {
-        self.phase
     }
 
     /// Returns the number of samples of a value.

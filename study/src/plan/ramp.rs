@@ -4,7 +4,7 @@ use granular_edmd::quantity::positive;
 use serde::{Deserialize, Serialize};
 
 use super::values::Values;
-use crate::{Leg, PlanError, Scalar, Steps};
+use crate::{Leg, PlanError, Scalar};
 
 /// The order in which a [`Ramp`] goes through its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -84,11 +84,6 @@ impl Ramp {
         Self { parameter: parameter.into(), values, course, refine: None }.checked()
     }
 
-    /// Creates a ramp of the parameter of this name through values that follow from a rule.
-    pub fn by_rule(parameter: impl Into<String>, steps: Steps, course: Course) -> Self {
-        Self { parameter: parameter.into(), values: Values::Rule(steps), course, refine: None }
-    }
-
     fn checked(self) -> Result<Self, PlanError> {
         self.values.check(&self.parameter)?;
         let Values::List(values) = &self.values else { return Ok(self) };
@@ -119,7 +114,7 @@ impl Ramp {
     }
 
     /// Returns the width to which transitions are bisected, or `None` without bisection.
-    pub const fn refinement(&self) -> Option<Width> {
+    pub(crate) const fn refinement(&self) -> Option<Width> {
         self.refine
     }
 
@@ -140,27 +135,18 @@ impl Ramp {
 
     /// Returns the number of values that the ramp comes to.
     pub(super) fn len(&self) -> usize {
-        self.ups() + self.downs()
+        match self.course {
+            Course::Up | Course::Down => self.values.len(),
+            Course::UpAndDown => (2 * self.values.len()).saturating_sub(1),
+        }
     }
 
     /// Returns the value of this index, and the direction from which the ramp comes to it.
     pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
-        if index < self.ups() {
+        if self.course != Course::Down && index < self.values.len() {
             return Some((Leg::Up, self.values.at(index)));
         }
         let from_below = self.len().checked_sub(index + 1)?;
         Some((Leg::Down, self.values.at(from_below)))
-    }
-
-    fn ups(&self) -> usize {
-        if matches!(self.course, Course::Down) { 0 } else { self.values.len() }
-    }
-
-    fn downs(&self) -> usize {
-        match self.course {
-            Course::Up => 0,
-            Course::Down => self.values.len(),
-            Course::UpAndDown => self.values.len().saturating_sub(1),
-        }
     }
 }

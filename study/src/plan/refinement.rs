@@ -19,6 +19,19 @@ impl<E: Experiment> Plan<E> {
         let state = if self.is_refined() { E::state(record) } else { None };
         Seen { leg: record.leg(), at: record.ramped_value(), state }
     }
+
+    /// Returns the next value of a ramp after the finished values, or `None` if the ramp is complete.
+    pub(crate) fn next(&self, seen: &[Seen]) -> Option<Step> {
+        match self.ramp() {
+            Some(ramp) => ramp.search(seen).err(),
+            None => seen.is_empty().then_some(Step { leg: None, at: None, before: None }),
+        }
+    }
+
+    /// Returns the brackets of all transitions; empty until all of them have the requested width.
+    pub(crate) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
+        self.ramp().and_then(|ramp| ramp.search(seen).ok()).unwrap_or_default()
+    }
 }
 
 /// The next value on a path, and the index of the value from which it starts.
@@ -46,17 +59,8 @@ pub struct Bracket {
 }
 
 impl Ramp {
-    /// Returns the next value after the finished values, or `None` if the path is complete.
-    pub(crate) fn next(&self, seen: &[Seen]) -> Option<Step> {
-        self.search(seen).err()
-    }
-
-    /// Returns the brackets of all transitions; empty until all of them have the requested width.
-    pub(crate) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
-        self.search(seen).unwrap_or_default()
-    }
-
-    /// Returns all brackets. The error is the next value that they need.
+    /// Returns the brackets of all transitions among the finished values. The error is the next value that
+    /// the ramp or a bracket needs.
     fn search(&self, seen: &[Seen]) -> Result<Vec<Bracket>, Step> {
         let own = self.len();
         if let Some((leg, at)) = self.at(seen.len()) {
@@ -97,7 +101,8 @@ impl Search<'_> {
             let [from, to] = [near, far].map(|index| &self.seen[index].state);
             let is_transition = from.is_some() && from != to;
             if let Some(at) = self.middle(near, far).filter(|_| is_transition) {
-                let index = self.half(Step { leg: self.seen[far].leg, at: Some(at), before: Some(near) })?;
+                let half = Step { leg: self.seen[far].leg, at: Some(at), before: Some(near) };
+                let index = self.halves.next().ok_or(half)?;
                 if self.seen[index].state == *from {
                     near = index;
                 } else {
@@ -124,12 +129,6 @@ impl Search<'_> {
         // There is no number between two neighboring doubles.
         let is_between = (near < at && at < far) || (far < at && at < near);
         (is_between && !self.width.holds(near, far)).then_some(at)
-    }
-
-    /// Returns the index of the next value of a bisection. The error is the step to it, if it is not
-    /// finished.
-    fn half(&mut self, step: Step) -> Result<usize, Step> {
-        self.halves.next().ok_or(step)
     }
 }
 

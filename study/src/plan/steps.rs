@@ -13,16 +13,8 @@ const ROUNDING: f64 = 1e-9;
 /// Increasing values that follow from a rule, in place of a list in a plan:
 /// `{ from = 0.0, to = 1.0, step = 0.1 }` for equal steps, `{ from = 1e-3, to = 1.0, log = 31 }` for 31
 /// values in equal ratios.
-///
-/// ```
-/// use granular_edmd_study::{Axis, Steps};
-/// let axis = Axis::by_rule("friction", Steps::linear(0.0, 0.5, 0.1)?);
-/// assert_eq!((axis.len(), axis.value(2)), (6, Some(0.2.into())));
-/// assert_eq!(Steps::logarithmic(0.1, 10.0, 3)?.values().nth(1), Some(1.0));
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Steps {
+pub(crate) struct Steps {
     from: f64,
     to: f64,
     /// The difference of neighbors, or `None` for equal ratios.
@@ -53,7 +45,7 @@ impl Steps {
     /// # Errors
     /// If a number is not finite, the step is not positive or below the rounding of the values, or `to` is
     /// below `from`.
-    pub fn linear(from: f64, to: f64, step: f64) -> Result<Self, ParameterError> {
+    fn linear(from: f64, to: f64, step: f64) -> Result<Self, ParameterError> {
         finite("first value", from)?;
         finite("last value", to)?;
         positive("step", step)?;
@@ -70,7 +62,7 @@ impl Steps {
     /// # Errors
     /// If the first value is not positive, the last one is not finite or not above the first, their ratio is
     /// not finite, or there are fewer than two, or too many, so that neighbors would be equal.
-    pub fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
+    fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
         positive("first value", from)?;
         positive("last value", to)?;
         accept(to > from, "last value", "above the first one", to)?;
@@ -99,11 +91,5 @@ impl Steps {
                 self.from * libm::pow(self.to / self.from, share)
             }
         }
-    }
-
-    /// Iterates over the values.
-    pub fn values(&self) -> impl Iterator<Item = f64> {
-        let steps = *self;
-        (0..self.count).map(move |index| steps.value(index))
     }
 }

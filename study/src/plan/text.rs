@@ -13,7 +13,9 @@ impl<E: Experiment> Plan<E> {
     /// # Errors
     /// If the text is not TOML, a field is unknown or missing, or a value is refused. The error names it.
     pub fn from_toml(text: &str) -> Result<Self, PlanError> {
-        Self::from_toml_unproven(text)?.proven()
+        let plan = Self::from_toml_unproven(text)?;
+        plan.check_experiments()?;
+        Ok(plan)
     }
 
     /// Reads a plan without a check of its experiments, which is needed only once.

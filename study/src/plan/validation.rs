@@ -18,13 +18,9 @@ const LARGEST_SEED: u64 = i64::MAX as u64;
 impl<E: Experiment> Plan<E> {
     /// Returns the plan, or an error if it cannot be run.
     pub(super) fn checked(self) -> Result<Self, PlanError> {
-        self.consistent()?.proven()
-    }
-
-    /// Returns the plan, or an error if the experiment rejects the parameters of a tried value.
-    pub(super) fn proven(self) -> Result<Self, PlanError> {
-        self.check_experiments()?;
-        Ok(self)
+        let plan = self.consistent()?;
+        plan.check_experiments()?;
+        Ok(plan)
     }
 
     /// Returns the plan, or an error if one of its parts is not valid.
@@ -75,7 +71,8 @@ impl<E: Experiment> Plan<E> {
         let lengths = self.sweep.iter().map(super::axis::Axis::len).chain([self.value_count(), self.repeats]);
         let count = lengths.map(|length| length as u128).fold(1_u128, u128::saturating_mul);
         if count > MOST_VALUES as u128 {
-            return Err(PlanError::TooMany { count, most: MOST_VALUES });
+            let reason = format!("ramps and values are too many: at most {MOST_VALUES} are possible");
+            return Err(PlanError::Refused(format!("{count} {reason}")));
         }
         Ok(())
     }

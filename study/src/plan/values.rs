@@ -8,7 +8,8 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::{PlanError, Scalar, Steps};
+use super::steps::Steps;
+use crate::{PlanError, Scalar};
 
 /// Largest number of values that are tried when a plan is made.
 pub(crate) const MOST_TRIED: usize = 1024;

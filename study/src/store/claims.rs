@@ -9,7 +9,7 @@ use std::time::Duration;
 use granular_edmd::file::Locked;
 
 use crate::StudyError;
-use crate::whole::if_there;
+use crate::whole::{files_in, open_lock};
 
 /// Number of lock files.
 const LOCKS: usize = 256;
@@ -62,7 +62,7 @@ impl Claims {
     /// Claims ramps of one block.
     pub(crate) fn claim(&self, ramps: &Range<usize>) -> Result<Claimed, StudyError> {
         let path = self.file(ramps.start);
-        let file = open(&path)?;
+        let file = open_lock(&path)?;
         match Locked::take(file) {
             Ok(locked) => {
                 let told = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
@@ -80,8 +80,7 @@ impl Claims {
 
     /// Returns the ramps that processes are running, as far as the locks show.
     pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
-        let files = if_there("read", &self.folder, std::fs::read_dir(&self.folder))?;
-        let paths = files.into_iter().flatten().flatten().map(|file| file.path());
+        let paths = files_in(&self.folder)?.into_iter().map(|file| file.path());
         Ok(paths.filter(|path| is_taken(path)).filter_map(|path| held(&path)).collect())
     }
 }
@@ -120,21 +119,6 @@ fn held(path: &Path) -> Option<Range<usize>> {
         })?;
         Some(first.parse().ok()?..end.parse().ok()?)
     })
-}
-
-/// Opens the file of a lock, and creates its folder if necessary.
-pub(crate) fn open(path: &Path) -> Result<File, StudyError> {
-    let mut options = File::options();
-    options.read(true).write(true).create(true).truncate(false);
-    let opened = options.open(path);
-    let opened = match (&opened, path.parent()) {
-        (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
-            std::fs::create_dir_all(folder).map_err(StudyError::io("create", folder))?;
-            options.open(path)
-        }
-        _ => opened,
-    };
-    opened.map_err(StudyError::io("write", path))
 }
 
 #[cfg(test)]

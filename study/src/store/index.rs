@@ -63,27 +63,10 @@ impl Head {
     }
 }
 
-/// The entry of a record, or of a value that counts as unfinished: its header, and the position of its
-/// contents in a log.
-///
-/// A million entries may be in memory, so an entry is as small as possible.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Entry {
-    head: [u8; HEAD],
-    start: u64,
-    length: u32,
-    pub(super) log: u32,
-}
+/// The entry of a record, or of a value that counts as unfinished.
+pub(crate) type Entry = Piece;
 
 impl Entry {
-    pub(super) const fn new(Piece { head, start, length }: Piece, log: u32) -> Self {
-        Self { head, start, length, log }
-    }
-
-    pub(super) const fn piece(&self) -> Piece {
-        Piece { head: self.head, start: self.start, length: self.length }
-    }
-
     pub(crate) fn head(&self) -> Head {
         Head::of(&self.head)
     }

@@ -17,7 +17,7 @@ pub(crate) const HEAD: usize = 16;
 const BEFORE: usize = 4 + HEAD + 4 + 8 + 16;
 
 /// Bytes before the first piece: first bytes and version of the format.
-const START: u64 = 12;
+pub(crate) const START: u64 = 12;
 
 /// A log: a file to which one process appends, while any number of others may read.
 ///
@@ -34,6 +34,8 @@ pub(crate) struct Log {
 }
 
 /// The header of a piece, and the position of its contents.
+///
+/// A million of these may be in memory, so it is as small as possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Piece {
     /// The header, for an index.
@@ -42,6 +44,8 @@ pub(crate) struct Piece {
     pub(crate) start: u64,
     /// Number of bytes of the contents.
     pub(crate) length: u32,
+    /// Number of the log, by which its reader knows it.
+    pub(crate) log: u32,
 }
 
 impl Log {
@@ -184,7 +188,7 @@ fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
     let size = u32::from_le_bytes(*checked.last_chunk()?);
     let start = place + BEFORE as u64;
     let is_whole = before.starts_with(&MARK) && check(checked) == rest[..8];
-    (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size })
+    (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size, log: 0 })
 }
 
 /// Returns the bytes before the first piece.
@@ -194,57 +198,4 @@ fn start(seal: Seal) -> Vec<u8> {
 
 fn check(bytes: &[u8]) -> [u8; 8] {
     blake3::hash(bytes).as_bytes().as_chunks().0[0]
-}
-
-#[cfg(test)]
-mod tests {
-    use std::fs;
-
-    use super::*;
-
-    const SEAL: Seal = Seal::new(*b"TEST LOG", 1);
-
-    fn found_in(path: &Path) -> Vec<Piece> {
-        let mut found = Vec::new();
-        Log::each(path, SEAL, 0, |piece| found.push(piece)).unwrap();
-        found
-    }
-
-    fn pieces(path: &Path) -> Vec<Vec<u8>> {
-        let mut file = File::open(path).unwrap();
-        found_in(path).iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
-    }
-
-    /// However a log is cut, its complete pieces stay, and the next piece follows them. Whatever byte is
-    /// changed, no other piece is lost, and no piece is read with wrong contents.
-    #[test]
-    fn whole_pieces_survive_cuts_and_damage() {
-        let path = std::env::temp_dir().join(format!("granular-edmd-pieces-{}", std::process::id()));
-        let _ = fs::remove_file(&path);
-        let written = [vec![1; 10], Vec::new(), vec![3; 40]];
-        let mut log = Log::open(&path, SEAL).unwrap();
-        for (index, piece) in written.iter().enumerate() {
-            log.push([index as u8; HEAD], piece).unwrap();
-        }
-        let (bytes, ends) = (fs::read(&path).unwrap(), found_in(&path));
-        for length in 0..=bytes.len() {
-            fs::write(&path, &bytes[..length]).unwrap();
-            let whole = ends.iter().filter(|end| end.start + u64::from(end.length) <= length as u64).count();
-            assert_eq!(pieces(&path), written[..whole], "{length}");
-            Log::open(&path, SEAL).unwrap().push([9; HEAD], b"next").unwrap();
-            let expected = [&written[..whole], &[b"next".to_vec()]].concat();
-            assert_eq!(pieces(&path), expected, "{length}");
-        }
-        for place in START as usize..bytes.len() {
-            let mut changed = bytes.clone();
-            changed[place] ^= 4;
-            fs::write(&path, &changed).unwrap();
-            let found = pieces(&path);
-            assert_eq!(found.len(), 2, "{place}");
-            assert!(found.iter().all(|piece| written.contains(piece)), "{place}");
-        }
-        fs::write(&path, b"something else").unwrap();
-        assert_eq!(Log::open(&path, SEAL).unwrap_err().kind(), io::ErrorKind::InvalidData);
-        fs::remove_file(&path).unwrap();
-    }
 }

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use granular_edmd::file::Locked;
 
-use super::claims::open;
 use super::index::Head;
 use super::log::Log;
-use super::{SEAL, logs, unreadable};
+use super::{SEAL, failed, logs};
 use crate::StudyError;
 use crate::seed::anywhere;
+use crate::whole::open_lock;
 
 /// Seconds of work that a loss of power may cost.
 const AT_RISK: f32 = 0.1;
@@ -39,12 +39,9 @@ impl Writer {
             known.into_iter().chain((count..).map(|number| folder.join(format!("{number:04}.records"))));
         for path in names {
             let lines = path.with_extension("jsonl");
-            match Locked::take(open(&lines)?) {
+            match Locked::take(open_lock(&lines)?) {
                 Ok(lines) => {
-                    let log = Log::open(&path, SEAL).map_err(|error| match error.kind() {
-                        io::ErrorKind::InvalidData => unreadable(&path, error),
-                        _ => StudyError::io("write", &path)(error),
-                    })?;
+                    let log = Log::open(&path, SEAL).map_err(|error| failed("write", &path, error))?;
                     return Ok(Self { path, log, lines, is_whole: false, at_risk: 0.0 });
                 }
                 Err(TryLockError::WouldBlock) => {}

@@ -1,4 +1,4 @@
-//! Rows of cells, written to a file one after the other.
+//! Rows of cells, written to a file one after the other, and the leading columns of every table.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use granular_edmd::file::Draft;
 use granular_edmd::statistics::Estimate;
 
-use crate::{Scalar, StudyError};
+use crate::{Experiment, Leg, Plan, Scalar, StudyError};
 
 /// A table that is being written to its file.
 pub(super) struct Rows {
@@ -77,9 +77,31 @@ fn write_cell(row: &mut String, value: &Scalar) {
     }
 }
 
-/// Returns the names of the estimates whose error is only a lower bound, separated by spaces.
-pub(super) fn not_converged(estimates: &[(String, Estimate)]) -> String {
-    let names =
-        estimates.iter().filter(|(_, estimate)| !estimate.is_converged()).map(|(name, _)| name.as_str());
-    names.collect::<Vec<_>>().join(" ")
+/// The subject of a row: one value, all repeats of a value, or, without a value, a transition.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) ramp: usize,
+    pub(super) value: Option<usize>,
+    pub(super) leg: Option<Leg>,
+    /// Value of the ramped parameter.
+    pub(super) at: Option<f64>,
+    /// True for all repeats together.
+    pub(super) is_point: bool,
+}
+
+/// Returns the names and cells of the leading columns.
+pub(super) fn leading<E: Experiment>(plan: &Plan<E>, place: Place) -> Vec<(&str, Scalar)> {
+    let repeats = plan.repeats();
+    let (name, index) = if place.is_point { ("point", place.ramp / repeats) } else { ("ramp", place.ramp) };
+    let mut cells = vec![(name, index.into())];
+    cells.extend(place.value.map(|value| ("value", value.into())));
+    cells.push(("leg", place.leg.map_or_else(String::new, |leg| leg.to_string()).into()));
+    cells.extend((!place.is_point && repeats > 1).then(|| ("repeat", (place.ramp % repeats).into())));
+    cells.extend(plan.parameters_at(place.ramp, place.at));
+    cells
+}
+
+/// Begins a row with the leading columns.
+pub(super) fn row<E: Experiment>(plan: &Plan<E>, place: Place) -> Row {
+    Row::of(leading(plan, place).into_iter().map(|(_, cell)| cell))
 }

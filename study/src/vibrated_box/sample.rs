@@ -110,9 +110,7 @@ pub(super) fn check(samples: &[Sample], measurement: &Measurement) -> Result<(),
 }
 
 fn is_finite(sample: &Sample) -> bool {
-    let Sample { one_roll, two_rolls, height, translational_energy, rotational_energy, .. } = *sample;
-    let flow = [one_roll, two_rolls, height];
-    let energies =
-        [translational_energy, rotational_energy, sample.vertical_temperature, sample.energy_change];
+    let flow = [sample.one_roll, sample.two_rolls, sample.height, sample.vertical_temperature];
+    let energies = [sample.translational_energy, sample.rotational_energy, sample.energy_change];
     flow.iter().chain(&energies).all(|number| number.is_finite())
 }

@@ -2,9 +2,16 @@
 
 use granular_edmd::ParameterError;
 use granular_edmd::glam::DVec2;
-use granular_edmd_study::analysis::{Cluster, KMeans, StateCriteria, distinct_clusters};
+use granular_edmd_study::analysis::StateCriteria;
 
+use crate::parts::clusters::{Cluster, Clusters};
+use crate::parts::k_means::{distinct_clusters, k_means};
 use crate::{NOISE, Outcome, Random, figure_4};
+
+/// Returns the best of sixteen searches.
+fn fit(clusters: usize, seed: u64, points: &[DVec2]) -> Result<Clusters, ParameterError> {
+    k_means(points, clusters, 16, seed)
+}
 
 #[test]
 fn one_cloud_of_any_width_is_one_cluster() -> Outcome {
@@ -20,7 +27,7 @@ fn one_cloud_of_any_width_is_one_cluster() -> Outcome {
 #[test]
 fn uniform_density_cut_in_two_has_the_separation_of_the_proof() -> Outcome {
     let line: Vec<DVec2> = (0..2000).map(|k| DVec2::new(f64::from(k), 0.0)).collect();
-    let separation = KMeans::new(2, 1)?.fit(&line)?.separation(0.0);
+    let separation = fit(2, 1, &line)?.separation(0.0);
     assert!((separation - 2.0 * 3.0_f64.sqrt()).abs() < 1e-3, "{separation}");
     Ok(())
 }
@@ -31,7 +38,7 @@ fn clusters_know_their_places_sizes_and_spreads() -> Outcome {
     let at = |x: f64, y: f64| DVec2::new(x, y);
     let cross = [at(2.0, 0.0), at(-2.0, 0.0), at(0.0, 1.0), at(0.0, -1.0)];
     let diagonal = [at(10.0, 0.0), at(11.0, 1.0), at(9.0, -1.0), at(12.0, 2.0), at(8.0, -2.0)];
-    let found = KMeans::new(2, 1)?.fit(&[cross.as_slice(), &diagonal].concat())?;
+    let found = fit(2, 1, &[cross.as_slice(), &diagonal].concat())?;
     let [first, second] = found.iter().collect::<Vec<_>>()[..] else { panic!("{found:?}") };
     assert_eq!(
         (first.center(), first.count(), second.center(), second.count()),
@@ -45,12 +52,12 @@ fn clusters_know_their_places_sizes_and_spreads() -> Outcome {
     assert!(near(second.spread(DVec2::new(0.6, 0.8)), 1.4 * 2_f64.sqrt()));
     // Along the line of the centers: variances 2 of four points and 2 of five.
     assert!(near(found.separation(0.0), 10.0 / 2_f64.sqrt()) && near(found.separation(4.0), 2.5));
-    assert_eq!(KMeans::new(1, 1)?.fit(&cross)?.separation(0.0), f64::INFINITY);
+    assert_eq!(fit(1, 1, &cross)?.separation(0.0), f64::INFINITY);
     let pairs = [-1.0, 1.0, 9.0, 11.0, 29.0, 31.0].map(|x| at(x, 0.0));
-    assert!(near(KMeans::new(3, 1)?.fit(&pairs)?.separation(0.0), 10.0), "the nearest two of three");
+    assert!(near(fit(3, 1, &pairs)?.separation(0.0), 10.0), "the nearest two of three");
     let four = [-1.0, 1.0, 3.0, 5.0].map(|x| at(x, 0.0));
     assert_eq!(distinct_clusters(&four, 1.0, 1)?.len(), 1, "four spreads apart are not distinct");
-    let mirrored = KMeans::new(2, 1)?.fit(&[at(0.0, 5.0), at(0.0, -5.0)])?;
+    let mirrored = fit(2, 1, &[at(0.0, 5.0), at(0.0, -5.0)])?;
     assert_eq!(mirrored.labels(), [1, 0], "by height, if one above the other");
     Ok(())
 }
@@ -65,11 +72,10 @@ fn clusters_do_not_depend_on_the_order_of_points() -> Outcome {
     }
     let shuffled: Vec<DVec2> = order.iter().map(|&place| points[place]).collect();
     for clusters in 1..5 {
-        let search = KMeans::new(clusters, 3)?;
-        let (a, b) = (search.fit(&points)?, search.fit(&shuffled)?);
+        let (a, b) = (fit(clusters, 3, &points)?, fit(clusters, 3, &shuffled)?);
         assert!(a.iter().eq(b.iter()), "the same bits");
         assert!(order.iter().zip(b.labels()).all(|(&place, label)| a.labels()[place] == *label));
-        assert_eq!(search.fit(&points)?, a);
+        assert_eq!(fit(clusters, 3, &points)?, a);
     }
     Ok(())
 }
@@ -94,7 +100,7 @@ fn k_means_reaches_the_best_partition_of_few_points() -> Outcome {
         let points = Random::new(seed).cloud((0.0, 0.0), 1.0, 9);
         let split = |mask: usize| -> Vec<usize> { (0..9).map(|point| mask >> point & 1).collect() };
         let best = (0..512).map(|mask| scatter(&points, &split(mask))).fold(f64::INFINITY, f64::min);
-        let found = KMeans::new(2, seed)?.with_restarts(50)?.fit(&points)?;
+        let found = k_means(&points, 2, 50, seed)?;
         assert!((scatter(&points, found.labels()) - best).abs() < 1e-12, "seed {seed}");
     }
     Ok(())
@@ -108,7 +114,7 @@ fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     let mut better = 0;
     for seed in 0..20 {
         let scatter = |restarts| -> Result<f64, ParameterError> {
-            let found = KMeans::new(4, seed)?.with_restarts(restarts)?.fit(&points)?;
+            let found = k_means(&points, 4, restarts, seed)?;
             let centers: Vec<DVec2> = found.iter().map(Cluster::center).collect();
             let own = |label: usize, point: &DVec2| centers[label].distance_squared(*point);
             for (&label, point) in found.labels().iter().zip(&points) {
@@ -130,11 +136,11 @@ fn one_descent_finds_groups_that_are_far_apart() -> Outcome {
     let corners = [(0.0, 0.0), (1e6, 0.0), (0.0, 1e6), (1e6, 1e6)];
     let points: Vec<DVec2> = corners.into_iter().flat_map(|at| Random::new(2).cloud(at, 1.0, 5)).collect();
     for seed in 0..50 {
-        let found = KMeans::new(4, seed)?.with_restarts(1)?.fit(&points)?;
+        let found = k_means(&points, 4, 1, seed)?;
         assert!(found.len() == 4 && found.iter().all(|cluster| cluster.count() == 5), "seed {seed}");
         // Two points whose squared distance is the smallest number there is.
         let close = [DVec2::ZERO, DVec2::new(2e-162, 0.0)];
-        assert_eq!(KMeans::new(2, seed)?.with_restarts(1)?.fit(&close)?.len(), 2, "seed {seed}");
+        assert_eq!(k_means(&close, 2, 1, seed)?.len(), 2, "seed {seed}");
     }
     Ok(())
 }
@@ -142,7 +148,7 @@ fn one_descent_finds_groups_that_are_far_apart() -> Outcome {
 #[test]
 fn degenerate_points_are_clustered_and_bad_ones_refused() -> Outcome {
     let equal = [DVec2::new(0.1, -0.2); 7];
-    let found = KMeans::new(4, 1)?.fit(&equal)?;
+    let found = fit(4, 1, &equal)?;
     assert_eq!((found.len(), found.labels()), (1, [0; 7].as_slice()));
     assert!(found.iter().all(|cluster| cluster.spread(DVec2::X) < 1e-16 && cluster.weight() == 1.0));
     assert_eq!(distinct_clusters(&equal, 0.0, 1)?.len(), 1);
@@ -150,8 +156,7 @@ fn degenerate_points_are_clustered_and_bad_ones_refused() -> Outcome {
     assert_eq!(distinct_clusters(&[DVec2::ZERO, DVec2::splat(1e100)], 0.0, 1)?.len(), 2);
 
     let message = |result: Result<_, ParameterError>| result.map(|_: usize| ()).unwrap_err().to_string();
-    let fit = |clusters, points: &[DVec2]| KMeans::new(clusters, 1)?.fit(points).map(|found| found.len());
-    assert_eq!(message(fit(0, &equal)), "number of clusters must be at least 1, but is 0");
+    let fit = |clusters, points: &[DVec2]| fit(clusters, 1, points).map(|found| found.len());
     assert_eq!(
         message(fit(3, &equal[..2])),
         "number of points must be at least the number of clusters, but is 2"
@@ -159,7 +164,7 @@ fn degenerate_points_are_clustered_and_bad_ones_refused() -> Outcome {
     let coordinate = "coordinate of a point must be finite and at most 1e100 in size, but is";
     assert_eq!(message(fit(1, &[DVec2::new(0.0, f64::NAN)])), format!("{coordinate} NaN"));
     assert_eq!(message(fit(1, &[DVec2::new(f64::INFINITY, 0.0)])), format!("{coordinate} inf"));
-    assert!(KMeans::new(1, 1)?.with_restarts(0).is_err());
+    assert!(fit(8, &equal).is_err());
     assert!(distinct_clusters(&[], 0.1, 1).is_err() && distinct_clusters(&equal, f64::NAN, 1).is_err());
     let nobody = StateCriteria::default().classify(&[], 0.1, None);
     assert!(nobody.is_err());

@@ -4,6 +4,7 @@ mod clusters;
 mod convective_states;
 #[path = "../support/measured.rs"]
 mod measured;
+mod parts;
 mod states;
 
 use granular_edmd::ParameterError;

@@ -4,6 +4,7 @@
 
 #[path = "../support/cases.rs"]
 mod cases;
+mod cuts;
 mod edits;
 #[cfg(unix)]
 mod faults;

@@ -1,10 +1,7 @@
 //! Plans and analysis over every kind of number, and over none, one or two of everything.
 
-use granular_edmd::glam::DVec2;
 use granular_edmd::observable::ConvectionOrder;
-use granular_edmd_study::analysis::{
-    ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, thermal_noise, transitions,
-};
+use granular_edmd_study::analysis::{ConvectiveRegime, StateCriteria, thermal_noise, transitions};
 use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Plan, Protocol};
 
@@ -32,25 +29,18 @@ const NUMBERS: [f64; 18] = [
 
 #[test]
 fn analysis_of_none_one_or_two_is_an_answer_or_an_error() {
-    let points = [DVec2::ZERO, DVec2::ONE];
+    let points = [0.0, 1.0];
     for count in 0..=2 {
-        let samples: Vec<f64> = points[..count].iter().map(|point| point.x).collect();
-        assert_eq!(distinct_clusters(&points[..count], 0.1, 1).is_ok(), count > 0);
+        let samples: Vec<f64> = points[..count].to_vec();
         let order: Vec<_> = samples.iter().map(|&x| ConvectionOrder::new(x, x)).collect();
         assert_eq!(StateCriteria::default().classify(&order, 0.1, None).is_ok(), count > 0);
         let seen = samples.iter().map(|&x| (x, ConvectiveRegime::OneRoll));
         assert!(transitions(seen).unwrap().is_empty());
     }
-    for clusters in [0, 1, 2, 3, usize::MAX] {
-        assert_eq!(
-            KMeans::new(clusters, 1).is_ok_and(|means| means.fit(&points).is_ok()),
-            (1..=2).contains(&clusters)
-        );
-    }
     assert!(thermal_noise(1.0, 1.0, 0).is_err());
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(transitions([(bad, ConvectiveRegime::OneRoll)]).is_err());
-        assert!(distinct_clusters(&[DVec2::splat(bad)], 0.1, 1).is_err());
+        assert!(StateCriteria::default().classify(&[ConvectionOrder::new(bad, bad)], 0.1, None).is_err());
     }
 }
 
@@ -72,7 +62,11 @@ fn not_negative(value: f64) -> bool {
 fn analysis() -> Vec<Case> {
     vec![
         ("", |value| told(thermal_noise(value, 1.0, 10)), not_negative),
-        ("noise", |value| told(distinct_clusters(&[DVec2::ZERO], value, 1)), not_negative),
+        (
+            "noise",
+            |value| told(StateCriteria::default().classify(&[ConvectionOrder::new(0.0, 0.0)], value, None)),
+            not_negative,
+        ),
         (
             "multiple of the noise",
             |value| told(StateCriteria::default().with_noise_multiple(value)),

@@ -176,7 +176,7 @@ fn a_record_of_other_code_is_refused() -> Result<(), AnyError> {
     fs::copy(theirs.0.join("logs/0000.records"), mine.0.join("logs/9999.records"))?;
     let study = Study::open_or_create(&mine.0, &plan::<AS_IT_WAS>())?;
     let error = study.run(&Control::default().with_verification()).unwrap_err();
-    assert!(matches!(error, StudyError::Changed { part: "revision", .. }), "{error}");
+    assert!(error.to_string().contains("was made with another revision"), "{error}");
     Ok(())
 }
 

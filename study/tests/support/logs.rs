@@ -12,7 +12,7 @@ use log::{Log, Piece, read_piece};
 
 // The store's own reader and writer, which are not public.
 #[path = "../../src/store/log.rs"]
-mod log;
+pub(crate) mod log;
 
 pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
 
