@@ -18,7 +18,7 @@ use crate::observable::ObserverError;
 #[non_exhaustive]
 pub enum RecordError {
     /// A file or folder of this name exists already.
-    #[error("{} is there already and is not overwritten; Recorder::append goes on in a file", path.display())]
+    #[error("{} is there already and is not overwritten; choose another name", path.display())]
     Exists {
         /// The path.
         path: PathBuf,

@@ -188,10 +188,10 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     for file in &summary.redone {
         say(&format!("{} was damaged and has been done again", file.display()))?;
     }
-    say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()))?;
+    say(&format!("{} of {} values have ended in {}", summary.finished, summary.total, out.display()))?;
     let logs = out.join("logs/*.jsonl");
     for (count, told, of) in [
-        (summary.failed, "were not finished; status lists them,", "why"),
+        (summary.failed, "stalled, failed or reached a limit; status lists them,", "why"),
         (summary.warned, "have warnings;", "of what"),
     ] {
         if count > 0 {
@@ -237,7 +237,11 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
             let first: Vec<String> =
                 failed.iter().take(LISTED).map(|[r, v]| format!("{r:04}/{v:04}")).collect();
             let more = if failed.len() > LISTED { " …" } else { "" };
-            say(&format!("{} values were not finished: {}{more}", failed.len(), first.join(" ")))?;
+            say(&format!(
+                "{} values stalled, failed or reached a limit: {}{more}",
+                failed.len(),
+                first.join(" ")
+            ))?;
         }
     }
     Ok(match (found[0].1.len() == ramps, has_tables) {

@@ -190,7 +190,7 @@ fn failed_values_are_listed_and_tried_again() {
     };
     let before = run(&[]);
     let status = said(&scratch.runs(&["status", "study"]));
-    assert!(status.contains("1 values were not finished: 0000/0001"), "{status}");
+    assert!(status.contains("1 values stalled, failed or reached a limit: 0000/0001"), "{status}");
     assert!(said(&scratch.runs(&["status", "study", "--json"])).contains(r#""failed":[[0,1]]"#));
     let log = || logs::lines(&scratch.0.join("study")).lines().count();
     assert!(run(&[]) == before && log() == 3);
@@ -225,7 +225,7 @@ fn a_study_grows() {
     let larger = SMALL.replace("[0.0, 0.1]", "[0.0, 0.05, 0.1]").replace("repeats = 2", "repeats = 3");
     fs::write(scratch.0.join("larger.toml"), &larger).unwrap();
     let output = scratch.runs(&["run", "larger.toml", "--out", "larger", "--from", "study"]);
-    assert_eq!((code(&output), said(&output).as_str()), (Some(0), "9 of 9 values are finished in larger\n"));
+    assert_eq!((code(&output), said(&output).as_str()), (Some(0), "9 of 9 values have ended in larger\n"));
     let log = logs::lines(&scratch.0.join("larger"));
     let is_taken = |ramp: &usize| {
         let own = format!("{{\"ramp\":{ramp},");

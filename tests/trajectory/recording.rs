@@ -78,9 +78,7 @@ fn nothing_is_overwritten() {
     let error = Recorder::create(&path, ExtendedXyz, times()).unwrap_err();
     assert!(matches!(error, RecordError::Exists { .. }));
     assert!(
-        report(&error).ends_with(
-            "notes.xyz is there already and is not overwritten; Recorder::append goes on in a file"
-        )
+        report(&error).ends_with("notes.xyz is there already and is not overwritten; choose another name")
     );
     // A recorder that goes on in the file does not overwrite it, either.
     for text in ["my notes", "my notes\n", "12", "", "3\nmy notes\n"] {

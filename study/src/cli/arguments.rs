@@ -14,7 +14,7 @@ const MOST_THREADS: i64 = 4096;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 not finished and other processes work on it,
-/// 4 no tables yet, 6 the runs differ, 7 done but some values were not finished, 8 not
+/// 4 no tables yet, 6 the runs differ, 7 done but some values stalled, failed or reached a limit, 8 not
 /// finished and no process works on it, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(name = "granular-edmd", version)]

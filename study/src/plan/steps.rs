@@ -81,15 +81,24 @@ impl Steps {
 
     /// Returns the value of an index below the number of values.
     ///
-    /// Each value follows from its index, not from the one before, so errors do not add up.
+    /// Each value follows from its index, not from the one before, so errors do not add up. Equal steps give
+    /// the decimal fractions that a reader of the plan expects.
     pub(super) fn value(&self, index: usize) -> f64 {
         match self.step {
-            Some(step) => self.from + index as f64 * step,
+            Some(step) => self.decimal(self.from + index as f64 * step, step),
             None if index + 1 == self.count => self.to,
             None => {
                 let share = index as f64 / (self.count - 1) as f64;
                 self.from * libm::pow(self.to / self.from, share)
             }
         }
+    }
+    /// Returns 0.07 for 0.06999999999999999: the value with fifteen digits of the largest one, if that is as
+    /// good as equal.
+    fn decimal(&self, value: f64, step: f64) -> f64 {
+        let largest = self.from.abs().max(self.to.abs());
+        let places = (14.0 - libm::floor(libm::log10(largest))).clamp(0.0, 300.0) as usize;
+        let near = format!("{value:.places$}").parse().unwrap_or(value);
+        if (near - value).abs() <= ROUNDING * step { near } else { value }
     }
 }
