@@ -313,7 +313,7 @@ impl Observer for TransportCoefficients {
         let domain = *self.domain.get_or_insert(start.domain());
         let (name, same) = ("area of the domain", "that of the previous run, for transport coefficients");
         let stays = accept(domain == start.domain(), name, same, area);
-        self.fault = periodic.and(weightless).and(goes_on).and(stays).err();
+        self.fault = periodic.and(weightless).and(stays).and(goes_on).err();
     }
 
     fn on_collision(&mut self, collision: &Collision) {

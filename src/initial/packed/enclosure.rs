@@ -125,7 +125,7 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
         let depth = |(normal, place)| probe.radius() + place - probe.position().dot(normal);
         let own = self.sides().map(depth).enumerate().map(|(wall, depth)| Overlap::new(wall, depth));
         let behind = |overlap: Overlap| Overlap::new(overlap.with + count, overlap.depth);
-        Overlap::deepest(own).or_else(|| self.boundary.overlap(probe).map(behind))
+        Overlap::deepest(own.chain(self.boundary.overlap(probe).map(behind)))
     }
 }
 

@@ -65,7 +65,8 @@ impl Boundary for Drum {
         let normal = self.wall.normal(position);
         let velocity = -self.angular_velocity * self.radius * normal.perp();
         let response = self.rule.as_ref().map_or(Response::Shared, |rule| Response::Rule(rule));
-        Surface::new(normal, velocity).with_radius(-self.radius).with_response(response)
+        let surface = Surface::new(normal, velocity).with_radius(-self.radius).with_response(response);
+        surface.with_angular_velocity(self.angular_velocity)
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
