@@ -109,9 +109,12 @@ fn free_sites<B: Boundary + ?Sized>(boundary: &B, room: &Domain, spacing: f64, r
     let rows = rows(room, spacing);
     let intervals = if room.periodic_ends { rows } else { rows.saturating_sub(1) };
     let rise = (room.top - room.bottom) / intervals.max(1) as f64;
+    // A single row or column between walls is in the middle.
+    let low = if rows == 1 && !room.periodic_ends { 0.5 * (room.bottom + room.top) } else { room.bottom };
+    let left = if columns == 1 && !room.periodic_sides { 0.5 * (room.left + room.right) } else { room.left };
     let row = |row: u64| {
-        let height = room.bottom + row as f64 * rise;
-        (0..columns).map(move |column| DVec2::new(room.left + column as f64 * pitch, height))
+        let height = low + row as f64 * rise;
+        (0..columns).map(move |column| DVec2::new(left + column as f64 * pitch, height))
     };
     (0..rows)
         .flat_map(row)

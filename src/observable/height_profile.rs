@@ -138,14 +138,16 @@ impl HeightProfile {
         self.samples = 0;
     }
 
-    fn add_disk(&mut self, height: f64, radius: f64, width: f64) {
+    fn add_disk(&mut self, height: f64, radius: f64, domain: &Domain) {
+        // No free area is beyond the domain, so neither is matter, such as the image of a disk.
+        let edge = |bins: &Bins, edge: usize| bins.edge(edge).clamp(domain.bottom, domain.top);
         // A disk outside the profile counts in the first or the last bin, to which it adds no area.
         let first = self.bins.at_or_above(height - radius);
         let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
-        let mut below = area_below(self.bins.edge(first) - height, radius);
+        let mut below = area_below(edge(&self.bins, first) - height, radius);
         for bin in first..=last {
-            let above = area_below(self.bins.edge(bin + 1) - height, radius);
-            self.sums[bin] += (above - below) / (width * self.bins.width());
+            let above = area_below(edge(&self.bins, bin + 1) - height, radius);
+            self.sums[bin] += (above - below) / (domain.width() * self.bins.width());
             below = above;
         }
     }
@@ -168,12 +170,12 @@ impl Accumulator for HeightProfile {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
         let shares = self.shares.of(snapshot, layers(self.bins, &snapshot.domain()));
         self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
-        let (width, period) = (snapshot.domain().width(), snapshot.domain().periods().y);
+        let (domain, period) = (snapshot.domain(), snapshot.domain().periods().y);
         // The periodic images provide the areas of disks that extend beyond a periodic end.
         let shifts = [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
         for disk in snapshot.disks() {
             for shift in shifts.clone() {
-                self.add_disk(disk.position().y + shift, disk.radius(), width);
+                self.add_disk(disk.position().y + shift, disk.radius(), &domain);
             }
         }
         self.samples += 1;

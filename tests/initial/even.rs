@@ -43,3 +43,15 @@ fn walls_inside_are_left_free_and_what_cannot_be_is_named() {
     assert!(initial::even_lattice(&Container::open(5.0).unwrap(), 1, 0.0).is_err());
     assert!(initial::even_lattice(&Container::closed(5.0, 5.0).unwrap(), 0, 0.5).unwrap().is_empty());
 }
+
+/// A single row of disks, or a single column, is in the middle of its box.
+#[test]
+fn a_shallow_box_is_filled_in_the_middle() {
+    for (width, height) in [(100.0, 3.2), (3.2, 100.0)] {
+        let container = Container::closed(width, height).unwrap();
+        let disks = initial::even_lattice(&container, 38, 0.3).unwrap();
+        let across = |place: DVec2| if width > height { place.y } else { place.x };
+        assert!(disks.iter().all(|disk| (across(disk.position()) - 1.6).abs() < 1e-12));
+        assert_apart(container, &disks);
+    }
+}

@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use granular_edmd::boundary::{Boundary, Container, Domain, Region};
+use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     Accumulator, DenseLayer, Fields, Grid, HeightProfile, Observer, SampleTimes, Sampled, Snapshot,
 };
-use granular_edmd::{Disk, ParameterError, initial};
+use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
 const DOMAIN: Domain = Domain::new(0.0, 60.0, 0.0, 150.0);
 
@@ -265,5 +266,27 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     let expected = mean_energy_change(&rule, &Maxwellian::new(1.0)?.with_rotational_temperature(ratio)?);
     let measured = profile.relative_energy_change().unwrap();
     assert!((measured / expected - 1.0).abs() < 0.08, "{measured} {expected}");
+    Ok(())
+}
+
+/// A profile that reaches beyond a periodic domain holds each disk once.
+#[test]
+fn a_profile_beyond_a_periodic_end_holds_no_image() -> Result<(), Box<dyn std::error::Error>> {
+    let disk = |y: f64| Disk::new(DVec2::new(5.0, y), 0.4);
+    let disks = vec![disk(9.0)?, disk(1.5)?];
+    let run = Simulation::builder(Elastic, Container::periodic(10.0, 10.0)?).disks(disks).build()?;
+    let area = 0.16 * PI;
+    for ((bottom, top), inside, height) in [
+        ((-10.0, 20.0), 2.0, 10.0),
+        ((8.0, 20.0), 1.0, 2.0),
+        ((-2.5, 2.5), 1.0, 2.5),
+        ((0.0, 10.0), 2.0, 10.0),
+    ] {
+        let mut profile = HeightProfile::new(bottom, top, 1)?;
+        profile.add(&run.snapshot());
+        let (_, fraction) = profile.iter().next().ok_or("no bin")?;
+        let expected = inside * area / (10.0 * height);
+        assert!((fraction - expected).abs() < 1e-12, "{bottom} to {top}: {fraction}, not {expected}");
+    }
     Ok(())
 }

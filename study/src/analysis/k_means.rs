@@ -60,10 +60,10 @@ pub(crate) fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Resu
 /// Finds this number of clusters in a plane by k-means, the best of several restarts.
 ///
 /// The search looks for the centers $`c_j`$ that minimize the scatter $`\sum_i \min_j |r_i - c_j|^2`$
-/// (MacQueen 1967, the paper's reference 14). It starts from centers that k-means++ chooses (Arthur &
-/// Vassilvitskii 2007). The result depends on the points and the seed, but not on the order of the points,
-/// which are sorted first. If there are fewer distinct points than requested clusters, there are fewer
-/// clusters.
+/// (MacQueen 1967, the paper's reference 14). It starts from points far from each other, and from centers
+/// that k-means++ chooses (Arthur & Vassilvitskii 2007). The result depends on the points and the seed, but
+/// not on the order of the points, which are sorted first. If there are fewer distinct points than requested
+/// clusters, there are fewer clusters.
 ///
 /// # Errors
 /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in magnitude.
@@ -81,8 +81,11 @@ pub(crate) fn k_means(
     let sorted: Vec<DVec2> = order.iter().map(|&point| points[point]).collect();
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut best = descend(&sorted, plus_plus(&sorted, clusters, &mut generator));
-    for _ in 1..restarts {
-        let next = descend(&sorted, plus_plus(&sorted, clusters, &mut generator));
+    for restart in 1..restarts {
+        let next = match restart {
+            1 => descend(&sorted, farthest(&sorted, clusters)),
+            _ => descend(&sorted, plus_plus(&sorted, clusters, &mut generator)),
+        };
         if next.scatter < best.scatter {
             best = next;
         }
@@ -97,6 +100,27 @@ fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
         let valid = coordinate.abs() <= LARGEST;
         accept(valid, "coordinate of a point", "finite and at most 1e100 in size", coordinate).map(|_| ())
     })
+}
+
+/// Returns the first centers, each the farthest point from the ones before. A cloud of few points that is far
+/// from all others has one of them, though a draw may miss it.
+fn farthest(points: &[DVec2], clusters: usize) -> Vec<DVec2> {
+    let mean = points.iter().sum::<DVec2>() / points.len() as f64;
+    let mut centers = vec![points[most_distant(points, |point| point.distance_squared(mean))]];
+    while centers.len() < clusters {
+        let next = points[most_distant(points, |point| nearest(point, &centers).1)];
+        if centers.contains(&next) {
+            break;
+        }
+        centers.push(next);
+    }
+    centers
+}
+
+/// Returns the index of the first point at the largest distance.
+fn most_distant(points: &[DVec2], distance: impl Fn(DVec2) -> f64) -> usize {
+    let distances = points.iter().map(|&point| distance(point)).enumerate();
+    distances.fold((0, -1.0), |most, next| if next.1 > most.1 { next } else { most }).0
 }
 
 /// Draws the first centers among the points. The probability of each next one is proportional to its squared

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::parameters;
 use crate::plan::refinement::{Seen, Step};
-use crate::{Difference, Experiment, Plan, PlanError, Record, Study, StudyError};
+use crate::{Difference, Experiment, Outcome, Plan, PlanError, Record, Study, StudyError};
 
 /// Earlier studies, each with the indices of its ramps by seed.
 pub(super) struct Earlier<E: Experiment>(Vec<(Study<E>, HashMap<u64, usize>)>);
@@ -46,8 +46,11 @@ impl<E: Experiment> SameRamps<'_, E> {
         self.0.retain(|(study, _)| are_same(&study.plan) && study.plan.next(seen) == Some(step));
         for (study, ramp) in &self.0 {
             let record = study.known_record(*ramp, seen.len())?;
-            // Values from other code that the earlier study accepted are computed again here.
-            if let Some(record) = record.filter(|record| study.is_ours(&record.contents.origin)) {
+            // Values from other code that the earlier study accepted are computed again here, and so are
+            // values that a limit ended, which may have been the clock's.
+            let is_ours = |record: &Record<E>| study.is_ours(&record.contents.origin);
+            let is_whole = |record: &Record<E>| !matches!(record.outcome(), Outcome::Limited { .. });
+            if let Some(record) = record.filter(|record| is_ours(record) && is_whole(record)) {
                 return Ok(Some(record));
             }
         }

@@ -161,3 +161,23 @@ fn criteria_and_noise_refuse_what_has_no_meaning() {
     assert!(thermal_noise(-1.0, 1.0, 1).is_err() && thermal_noise(1.0, 0.0, 1).is_err());
     assert!(thermal_noise(1.0, 1.0, 0).is_err() && thermal_noise(f64::NAN, 1.0, 1).is_err());
 }
+
+/// Clouds of few points beside a large one, each a Gaussian by its quantiles: three clusters, however the
+/// sizes are.
+#[test]
+fn a_small_cloud_is_found_beside_a_large_one() -> Outcome {
+    let cloud = |x: f64, y: f64, count: usize| {
+        (0..count).map(move |k| {
+            let radius = (-2.0 * ((k as f64 + 0.5) / count as f64).ln()).sqrt();
+            let angle = std::f64::consts::TAU * (0.618_033_988_75 * k as f64).fract();
+            DVec2::new(x, y) + 0.012 * radius * DVec2::from_angle(angle)
+        })
+    };
+    for (large, small, least) in [(160, 7, 3), (250, 3, 3), (90, 12, 4)] {
+        let points =
+            cloud(-0.12, 0.04, large).chain(cloud(0.0, 0.122, small)).chain(cloud(0.12, 0.04, least));
+        let found = StateCriteria::default().classify(&orders(&points.collect::<Vec<_>>()), 0.012, None)?;
+        assert_eq!(found.clusters().len(), 3, "{large}, {small}, {least}");
+    }
+    Ok(())
+}

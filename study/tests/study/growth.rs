@@ -186,3 +186,21 @@ fn what_must_not_differ_is_named() -> Result<(), AnyError> {
     }
     Ok(())
 }
+
+/// Values that the clock ended depend on the machine, so a larger study computes them again.
+#[test]
+fn values_that_a_limit_ended_are_not_taken_over() -> Result<(), AnyError> {
+    let scratch = Scratch::new("growth-limited");
+    fs::create_dir_all(&scratch.0)?;
+    let plan = sweep(&[0.1, 0.2], &[0.0], 1)?;
+    let limited = Study::create(scratch.0.join("limited"), &plan)?;
+    let summary = limited.run(&Control::default().with_most_seconds(1e-9)?)?;
+    assert_eq!(summary.failed, 2);
+    let larger = sweep(&[0.1, 0.2, 0.3], &[0.0], 1)?;
+    let [grown, fresh] = ["grown", "fresh"].map(|name| Study::create(scratch.0.join(name), &larger));
+    let (grown, fresh) = (grown?, fresh?);
+    grown.run(&Control::default().with_earlier_studies(&[limited.folder().to_owned()]))?;
+    fresh.run(&Control::default())?;
+    assert_same(grown.folder(), fresh.folder());
+    Ok(())
+}
