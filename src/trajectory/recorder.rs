@@ -56,7 +56,8 @@ pub struct Recorder {
     failure: Option<RecordError>,
     /// Clock to restore so that the next run retries the failed frame.
     before_failure: Option<SampleTimes>,
-    /// True for a recorder that continues a file, until a run continues it without a gap.
+    /// True for a recorder that continues a file, until a run has followed the last frame of the file without
+    /// a gap.
     must_follow: bool,
 }
 

@@ -287,9 +287,9 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
-    /// The room is the sum of the gap and its rounding, so that each step advances, and the last one ends
-    /// where the gap is closed by rounding. A gap that is negative by more than its rounding gets almost no
-    /// room, so that no surface goes much deeper into a wall than it already is.
+    /// The room is the gap plus its rounding error, so each step advances, and the last step ends where the
+    /// gap is zero within rounding. A gap that is negative by more than its rounding gets almost no room, so
+    /// that no surface goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }

@@ -163,6 +163,10 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the duration of a cycle, the unit of time of a [`Protocol`](super::Protocol), such as the
     /// period of a vibrating base.
+    ///
+    /// The first value of a ramp counts cycles from time 0. A value with another cycle than the one before
+    /// counts them from its own start, where walls are at any phase unless they begin there, too
+    /// ([`StartingAt`](granular_edmd::wall::StartingAt) in [`boundary_in`](Self::boundary_in)).
     fn cycle(&self) -> f64 {
         1.0
     }
@@ -303,7 +307,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 
     /// Returns whether this parameter (by its full name, such as `base.amplitude`) may change while the disks
-    /// stay in place.
+    /// stay in place. A frequency may not, unless the walls begin anew with each [`cycle`](Self::cycle).
     fn can_be_ramped(parameter: &str) -> bool {
         let _ = parameter;
         true

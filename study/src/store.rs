@@ -97,7 +97,7 @@ impl Store {
             .map_err(|reason| damaged(&path, format!("value {value} of ramp {ramp}: {reason}")))
     }
 
-    /// Appends the record of a value, with a line for people.
+    /// Appends the record of a value, and a readable line to the log.
     pub(super) fn append<T: DeserializeOwned + serde::Serialize>(
         &self,
         head: Head,

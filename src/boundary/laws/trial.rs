@@ -142,8 +142,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Checks that overlaps have named each wall that was touched often. At a single touch, another wall may
-    /// be equally deep.
+    /// Checks that each wall that was touched often has been named by at least one overlap. At a single
+    /// touch, another wall may be equally deep.
     pub(super) fn check_names(&self) -> Result<(), Violation> {
         let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
         let wall = unnamed.unwrap_or_default();

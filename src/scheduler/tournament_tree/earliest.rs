@@ -61,8 +61,8 @@ pub(super) mod avx2 {
     use crate::instructions::load;
 
     /// A table of negative infinities with one positive infinity. In any 32 consecutive entries, the positive
-    /// infinity is in one seat or in none. AVX2 cannot select by the bits of a mask. Instead, the maximum of
-    /// the times and these entries makes one player infinitely late.
+    /// infinity is in one seat or in none. AVX2 cannot select by the bits of a mask. Instead, taking the
+    /// maximum of each time and its entry of this table makes one player infinitely late.
     static LATE: [f64; 3 * PLAYERS] = {
         let mut late = [f64::NEG_INFINITY; 3 * PLAYERS];
         late[PLAYERS] = f64::INFINITY;
