@@ -141,8 +141,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
 ///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with a
 ///    tangential mass counts as the impulse C/R along the surface. No wall changes its position
-///    instantaneously. The result is [`Reaction::Moved`] if the velocity changes. A wall of infinite masses
-///    does not react.
+///    instantaneously. The result is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
