@@ -302,7 +302,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// Moving walls take the positions of their motions at the present time. A wall that thereby jumps causes
-    /// a [`Warning`]. A [`Piston`](crate::wall::Piston) begins now, at its start.
+    /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, at its start; in a clone of
+    /// the present boundary, it continues.
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation

@@ -103,7 +103,8 @@ pub enum BuildError {
         /// Index of the second disk.
         second: usize,
     },
-    /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
+    /// The domain has no area, or its periodic sides are so close that a disk could meet two images of
+    /// another.
     #[error(
         "a domain of width {} and height {} is too small for disks of diameter {}: \
          where it is periodic, it must be longer than four diameters",
