@@ -148,8 +148,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the positions at which a disk of the default kind
 ///     has no `overlap`, and [`wall_point`](Self::wall_point) stays on its wall.
-/// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results, and equal boundaries
-///     have equal fingerprints, whatever their state and their origin.
+/// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results in the same state, and
+///     a boundary keeps its fingerprint, whatever its present state and its origin.
 ///
 /// The engine guarantees:
 /// - It sets the origin before any other call except for `state`, and whenever the epoch of the run moves. If

@@ -148,7 +148,8 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion of the piston has numbers that are not finite. If the
-    /// wall moves already, or the piston's highest stop is beyond the nearest position of the opposite wall.
+    /// wall moves already by a motion, or the piston's highest stop is beyond the nearest position of the
+    /// opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));
         let motion = motion.map_err(|violation| WallError::Motion { wall, violation })?;

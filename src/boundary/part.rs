@@ -89,7 +89,8 @@ impl Part {
 
     /// Returns the same part as a sink that takes a disk out of the run when its center arrives at a brick.
     ///
-    /// Disks may overlap such a part: it is a line that their centers must not pass.
+    /// Disks may overlap such a part: it is a line that their centers must not pass. It may move by
+    /// `BiParabolic`, `Triangular` or `Tabulated`; a vessel refuses it if it moves otherwise or turns.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -80,7 +80,9 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     let packing = grown(&room, &wider, area, seed).map_err(|error| match error {
         // A heavy piston hardly moves while disks are packed, so a moving piston is reported only if the
         // packing fails.
-        PlacementError::Run { .. } => room.check_walls().map_or_else(PlacementError::from, |()| error),
+        PlacementError::Run { ref reason } => {
+            room.check_walls(reason).map_or_else(PlacementError::from, |()| error)
+        }
         error => with_full_radius(error, &disks),
     })?;
     let packed = disks.iter().zip(packing.places()).map(|(disk, place)| disk.with_position(place));

@@ -127,7 +127,8 @@ pub trait Observer {
         let _ = (disk, time);
     }
 
-    /// Receives a disk that a sink takes out during the run, after the collision with the sink.
+    /// Receives a disk that a sink takes out during the run, after the collision with the sink. The disk has
+    /// the motion with which it came there.
     ///
     /// The last disk then gets the index of this disk.
     fn on_remove(&mut self, disk: &Disk, time: f64) {

@@ -13,6 +13,9 @@ pub(super) struct WallNames {
 }
 
 impl WallNames {
+    /// No names yet.
+    pub(super) const NONE: Self = Self { walls: Mark::NONE, names: Vec::new() };
+
     /// Checks that each index of a wall that is measured means the wall that it meant before, since values of
     /// different walls must not be added.
     ///
@@ -35,7 +38,10 @@ impl WallNames {
                 format!("the index of \"{before}\", as before; clear the observer, or take a new one");
             return Err(ParameterError::new(name, requirement, wall as f64));
         }
-        (self.walls, self.names) = (start.walls_mark(), names);
+        // Walls that are absent in a run keep their names: they may come back.
+        let known = self.names.len().min(names.len());
+        self.names.splice(..known, names);
+        self.walls = start.walls_mark();
         Ok(())
     }
 }

@@ -67,13 +67,8 @@ struct Received {
 
 impl WallStress {
     /// Creates an observer that watches no wall yet and gives a value for each interval of the sample times.
-    pub fn new(times: SampleTimes) -> Self {
-        Self {
-            stretch: Stretch::new(times),
-            walls: BTreeMap::new(),
-            names: WallNames::default(),
-            fault: None,
-        }
+    pub const fn new(times: SampleTimes) -> Self {
+        Self { stretch: Stretch::new(times), walls: BTreeMap::new(), names: WallNames::NONE, fault: None }
     }
 
     /// Returns the same observer, which also watches the wall of this index and length.

@@ -84,8 +84,8 @@ pub enum Warning {
         /// Number of collisions, with disks or walls.
         collisions: u64,
     },
-    /// Gravity points upwards, the boundary is open there, and a disk has no wall above it: disks that fall
-    /// out never come back, and the run becomes slower and slower.
+    /// Gravity points upwards, the boundary is open there, and a disk has no wall of any kind above it: disks
+    /// that fall out never come back, and the run becomes slower and slower.
     EndlessFall {
         /// Upward component of gravity.
         upwards: f64,

@@ -92,6 +92,14 @@ fn values_of_two_walls_or_two_systems_are_not_added() -> Outcome {
         let refused = std::error::Error::source(&refused).expect("a cause").to_string();
         assert!(refused.contains("clear the observer") && refused.contains("\"shelf\""), "{refused}");
     }
+    // A wall that is away in one run is remembered in the next.
+    let mut change = EnergyChange::default();
+    let mut run = Simulation::builder(Elastic, with_gate.clone()).disks([disk(4.5)?]).build()?;
+    run.run_until(5.0, &mut change)?;
+    run.set_boundary(Vessel::new(container()?))?;
+    run.run_until(6.0, &mut change)?;
+    run.set_boundary(without.clone())?;
+    assert!(run.run_until(7.0, &mut change).is_err());
     let mut arrivals = Arrivals::at(shelf.clone(), times);
     Simulation::builder(Elastic, with_gate.clone())
         .disks([disk(4.5)?])

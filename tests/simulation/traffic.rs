@@ -12,6 +12,7 @@ use granular_edmd::observable::{Arrivals, OfKind, SampleTimes};
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::simulation::{BuildError, Inlet, RunError, Warning};
+use granular_edmd::wall::{BiParabolic, Sinusoidal};
 use granular_edmd::{Disk, Kind, Simulation};
 
 use crate::schedulers::{SCHEDULERS, Scheduler};
@@ -336,4 +337,27 @@ fn an_inlet_without_ids_or_times_ends_the_run() {
     late.add_inlet(Inlet::new(places, [small], times, 1).unwrap()).unwrap();
     let error = cause(late.run_until(2e9, &mut ()).unwrap_err());
     assert!(error.contains("time of the next opening"), "{error}");
+}
+
+/// A line that takes out centers may move by parabolas, and takes out disks at rest that it sweeps over.
+/// Lines that turn, or move like a sine, would miss centers, and are refused.
+#[test]
+fn a_line_for_centers_moves_by_parabolas_only() -> Result<(), Box<dyn Error>> {
+    let line = || Part::polyline([(2.0, 5.0), (18.0, 5.0)].map(DVec2::from)).map(Part::absorbing_centers);
+    let box_of = |part: Part| -> Result<Vessel, Box<dyn Error>> {
+        Ok(Vessel::new(Container::closed(20.0, 10.0)?).with("exit", part)?)
+    };
+    let turning = line()?.with_rotation(DVec2::new(10.0, 5.0), 0.1)?;
+    let shaken = line()?.with_motion(DVec2::Y, Sinusoidal::new(2.0, 0.7)?)?;
+    for part in [turning, shaken] {
+        let refused: Box<dyn Error> = box_of(part).unwrap_err();
+        assert!(refused.to_string().contains("\"exit\" takes out disks when their centers"), "{refused}");
+    }
+    let moving = box_of(line()?.with_motion(DVec2::Y, BiParabolic::new(2.0, 0.7)?)?)?;
+    let disk = |k: u32| Disk::new(DVec2::new(3.0 + 2.0 * f64::from(k), 5.5 + 0.2 * f64::from(k)), 0.4);
+    let disks = (0..5).map(disk).collect::<Result<Vec<_>, _>>()?;
+    let mut run = Simulation::builder(Elastic, moving).disks(disks).build()?;
+    run.run_until(10.0, &mut ())?;
+    assert_eq!(run.counters().removals, 5);
+    Ok(())
 }

@@ -50,12 +50,14 @@ where
     let (mut first, mut second) = (first, second);
     let mut one = Trial::new(&mut first, domain, radius, speed);
     let mut other = Trial::new(&mut second, domain, radius, speed);
+    let are_alike = one.state == other.state;
     for number in 0..FLIGHTS {
         one.kind = Kind::new(KINDS[number % KINDS.len()]);
         other.kind = one.kind;
         // `check` refuses a boundary without room. Here, nothing is left to compare.
         let Ok((origin, flight)) = random.flight(&mut one) else { break };
-        // Fingerprints do not depend on the state of the walls, so the results are compared in the same one.
+        // Fingerprints do not depend on the present state of the walls, so the results are compared in the
+        // same one.
         one.begin(origin)?;
         other.set_origin(origin);
         if other.take_state(&one.state).is_err() {
@@ -67,7 +69,8 @@ where
             return check_pair(PART, fingerprints, Some(format!("on {flight:?}: {answers:?}")));
         }
     }
-    check_pair(PART, fingerprints, None)
+    // Walls that begin otherwise, and then are the same, may or may not have the same fingerprint.
+    if are_alike { check_pair(PART, fingerprints, None) } else { Ok(()) }
 }
 
 /// Returns the results of a boundary for a flight, as text.

@@ -19,6 +19,9 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
+/// Share of a step by which the point of a touch moves at least, unless it is at a tip.
+const TIP: f64 = 0.02;
+
 /// Number of contacts in which the rule of a wall is compared.
 const CONTACTS: usize = 5;
 
@@ -176,8 +179,10 @@ impl Around<'_, '_> {
         let slack = SAME * (turning.abs() + (self.trial.speed + here.1.abs()) / size);
         let mut pairs = [(low, high), (low, here), (here, high)].into_iter();
         let turns = pairs.any(|((from, before), (to, after))| {
+            // On a small roller, the point of the touch moves by less than the disk.
             let along = (to - from).dot(normal.perp());
-            along < 0.5 * step || ((before - after) / along - turning).abs() <= slack
+            along < TIP * step
+                || ((before - after) / along - turning).abs() <= slack * (step / along).max(1.0)
         });
         require!(PART, "angular velocity", turns;
             "wall {wall} has the angular velocity {turning:?}, but its velocities around {place:?}, {time:?}, turn \

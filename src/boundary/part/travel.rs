@@ -235,6 +235,18 @@ impl Travel {
         self.reach().1 - self.reach().0
     }
 
+    /// Returns whether the path of each point is known exactly, in pieces of constant acceleration.
+    pub(in crate::boundary) fn is_exact(&self) -> bool {
+        let phases = [0.0, 0.1, 0.7, 1.3, 5.9, 17.0];
+        let is_exact = |motion: &Motion, phase| {
+            let bounds = motion.acceleration(phase);
+            bounds.min == bounds.max
+        };
+        let along = self.along.as_ref().map(|along| &along.motion);
+        self.frame().is_none()
+            && along.is_none_or(|motion| phases.iter().all(|&phase| is_exact(motion, phase)))
+    }
+
     /// Returns the time, at most `wait`, until a disk on this path in the frame at rest enters the strip that
     /// a brick of the part sweeps: all positions at which the disk touches the brick at some phase.
     pub(in crate::boundary) fn wait_to_enter_strip(

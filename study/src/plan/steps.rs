@@ -85,7 +85,7 @@ impl Steps {
     /// the decimal fractions that a reader of the plan expects.
     pub(super) fn value(&self, index: usize) -> f64 {
         match self.step {
-            Some(step) => self.decimal(self.from + index as f64 * step, step),
+            Some(step) => self.decimal(index, step),
             None if index + 1 == self.count => self.to,
             None => {
                 let share = index as f64 / (self.count - 1) as f64;
@@ -93,12 +93,20 @@ impl Steps {
             }
         }
     }
-    /// Returns 0.07 for 0.06999999999999999: the value with fifteen digits of the largest one, if that is as
-    /// good as equal.
-    fn decimal(&self, value: f64, step: f64) -> f64 {
+    /// Returns a value in equal steps: 0.07 and not 0.06999999999999999, if the first value and the step are
+    /// decimal fractions, too.
+    fn decimal(&self, index: usize, step: f64) -> f64 {
+        let value = self.from + index as f64 * step;
+        let is_close = |near: &f64| (near - value).abs() <= ROUNDING * step;
+        if index == 0 || (index + 1 == self.count && is_close(&self.to)) {
+            return if index == 0 { self.from } else { self.to };
+        }
         let largest = self.from.abs().max(self.to.abs());
         let places = (14.0 - libm::floor(libm::log10(largest))).clamp(0.0, 300.0) as usize;
-        let near = format!("{value:.places$}").parse().unwrap_or(value);
-        if (near - value).abs() <= ROUNDING * step { near } else { value }
+        let rounded = |number: f64| format!("{number:.places$}").parse::<f64>().unwrap_or(number);
+        let are_decimal = [self.from, step].iter().all(|&number| rounded(number) == number);
+        let near = Some(rounded(value)).filter(|near| are_decimal && is_close(near));
+        // The sum with 0 turns -0 into 0.
+        near.unwrap_or(value) + 0.0
     }
 }

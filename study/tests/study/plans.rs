@@ -164,6 +164,24 @@ fn values_by_rule_are_values() -> Result<(), AnyError> {
     Ok(())
 }
 
+/// Equal steps from decimal fractions are decimal fractions. Numbers that are none stay as they are.
+#[test]
+fn equal_steps_are_the_numbers_that_one_expects() -> Result<(), AnyError> {
+    let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
+    let values = |rule: &str| -> Result<Vec<f64>, AnyError> {
+        let text = format!("{head}[[sweep]]\nparameter = \"gravity\"\nvalues = {rule}\n");
+        let plan = Plan::<VibratedBox>::from_toml(&text)?;
+        (0..plan.ramp_count()).map(|ramp| Ok(plan.experiment(ramp, 0)?.gravity)).collect()
+    };
+    assert_eq!(values("{ from = 0.005, to = 0.03, step = 0.005 }")?, [0.005, 0.01, 0.015, 0.02, 0.025, 0.03]);
+    assert_eq!(values("{ from = 0.1, to = 0.7, step = 0.1 }")?, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
+    let third = 0.333_333_333_333_333_3;
+    assert_eq!(values("{ from = 0.3333333333333333, to = 0.6, step = 0.2 }")?, [third, third + 0.2]);
+    let zero = values("{ from = -2.1, to = 0.0, step = 0.7 }")?[3];
+    assert!(zero == 0.0 && zero.is_sign_positive(), "{zero}");
+    Ok(())
+}
+
 /// A million values are loaded at once, by a rule or in a list: a quadratic comparison, or a look at each of
 /// them, takes minutes.
 #[test]
