@@ -91,6 +91,9 @@ impl Part {
     ///
     /// Disks may overlap such a part: it is a line that their centers must not pass. It may move by
     /// `BiParabolic`, `Triangular` or `Tabulated`; a vessel refuses it if it moves otherwise or turns.
+    /// Seldom, a center passes the line by rounding, when the events of all disks are predicted anew just as
+    /// it is there (15 of 4150 in one trial); it is taken out when it comes back. An
+    /// [absorbing](Self::absorbing) part misses no disk.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
