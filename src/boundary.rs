@@ -160,8 +160,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   epoch, a typical disk moves tens of diameters.
 /// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
-/// - It calls `surface` for a touch that `first_touch` found: with its wall, its time, and the position of
-///   the disk at that time.
+/// - It calls `surface` for a touch that `first_touch` found, with the position of the disk at its time.
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;

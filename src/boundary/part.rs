@@ -253,7 +253,7 @@ impl Part {
     }
 
     /// Returns the surface of the part with this normal and radius, where the part moves at this velocity.
-    /// Where a belt is curved, it turns like a drum.
+    /// A belt turns like a drum where it is curved.
     pub(super) fn surface(&self, normal: DVec2, radius: f64, velocity: DVec2) -> Surface<'_> {
         let along = -normal.perp() * self.surface_speed;
         Surface::new(normal, velocity + along)

@@ -58,7 +58,7 @@ impl<T> PerDisk<T> {
 impl<T> From<Vec<(u64, T)>> for PerDisk<T> {
     /// Creates the values from ids and values in any order.
     fn from(mut entries: Vec<(u64, T)>) -> Self {
-        // As long as the disks of a run stay the same, their ids are in order already.
+        // While the disks of a run stay the same, their ids are in order already.
         entries.sort_by_key(|(id, _)| *id);
         Self(entries)
     }

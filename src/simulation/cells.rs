@@ -310,7 +310,7 @@ impl Cells {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
-        // Where two images of a disk cannot be distinguished, a disk within reach of the last cell may now be
+        // If two images of a disk cannot be distinguished, a disk within reach of the last cell may now be
         // met at another image, so all disks within reach are gathered again.
         layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
     }

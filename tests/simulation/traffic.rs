@@ -12,7 +12,7 @@ use granular_edmd::observable::{Arrivals, OfKind, SampleTimes};
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::simulation::{BuildError, Inlet, RunError, Warning};
-use granular_edmd::wall::{BiParabolic, Sinusoidal};
+use granular_edmd::wall::{BiParabolic, Delayed, Sinusoidal};
 use granular_edmd::{Disk, Kind, Simulation};
 
 use crate::schedulers::{SCHEDULERS, Scheduler};
@@ -349,7 +349,9 @@ fn a_line_for_centers_moves_by_parabolas_only() -> Result<(), Box<dyn Error>> {
     };
     let turning = line()?.with_rotation(DVec2::new(10.0, 5.0), 0.1)?;
     let shaken = line()?.with_motion(DVec2::Y, Sinusoidal::new(2.0, 0.7)?)?;
-    for part in [turning, shaken] {
+    // This motion is at rest for long.
+    let late = line()?.with_motion(DVec2::Y, Delayed::new(Sinusoidal::new(2.0, 0.7)?, 50.0)?)?;
+    for part in [turning, shaken, late] {
         let refused: Box<dyn Error> = box_of(part).unwrap_err();
         assert!(refused.to_string().contains("\"exit\" takes out disks when their centers"), "{refused}");
     }
