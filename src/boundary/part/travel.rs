@@ -240,8 +240,8 @@ impl Travel {
 
     /// Returns whether the path of each point is known exactly, in pieces of constant acceleration.
     ///
-    /// The pieces are followed over a period, or as far as a motion without a period has them, so that a motion
-    /// that begins late shows, too.
+    /// The pieces are followed over a period, or as far as a motion without a period has them, so that a
+    /// motion that begins late shows, too.
     pub(in crate::boundary) fn is_exact(&self) -> bool {
         let along = self.along.as_ref().map(|along| &along.motion);
         self.frame().is_none() && along.is_none_or(has_constant_pieces)
