@@ -89,11 +89,8 @@ impl Part {
 
     /// Returns the same part as a sink that takes a disk out of the run when its center arrives at a brick.
     ///
-    /// Disks may overlap such a part: it is a line that their centers must not pass. It may move by
-    /// `BiParabolic`, `Triangular` or `Tabulated`; a vessel refuses it if it moves otherwise or turns.
-    /// Seldom, a center passes the line by rounding, when the events of all disks are predicted anew just as
-    /// it is there (15 of 4150 in one trial); it is taken out when it comes back. An
-    /// [absorbing](Self::absorbing) part misses no disk.
+    /// Disks may overlap such a part: it is a line that their centers must not pass. A center arrives when it
+    /// is within 1e-7 radii of the line.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

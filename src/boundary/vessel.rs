@@ -253,9 +253,6 @@ impl Vessel {
                 return Err(VesselError::TooManyPeriods { name, periods, most });
             }
         }
-        if placed.part.takes_centers() && !placed.part.travel().is_exact() {
-            return Err(VesselError::CentersMissed { name });
-        }
         let (stroke, least) = (placed.part.travel().stroke(), LEAST_STROKE * placed.size);
         if stroke > 0.0 && stroke < least {
             return Err(VesselError::Stroke { name, stroke, least });

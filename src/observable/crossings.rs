@@ -22,8 +22,8 @@ use crate::{Disk, ParameterError};
 /// an error if disks change otherwise than in the collisions that the observer receives, as they do in a
 /// [`BetweenKinds`](super::BetweenKinds), or by the driving of a study.
 ///
-/// On the line of a wall that [absorbs centers](crate::boundary::Part::absorbing_centers), rounding decides
-/// whether a disk that is absorbed there counts: use [`Arrivals`](super::Arrivals) there.
+/// A disk that a wall [absorbs](crate::boundary::Part::absorbing_centers) at the segment has not crossed it:
+/// count such disks by [`Arrivals`](super::Arrivals).
 ///
 /// ```
 /// use granular_edmd::observable::{Crossings, SampleTimes};

@@ -29,6 +29,13 @@ const IN_WALL: f64 = 1e-9;
 /// Margin of the strip that a brick sweeps, relative to the lengths in the search.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
+/// Radius of the point that stands for the center of a disk at a line for centers, relative to the radius of
+/// the disk. It is far above rounding and far below any length that is measured.
+///
+/// A point without a radius would get through: where rounding puts it behind the line as it arrives, a search
+/// that begins there, because all events are predicted anew, finds a point that flies away.
+const CENTER: f64 = 1e-7;
+
 /// Longest flight for which entries into the strip are computed. Squares of longer times would overflow.
 const LONGEST: f64 = 1e150;
 
@@ -77,14 +84,14 @@ impl Vessel {
         if moving.is_empty() { first } else { self.search(&moving, flight, until, first) }
     }
 
-    /// Returns the flight as seen from a periodic image of a brick. For a brick that takes centers, it is the
-    /// flight of a point.
+    /// Returns the flight as seen from a periodic image of a brick. For a brick that takes centers, the disk
+    /// shrinks to its center.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
         let is_line = self.parts[self.walls[entry.wall as usize].part].part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
             return *flight;
         }
-        let (time, radius) = (flight.time(), if is_line { 0.0 } else { flight.radius() });
+        let (time, radius) = (flight.time(), if is_line { CENTER } else { 1.0 } * flight.radius());
         let (place, velocity) = (flight.position(time), flight.velocity(time));
         Flight::new(time, place - entry.image, velocity, flight.acceleration(), radius)
             .with_kind(flight.kind())
