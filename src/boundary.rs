@@ -25,7 +25,7 @@
 //! their checks. A rule or a custom motion cannot be written.
 //!
 //! [`Obstacles`] puts fixed round obstacles into any boundary. A custom geometry implements [`Boundary`];
-//! [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
+//! [`roots`](crate::roots) provides the numerical methods that it needs, and [`laws`] checks it.
 
 mod area;
 mod brick;
@@ -80,7 +80,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// All times are *offsets* from the absolute time that was last given to
 /// [`set_time_origin`](Self::set_time_origin), 0 at first. Absolute times grow without bound and would lose
 /// digits. A boundary whose walls move reduces the origin by whole periods to a phase of their motion, as
-/// [`WallMotion`](crate::wall::WallMotion) explains; others may ignore it.
+/// [`WallMotion`](crate::wall::WallMotion) explains; other boundaries may ignore the origin.
 ///
 /// # Who asks what, and when
 /// ```text
@@ -137,9 +137,9 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
-/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple. Its velocity changes by
-///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
-///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with a
+/// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. Its velocity
+///    changes by the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the
+///    surface over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with a
 ///    tangential mass counts as the impulse C/R along the surface. No wall changes its position
 ///    instantaneously. The result is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
@@ -153,7 +153,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// The engine guarantees:
 /// - It sets the origin before any other call except for `state`, and whenever the epoch of the run moves. If
-///   the walls are set during a run and have a state, the first origin is the present. It never passes a
+///   the walls are set during a run and have a state, the first origin is the present time. It never passes a
 ///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
 ///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
@@ -334,10 +334,10 @@ pub trait Boundary {
     /// default kind is free at `time`, or `None` if the boundary does not know the area.
     ///
     /// With a radius of 0, the result is the area that matter can fill. Stresses, densities and profiles
-    /// divide by this area. Where walls occupy part of the domain, they refuse to measure if the area is
-    /// unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay where
-    /// they are. The default is `None`. A boundary in which the free area depends on the kind of the matter
-    /// returns `None`, too.
+    /// divide by this area. Where walls occupy part of the domain, these observables refuse to measure if the
+    /// area is unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay
+    /// where they are. The default is `None`. A boundary in which the free area depends on the kind of the
+    /// matter returns `None`, too.
     ///
     /// Containers, vessels and obstacles know the area to 1e-10, even if walls overlap, unless a part with an
     /// inside is [for some kinds only](Part::only_for). The exceptions are obstacles that lie in a curved

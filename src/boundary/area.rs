@@ -102,7 +102,7 @@ impl Curve {
     }
 }
 
-/// Returns the root of a square; 0 if rounding may have made the square from 0, where curves are tangent.
+/// Returns the root of a square, or 0 if the square is 0 up to rounding, as it is where curves are tangent.
 fn root(square: f64) -> f64 {
     const ROUNDING: f64 = 1e-13;
     if square.abs() < ROUNDING { 0.0 } else { square.sqrt() }
@@ -113,7 +113,7 @@ pub(super) fn meet(one: &Region, other: &Region) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
-/// A region, and whether centers in it are free.
+/// A region, with a test of whether a center in it is free.
 pub(super) struct Field<'a> {
     pub(super) region: Region,
     /// The curves at which freedom may change.
@@ -149,7 +149,7 @@ impl Field<'_> {
         heights.windows(2).map(|ends| self.piece(ends[0], ends[1])).sum()
     }
 
-    /// Returns the heights between which the free length is smooth, in their order.
+    /// Returns the heights between which the free length is smooth, in ascending order.
     fn heights(&self) -> Vec<f64> {
         let Region { min, max, .. } = self.region;
         let mut heights = vec![min.y, max.y];

@@ -132,7 +132,7 @@ impl Domain {
         place
     }
 
-    /// Returns the unwrapped position of a disk: its position without all shifts by periodic sides and ends.
+    /// Returns the unwrapped position of a disk: its position without the shifts at periodic sides and ends.
     ///
     /// Differences of unwrapped positions are displacements.
     ///

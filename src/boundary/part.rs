@@ -174,7 +174,8 @@ impl Part {
 }
 
 impl Part {
-    /// Sets the response of the part. Centers are points, so they need no corners where bricks end.
+    /// Sets the response of the part. A line for centers needs no corners where its bricks end, since a
+    /// center is a point.
     fn with_conduct(mut self, conduct: Conduct) -> Self {
         self.conduct = conduct;
         if self.takes_centers() {
@@ -227,7 +228,7 @@ impl Part {
 
     /// Returns the phase of the motion at a time origin.
     ///
-    /// Both remainders are exact. Their difference has the rounding of a phase, not of a late time.
+    /// Both remainders are exact. Their difference is rounded as a phase is, not as a late time is.
     pub(super) fn phase(&self, origin: f64) -> Phase {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }

@@ -89,9 +89,9 @@ impl<'a> Surface<'a> {
         Self { radius, ..self }
     }
 
-    /// Returns the same surface of a wall with this mass, which is guided along its normal.
+    /// Returns the same surface for a wall of this mass, which is guided along its normal.
     ///
-    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary takes
+    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary receives
     /// the opposite impulse in [`react`](super::Boundary::react).
     #[must_use]
     #[inline]
@@ -109,7 +109,7 @@ impl<'a> Surface<'a> {
         Self { tangential_mass, ..self }
     }
 
-    /// Returns the same surface of a wall that turns at this angular velocity, counterclockwise.
+    /// Returns the same surface for a wall that turns at this angular velocity, counterclockwise.
     ///
     /// Rolling friction acts on the spin of the disk relative to this angular velocity. The velocity of the
     /// surface is given separately.
@@ -162,9 +162,9 @@ impl fmt::Debug for Response<'_> {
 /// the angular velocity are Gaussian with variances $`T_0/m`$ and $`T_0/I`$. The slip variant redraws only
 /// the normal speed, as the base of Ramírez, Risso and Cordero, PRL 85, 1230 (2000), does.
 ///
-/// A wall of mass $`M`$ recoils: the speed relative to it has this density for the reduced mass
-/// $`m M/(m + M)`$, and the momentum along the normal is conserved. Along its surface, a thermal wall must be
-/// guided. The gas behind a wall that turns, turns with it, and so do the disks that the wall emits.
+/// A wall of mass $`M`$ recoils: the speed relative to it has this density for the reduced mass $`m M/(m +
+/// M)`$, and the momentum along the normal is conserved. Along its surface, a thermal wall must be guided. If
+/// the wall turns, the gas behind it turns with it, and so do the disks that the wall emits.
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;
