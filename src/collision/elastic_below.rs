@@ -4,8 +4,8 @@ use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialRespon
 use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
-/// A rule whose slow collisions are elastic: surfaces part at a speed v_c at least, or, if they closed more
-/// slowly, as fast as they closed.
+/// A rule whose slow collisions are elastic: surfaces part at the speed v_c or faster; if they closed more
+/// slowly, they part as fast as they closed.
 ///
 /// ```math
 /// v_n' = \max\left(r_n v_n,\ \min(v_n, v_c)\right)
