@@ -89,9 +89,9 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    `next_sample` is what it was at the end.
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
-/// breaks another, it gets samples at times that it did not intend. [`SampleTimes`](super::SampleTimes) keeps
-/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` says which planted
-/// faults it finds.
+/// breaks another promise, it gets samples at times that it did not intend.
+/// [`SampleTimes`](super::SampleTimes) keeps all five, and [`laws::check`](super::laws::check) tests them;
+/// `docs/validation.md` says which planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",
@@ -128,7 +128,7 @@ pub trait Observer {
     }
 
     /// Receives a disk that a sink takes out during the run, after the collision with the sink. The disk has
-    /// the motion with which it came there.
+    /// the motion with which it arrived at the sink.
     ///
     /// The last disk then gets the index of this disk.
     fn on_remove(&mut self, disk: &Disk, time: f64) {

@@ -13,7 +13,8 @@ pub struct Neighbors<'a> {
     domain: Domain,
     squares: Squares,
     range: f64,
-    /// Largest components of a vector between two disks that is shorter than the vectors to all images.
+    /// Half of each period; infinite where there is none. A vector with smaller components is shorter than
+    /// the vectors to all images.
     half: DVec2,
 }
 

@@ -155,7 +155,7 @@ mod serial {
         fn try_from(raw: Raw<Q, Q::Value>) -> Result<Self, ParameterError> {
             let Raw { observable, sample_times, times, values } = raw;
             let count = values.len() as f64;
-            accept(values.len() == times.len(), "number of values", "that of the times", count)?;
+            accept(values.len() == times.len(), "number of values", "the number of times", count)?;
             times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
             Ok(Self { observable, sample_times, times, values, system: System::NONE, fault: None })
         }

@@ -33,7 +33,8 @@ impl System {
         accept(goes_on, "start of the run", requirement, time).map(drop)
     }
 
-    /// Notes the system of a run, which may start at any time.
+    /// Notes the system of a run, which may start at any time. Returns an error if it is another system than
+    /// before.
     pub(super) fn is_same(&mut self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         let is_same = !self.mark.is_other(start.system_mark());
         let requirement = "of the same system; clear the observer for another system, or take a new one";

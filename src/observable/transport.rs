@@ -209,8 +209,8 @@ impl TransportCoefficients {
         self.coefficient(1, excess * excess * (longest + half) as f64 * interval)
     }
 
-    /// Returns the thermal conductivity λ for disks of equal mass, or NaN for other disks, in which the
-    /// diffusion of the masses also carries energy.
+    /// Returns the thermal conductivity λ for disks of equal mass, or NaN for disks of different masses,
+    /// whose diffusion also carries energy.
     pub fn thermal_conductivity(&self) -> Estimate {
         self.coefficient(2, 0.0).scaled(1.0 / self.temperature())
     }

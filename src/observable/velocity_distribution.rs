@@ -53,7 +53,7 @@ pub struct VelocityDistribution {
     excess_kurtosis: [BlockedMean; 2],
 }
 
-/// The velocity that is subtracted from each disk's.
+/// The velocity that is subtracted from the velocity of each disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Frame {

@@ -16,7 +16,7 @@ impl WallNames {
     /// No names yet.
     pub(super) const NONE: Self = Self { walls: Mark::NONE, names: Vec::new() };
 
-    /// Checks that each index of a wall that is measured means the wall that it meant before, since values of
+    /// Checks that the index of each measured wall belongs to the same wall as before, since values of
     /// different walls must not be added.
     ///
     /// # Errors
