@@ -11,7 +11,7 @@
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls. Inlets come after all events of disks, in the order in which they were added.
-//! 3. A sample at time $`t`$ has seen all events up to and at $`t`$.
+//! 3. A sample at time $`t`$ includes all events up to and at $`t`$.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
@@ -279,12 +279,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets gravity from now on.
     ///
-    /// The time origin of the walls becomes the present, so that their
+    /// The time origin of the walls becomes the present time, so that their
     /// [`state`](crate::boundary::Boundary::state) is the present one.
     ///
     /// # Errors
-    /// If gravity is not finite, or a component is above 1e60 in magnitude. If disks would fall so fast that
-    /// times as late as the present are too coarse. The simulation then stays unchanged.
+    /// If gravity is not finite, or a component is above 1e60 in magnitude. Also if disks would fall so fast
+    /// that times as late as the present are too coarse. The simulation then stays unchanged.
     pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
         let gravity = gravity.into().checked()?;
         let epoch_length = self.bodies.epoch_length_under(gravity);

@@ -137,7 +137,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Checks that no event before this time offset was lost, and that all disks are in the domain then.
+    /// Checks that no event before this time offset was lost, and that all disks are in the domain at that
+    /// time.
     pub(super) fn check_all(&self, offset: f64) -> Outcome<()> {
         let domain = self.boundary.domain();
         let rounding = self.clock.rounding() * self.fastest();

@@ -54,8 +54,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.look_ahead();
         if forecast.is_collision() {
             let partner = forecast.partner as usize;
-            // An equal count means that the partner is still on the flight of the prediction. It may also be
-            // gone.
+            // An equal count means that the partner is still on the flight for which the collision was
+            // predicted. The partner may also have been removed.
             let collisions = self.bodies.forecast(partner).map(|partner| partner.collisions);
             if collisions == Some(forecast.partner_collisions) {
                 return self.collide(disk, partner, observer).map(Some);

@@ -65,7 +65,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(next)
     }
 
-    /// Opens all inlets whose absolute time this is.
+    /// Opens all inlets that are due at this absolute time.
     pub(super) fn open_inlets<O: Observer + ?Sized>(&mut self, time: f64, observer: &mut O) -> Outcome<()> {
         for number in 0..self.inlets.len() {
             if self.inlets[number].times.upcoming() > time {

@@ -145,7 +145,7 @@ impl fmt::Display for Warning {
             ),
             Self::EndlessFall { upwards } => write!(
                 formatter,
-                "gravity points upwards by {} where there is no lid: disks fall for ever, and each step of the clock takes \
+                "gravity points upwards by {} where there is no lid: disks fall forever, and each step of the clock takes \
                  more events; a lid or another gravity is needed",
                 Rounded(*upwards)
             ),
@@ -241,7 +241,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let collisions = self.counters.disk_collisions;
         let speeds = (0..self.len()).map(|disk| self.bodies.velocity(disk, self.clock.now).abs());
         let DVec2 { x, y } = speeds.fold(DVec2::ZERO, DVec2::max);
-        // A single disk, and disks that were brought to rest, have no direction to lose.
+        // For a single disk, and for disks that were brought to rest, motion along one axis is no reason for
+        // a warning.
         let may_be = collisions >= FEWEST && self.len() > 1 && x.max(y) > 0.0;
         let is_one = may_be && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })

@@ -46,9 +46,9 @@ pub(super) struct Homes<'a> {
 /// The range of distances between the centers of two disks that touch, one of each of two classes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Distances {
-    /// The distance of the centers when the largest disks touch.
+    /// The distance between the centers when the largest disks touch.
     pub(super) most: f64,
-    /// The distance of the centers when the smallest disks touch.
+    /// The distance between the centers when the smallest disks touch.
     pub(super) least: f64,
 }
 

@@ -15,7 +15,7 @@ pub enum Remedy {
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
     /// Slow collisions are lossless already, but the disks are too slow: a disk is at rest or squeezed, or
-    /// walls drive it without end.
+    /// walls drive it forever.
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
