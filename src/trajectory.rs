@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO, ASE, chemfiles, MDAnalysis |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, MDAnalysis, tools around LAMMPS |
-//! | [`Gsd`], as of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
+//! | [`Gsd`], the format of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
 //! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!
 //! A [`Reader`] reads all of these but VTK, and files of other programs: it recognizes the format by the

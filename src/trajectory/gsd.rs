@@ -146,7 +146,7 @@ fn write_log(snapshot: &Snapshot<'_>, [x, y]: [f64; 2], out: &mut Vec<u8>) {
     out.extend(walls.iter().flat_map(|wall| wall.2.to_le_bytes()));
 }
 
-/// Returns the center and the size of the box in a file. In the file, positions count from the center.
+/// Returns the center and the size of the box in a file. In the file, positions are measured from the center.
 ///
 /// The center of an open box is on its bottom, since the center of a box that ends above the highest disk
 /// would move, and with it the positions of all disks.

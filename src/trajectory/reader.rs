@@ -172,10 +172,10 @@ impl Reader {
     /// Reads a frame of an input.
     ///
     /// # Errors
-    /// If the input fails, is compressed and the feature is missing, is of no known format, or does not
-    /// have the frame. If a needed part is missing, a number cannot be read or is out of range, columns
-    /// contradict each other, or an id appears twice. If disks overlap, are outside the box, or do not lie
-    /// in a plane. The error names the line.
+    /// If the input fails, is compressed and the feature is missing, is of no known format, or does not have
+    /// the frame. Also if a needed part is missing, a number cannot be read or is out of range, columns
+    /// contradict each other, or an id appears twice. Also if disks overlap, are outside the box, or do not
+    /// lie in a plane. The error names the line.
     pub fn read_from(&self, input: impl BufRead) -> Result<State, ReadError> {
         self.state(source::frames(input)?)
     }

@@ -95,7 +95,7 @@ impl Recorder {
 
     /// Creates a recorder that continues a file, or begins one that is absent or empty.
     ///
-    /// It suits a run that starts itself again after a kill, which may have come before the first frame.
+    /// It suits a run that is restarted automatically after it was killed, perhaps before the first frame.
     ///
     /// # Errors
     /// The errors of [`create`](Self::create) and [`append`](Self::append).

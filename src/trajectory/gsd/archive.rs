@@ -19,7 +19,7 @@ pub(super) struct Archive<R> {
     entries: Vec<[u8; ENTRY]>,
     /// True if this crate wrote the file.
     pub(super) is_own: bool,
-    /// Numbers of the names that were asked for.
+    /// Numbers of the names that were requested.
     asked: BTreeSet<usize>,
 }
 

@@ -193,7 +193,7 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(columns)
     }
 
-    /// Returns the point from which positions count.
+    /// Returns the point from which positions are measured.
     fn center(&mut self) -> Result<DVec2, ReadError> {
         Ok(self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
     }
