@@ -3,7 +3,7 @@
 use super::WallMotion;
 use crate::roots::first_descent;
 
-/// Rounding of a gap, relative to the lengths whose difference it is.
+/// Rounding of a gap, relative to the two lengths whose difference is the gap.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Least room for a step, in units of the rounding. It makes sure that a search ends.

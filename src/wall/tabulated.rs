@@ -57,7 +57,7 @@ impl Tabulated {
     ///
     /// # Errors
     /// If there are fewer than two rows, a number is not finite, or a time is not later than the previous
-    /// time by more than rounding. If an acceleration would not be finite. Rows count from 0.
+    /// time by more than rounding. Also if an acceleration would not be finite. Rows are counted from 0.
     pub fn new(rows: impl IntoIterator<Item = (f64, f64)>) -> Result<Self, ParameterError> {
         let rows: Vec<(f64, f64)> = rows.into_iter().collect();
         accept(rows.len() > 1, "number of rows", "at least 2", rows.len() as f64)?;
