@@ -26,7 +26,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// A file that is written piece by piece, and gets its name when it is complete. A draft that is dropped
-/// leaves nothing.
+/// leaves nothing behind.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,

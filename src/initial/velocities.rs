@@ -12,8 +12,8 @@ use crate::{Disk, ParameterError};
 ///
 /// The center of mass is at rest, and all angular velocities stay unchanged.
 ///
-/// Each component is normal with variance $`T/m`$. The total momentum is then removed, in proportion to the
-/// masses.
+/// Each component of a velocity is a normal number of variance $`T/m`$. The total momentum is then removed,
+/// in proportion to the masses.
 ///
 /// # Errors
 /// If the temperature is negative or not finite.

@@ -43,7 +43,7 @@ impl IsoLine {
     /// Creates the line of this mean energy change per collision.
     ///
     /// # Errors
-    /// If the mean energy change is not finite, or positive: no collision gains energy.
+    /// If the mean energy change is infinite, NaN or positive, since no collision gains energy.
     pub fn new(mean_energy_change: f64, gas: &Maxwellian) -> Result<Self, ParameterError> {
         let valid = mean_energy_change.is_finite() && mean_energy_change <= 0.0;
         accept(valid, "mean energy change", "finite and not positive", mean_energy_change)?;

@@ -38,8 +38,8 @@ const SIGHT: usize = 48;
 ///   it is.
 /// - A bucket is opened just before its time comes. Old entries are dropped, and the others are sorted.
 /// - A disk that becomes due within an open bucket waits in a heap.
-/// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
-///   to a new one, whose buckets are as wide as the events of the last page suggest.
+/// - A disk that is due after the end of the page is not written into it. When the page is used up, all disks
+///   are distributed over a new page, whose buckets are as wide as the events of the last page suggest.
 ///
 /// An event thus writes only to locations that are in the caches, however many disks there are. The one
 /// exception is the time of its disk.

@@ -179,10 +179,11 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
                 self.runner_up = if round == 0 { beside } else { self.runner_up.or(beside) };
                 continue;
             }
-            // Both play in the last match. The climber is compared last of all, since its time is known last.
+            // Both play in the last match. The `climber` is compared last of all, since its time is known
+            // last.
             let others = matches[0].earliest_without(winners_seat, seat, earliest);
             matches[0].seat(seat, climber);
-            // If both came from the same match of the round before, the climber was compared there, in
+            // If both came from the same match of the round before, the `climber` was compared there, in
             // `beside`.
             let is_beside = seat == winners_seat;
             let late = Player { due: if is_beside { f64::INFINITY } else { climber.due }, ..climber };
