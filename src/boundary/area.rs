@@ -23,7 +23,7 @@ pub(super) const LOOKS: u32 = 16;
 /// Distance of the first and the last examined point from the ends of their interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
 
-/// Nodes and weights of Gauss and Legendre's rule of ten points on [-1, 1]: the positive half.
+/// Nodes and weights of the ten-point Gauss–Legendre rule on [-1, 1]: the positive half.
 const GAUSS: [(f64, f64); 5] = [
     (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
     (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
@@ -139,7 +139,7 @@ impl Field<'_> {
         }
         let top = self.curves.iter().map(|curve| curve.bounds().max.y).fold(region.min.y, f64::max);
         if region.max.y.is_infinite() {
-            // Above all curves, a line is free everywhere or nowhere, and so are all lines over it.
+            // Above all curves, a line is free everywhere or nowhere, and so are all lines above it.
             if self.length(top + 1.0, &self.curves) > 0.0 {
                 return f64::INFINITY;
             }
@@ -191,8 +191,8 @@ impl Field<'_> {
             + self.refined(middle, high, curves, halves[1], halvings - 1)
     }
 
-    /// Integrates the free length by a rule of ten points. Its variable $`s`$ in [0, 1] gives the height
-    /// $`3s^2 - 2s^3`$, in which square roots at both ends are smooth.
+    /// Integrates the free length by the ten-point rule. Its variable $`s`$ in [0, 1] gives the height $`3s^2
+    /// - 2s^3`$, in which square roots at both ends are smooth.
     fn quadrature(&self, low: f64, high: f64, curves: &[Curve]) -> f64 {
         let mut sum = 0.0;
         for (node, weight) in GAUSS {

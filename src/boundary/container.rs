@@ -112,8 +112,8 @@ impl Container {
     /// Gravity then keeps driving the disks down, as in a pipe.
     ///
     /// # Errors
-    /// If the container is open above, or floor or lid has a motion, a rule, a temperature or a kind, which
-    /// would be lost.
+    /// If the container is open above, or the floor or the lid has a motion, a rule, a temperature or a kind,
+    /// which would be lost.
     pub fn with_periodic_ends(self) -> Result<Self, WallError> {
         if self.height.is_infinite() {
             return Err(WallError::Missing { wall: Wall::Lid });

@@ -295,8 +295,8 @@ impl Sighted {
     /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
     /// equally near and seen less edge-on.
     ///
-    /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
-    /// that is seen more broadside decides: the brick whose straight extension is farther from the position.
+    /// Two bricks that meet at the nearest point are equally far away up to rounding. The brick that is seen
+    /// more broadside then decides: the brick whose straight extension is farther from the position.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

@@ -30,16 +30,16 @@ pub struct Surface<'a> {
     pub response: Response<'a>,
     /// Kind of the wall, which rules find in the contact.
     pub kind: Kind,
-    /// Radius of the surface, for the contact that a rule sees: infinite if it is straight, negative if it is
-    /// hollow.
+    /// Radius of the surface, for the contact that a rule sees: infinite for a straight surface, negative for
+    /// a hollow one.
     pub radius: f64,
     /// Mass that resists along the normal; infinite unless the wall [reacts](super::Boundary::react).
     pub mass: f64,
     /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
     /// radius R with the moment of inertia I.
     pub tangential_mass: f64,
-    /// Angular velocity of the surface, counterclockwise. For a curved wall with a tangential mass, it is
-    /// ignored: that wall's angular velocity follows from its velocity.
+    /// Angular velocity of the surface, counterclockwise. It is ignored for a curved wall with a tangential
+    /// mass, whose angular velocity follows from its velocity.
     pub angular_velocity: f64,
 }
 

@@ -13,7 +13,7 @@ impl Brick {
     /// closes further; `None` if there is no such time.
     ///
     /// A custom [`Boundary`](crate::boundary::Boundary) can find its first touch with this method, which is
-    /// exact for constant acceleration. Only touches beside the brick count, not those at its ends: close
+    /// exact for constant acceleration. Only touches beside the brick count, not touches at its ends: close
     /// open ends with a [`point`](Self::point).
     ///
     /// ```

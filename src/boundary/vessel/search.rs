@@ -10,14 +10,15 @@ use crate::boundary::part::{Travel, Turning};
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
-/// one round more. The engine reads the clock every 256 events, so it still keeps a limit of wall-clock time.
+/// one round more. The engine reads the clock every 256 events, so it still respects a limit of wall-clock
+/// time.
 const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the search continues with the next brick.
 ///
-/// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
-/// touches it first. A turning arm has such a brick on its trailing side. The rounds keep it from taking all
-/// the steps.
+/// A brick that moves fast near the disk may take many steps without ever touching the disk, because another
+/// brick touches the disk first. A turning arm has such a brick on its trailing side. The rounds keep such a
+/// brick from taking all the steps.
 const STEPS_IN_A_ROUND: u32 = 16;
 
 /// Gap below which surfaces count as touching, relative to the two lengths whose difference is the gap.
