@@ -11,8 +11,8 @@ use crate::{Disk, ParameterError};
 ///
 /// # Contract
 /// `measure` depends on the snapshot alone: measured twice, the same snapshot gives the same value. It must
-/// not panic for a snapshot without disks, or of a domain without a lid, whose height is infinite. A value
-/// that is not defined is NaN.
+/// not panic for a snapshot without disks, or for a snapshot of a domain without a lid, whose height is
+/// infinite. A value that is not defined is NaN.
 ///
 /// The engine measures copies of the disks, so an observable cannot change the run.
 #[diagnostic::on_unimplemented(
@@ -66,12 +66,12 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
 ///    changed.
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
-///    run. The sample has seen all events up to and at its time. A time before the start of the run is
+///    run. The sample includes all events up to and at its time. A time before the start of the run is
 ///    sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
 ///    or fails the run, no further event happens.
-/// 5. `on_insert` and `on_remove` are called for each disk that an inlet lets in, or a sink takes out, at its
-///    time, so an observer knows all disks at all times.
+/// 5. `on_insert` is called when an inlet lets a disk in, and `on_remove` when a sink takes a disk out, so an
+///    observer knows all disks at all times.
 /// 6. Whatever an observer does, the trajectory has the same bits as without the observer, as far as the run
 ///    goes.
 ///
@@ -85,8 +85,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine calls `next_sample`
 ///    after these calls, and would notice another change too late.
-/// 5. Samples do not depend on how a run is cut: if a run starts at the time at which the last one ended,
-///    `next_sample` is what it was at the end.
+/// 5. Samples do not depend on how a run is cut into pieces: if a run starts at the time at which the
+///    previous one ended, `next_sample` keeps its value.
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
 /// breaks another promise, it gets samples at times that it did not intend.

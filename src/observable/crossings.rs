@@ -218,7 +218,8 @@ impl Free {
     fn leads_to(&self, other: &Self, pull: DVec2) -> bool {
         let gained = (other.time - self.time) * pull;
         let speeds = self.velocity.length() + gained.length();
-        // Late times are coarse, and so is the speed that a disk at rest gains between two of them.
+        // Late times are coarse, so the speed that a disk at rest gains between two adjacent times is coarse,
+        // too.
         let late = 16.0 * f64::EPSILON * (self.time.abs() + other.time.abs()) * pull.length();
         (self.velocity + gained).distance(other.velocity) <= ROUNDING * speeds + late
     }

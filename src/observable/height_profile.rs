@@ -125,8 +125,8 @@ impl HeightProfile {
         fractions.enumerate().map(|(bin, fraction)| (self.bins.middle(bin), fraction))
     }
 
-    /// Returns the bin with the largest packing fraction, or `None` before the first sample. Of several
-    /// equally dense bins, it is the lowest.
+    /// Returns the bin with the largest packing fraction, or `None` before the first sample. If several bins
+    /// are equally dense, it is the lowest of them.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }

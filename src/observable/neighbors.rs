@@ -52,7 +52,7 @@ impl<'a> Neighbors<'a> {
         self.range
     }
 
-    /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. Without a disk of this
+    /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. If no disk has this
     /// index, there are no neighbors.
     pub fn of(&self, disk: usize) -> impl Iterator<Item = Neighbor> {
         let from = self.disks.get(disk).map(Disk::position);
@@ -73,7 +73,7 @@ impl<'a> Neighbors<'a> {
     }
 }
 
-/// Checks that a range reaches no two images of a disk.
+/// Checks that a range never includes two images of a disk.
 pub(super) fn check_range(name: &'static str, range: f64, domain: &Domain) -> Result<(), ParameterError> {
     let periods = domain.periods();
     for period in [periods.x, periods.y].into_iter().filter(|&period| period > 0.0) {

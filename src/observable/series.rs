@@ -8,8 +8,8 @@ use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
 ///
-/// The times increase. A run that starts before the last sample, or that is of another system, ends
-/// immediately with an error: clear the series before such a run, or use another series. The same happens if
+/// The times increase. A run that starts before the last sample, or that belongs to another system, ends
+/// immediately with an error. Clear the series before such a run, or use another series. The same happens if
 /// the checkpoint from which a run was resumed is older than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values

@@ -30,7 +30,7 @@ pub(crate) trait Moving {
     /// Returns the number of disks.
     fn count(&self) -> usize;
 
-    /// Returns copies of all disks at an offset of the time.
+    /// Returns copies of all disks at a time offset.
     fn copies(&self, offset: f64) -> Vec<Disk>;
 }
 

@@ -24,7 +24,7 @@ impl System {
     /// Notes the start of a run.
     ///
     /// # Errors
-    /// If the run is of another system, or begins before the end of the previous one.
+    /// If the run belongs to another system, or begins before the end of the previous one.
     pub(super) fn begin(&mut self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         self.is_same(start)?;
         let (time, end) = (start.time(), self.end.unwrap_or(f64::NEG_INFINITY));
