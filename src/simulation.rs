@@ -16,7 +16,7 @@
 //!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
-//!    the caller gives again. If they have fingerprints, it notices when others are given.
+//!    the caller gives again. If they have fingerprints, the checkpoint notices when others are given.
 //! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
 //!    error that names the result. It never makes the engine go back in time, or name a disk or wall that
 //!    does not exist. A collision that is carried out happens at the surface of the partner, up to rounding.
@@ -302,7 +302,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// Moving walls take the positions of their motions at the present time. A wall that thereby jumps causes
-    /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, at its start; in a clone of
+    /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of
     /// the present boundary, it continues.
     ///
     /// # Errors

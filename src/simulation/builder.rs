@@ -89,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
     /// Sets the seed of the stochastic walls; 0 unless given.
     ///
-    /// Without stochastic walls, it has no effect.
+    /// The seed has no effect without stochastic walls.
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self

@@ -13,7 +13,7 @@ use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
-/// Largest difference of the length of a surface's normal from 1.
+/// Largest difference between the length of a surface's normal and 1.
 const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.

@@ -77,8 +77,8 @@ pub enum Warning {
         energy: f64,
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
-    /// them aside. Rows of a lattice over a floor that moves vertically hop like this forever. Any small
-    /// velocities at the start prevent it, for example by
+    /// them aside. Rows of a lattice over a floor that moves vertically bounce like this forever. Small
+    /// velocities at the start prevent it, for example from
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.

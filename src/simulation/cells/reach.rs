@@ -243,7 +243,7 @@ mod tests {
     use crate::simulation::cells::grid::{Grid, Place};
     use crate::simulation::cells::layout::Layout;
 
-    /// Returns a grid of cells of this size on a square of 60.
+    /// Returns a grid of cells of this size on a square of side 60.
     fn grid(container: &Container, pitch: f64) -> Grid {
         let count = (60.0 / pitch).round() as u32;
         let pitch = glam::DVec2::splat(60.0 / f64::from(count));

@@ -9,8 +9,9 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
-    /// repeated collisions elastic, or set a least speed at which surfaces part.
+    /// Slow collisions lose energy, so disks that come to rest collide ever more often. The remedy is to make
+    /// collisions elastic that are slow or follow each other quickly, or to set a least speed at which
+    /// surfaces part.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,

@@ -71,7 +71,7 @@ fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, E
 }
 
 /// Returns the time until a disk leaves its column, and whether it leaves to the right, for gravity to the
-/// right. It is not inlined, since gravity is vertical in most runs.
+/// right. The function is not inlined, since gravity is vertical in most runs.
 #[inline(never)]
 fn exit_sideways(left: f64, right: f64, velocity: f64, gravity: f64) -> (f64, bool) {
     let (wait, leftward) = exit_under_pull(left, right, -velocity, gravity);
