@@ -101,7 +101,7 @@ pub struct Gsd;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Vtk;
 
-/// The format for the ending of the file's name, in letters of any case.
+/// The format that the ending of the file's name determines, in upper or lower case.
 ///
 /// | ending | format |
 /// |---|---|

@@ -148,8 +148,8 @@ fn write_log(snapshot: &Snapshot<'_>, [x, y]: [f64; 2], out: &mut Vec<u8>) {
 
 /// Returns the center and the size of the box in a file. In the file, positions are measured from the center.
 ///
-/// The center of an open box is on its bottom, since the center of a box that ends above the highest disk
-/// would move, and with it the positions of all disks.
+/// The center of an open box is on its bottom. The middle of such a box moves with the highest disk, and all
+/// positions relative to the middle would move, too.
 fn seen_box(snapshot: &Snapshot<'_>) -> ([f64; 2], [f64; 2]) {
     let domain = snapshot.domain();
     let (x, width) = (0.5 * (domain.left + domain.right), domain.width());

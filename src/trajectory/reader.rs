@@ -16,7 +16,7 @@ use crate::quantity::non_negative;
 /// Reads disks from files of this crate and of other programs.
 ///
 /// The contents determine the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD,
-/// or a table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the
+/// or a table whose first line names its columns, separated by commas, semicolons, tabs or spaces. With the
 /// feature `gzip`, the file may be compressed.
 ///
 /// Columns are recognized by their names, in any order and case. A position and a radius are needed; without

@@ -138,7 +138,7 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(table)
     }
 
-    /// Returns the columns that the frame has beside the positions.
+    /// Returns the columns that the frame has besides the positions.
     fn columns(&mut self, count: usize) -> Result<Vec<Values>, ReadError> {
         let mut columns = Vec::new();
         for (chunk, name, order) in [
@@ -226,8 +226,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters of the disks: from the shapes if the file has shapes; otherwise from its
-    /// diameters or, if it has none, from the settings, or else 1.
+    /// Returns the diameters of the disks. They come from the shapes if the file has shapes, or else from its
+    /// diameters, or else from the settings. Without any of these, they are 1.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {
