@@ -39,7 +39,7 @@ use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
 
-/// Default of the largest number of states that are kept.
+/// Default limit on the number of states that are kept.
 const MOST_STATES: usize = 64;
 
 /// Largest difference of two times that counts as rounding, relative to the interval between states.

@@ -14,8 +14,8 @@ const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 /// file of that name stays.
 ///
 /// The bytes go to a temporary file in the same folder, which then takes the name of the file. Any number of
-/// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
-/// last one to rename it wins.
+/// threads, processes and hosts may write the same file at the same time: each has its own temporary file,
+/// and the last one to rename it wins.
 ///
 /// # Errors
 /// If the system cannot write it.

@@ -39,9 +39,9 @@ const APART: f64 = 1e-9;
 ///
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or the
-/// disks do not find room or jam. The error of a jam names the area fraction of the disks in the rectangle of
-/// the interior below the height. Also if a periodic boundary is too narrow for the engine, if the boundary
-/// breaks its contract, or if it has a piston that falls among the disks.
+/// disks find no room, or they jam. The error of a jam names the area fraction of the disks in the rectangle
+/// of the interior below the height. Also if a periodic boundary is too narrow for the engine, if the
+/// boundary breaks its contract, or if it has a piston that falls among the disks.
 ///
 /// ```
 /// use std::f64::consts::PI;

@@ -79,7 +79,7 @@ impl Page {
     #[inline]
     fn bucket(self, due: f64) -> usize {
         // The cast saturates: times before the page belong to its first bucket, and infinite times to the
-        // bucket of the largest number.
+        // bucket with the largest number.
         ((due - self.start) * self.rate) as usize
     }
 }
@@ -168,7 +168,7 @@ impl BucketQueue {
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
             // The times of these disks are scattered in memory. Requests for all of them at once take hardly
-            // longer than for a few.
+            // longer than requests for a few.
             for &disk in disks {
                 prefetch(due, disk as usize);
             }
