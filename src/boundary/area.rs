@@ -191,8 +191,8 @@ impl Field<'_> {
             + self.refined(middle, high, curves, halves[1], halvings - 1)
     }
 
-    /// Integrates the free length by the ten-point rule. Its variable $`s`$ in [0, 1] gives the height $`3s^2
-    /// - 2s^3`$, in which square roots at both ends are smooth.
+    /// Integrates the free length by the ten-point rule. Its variable $`s`$ in [0, 1] gives the height
+    /// $`3s^2 - 2s^3`$, in which square roots at both ends are smooth.
     fn quadrature(&self, low: f64, high: f64, curves: &[Curve]) -> f64 {
         let mut sum = 0.0;
         for (node, weight) in GAUSS {

@@ -10,7 +10,7 @@ use crate::boundary::part::{Travel, Turning};
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
-/// one round more. The engine reads the clock every 256 events, so it still respects a limit of wall-clock
+/// one more round. The engine reads the clock every 256 events, so it still respects a limit of wall-clock
 /// time.
 const MOST_STEPS: u32 = 256;
 
