@@ -23,8 +23,8 @@
 //!
 //! # Custom rules
 //! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
-//! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to first order, here written as $`1/(1 + C
-//! v^{1/5})`$, which stays positive:
+//! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to first order, here written as
+//! $`1/(1 + C v^{1/5})`$, which stays positive:
 //!
 //! ```
 //! use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, laws};
@@ -97,7 +97,7 @@ use crate::forward::forward;
 ///
 /// # Contract
 /// The engine calls [`Self::impulse`] once for each collision that the rule decides, between disks or with a
-/// wall. The engine guarantees about the contact:
+/// wall. The engine guarantees the following about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed and the relative spin are finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one; masses and radii of
