@@ -128,13 +128,13 @@ impl fmt::Display for Warning {
             Self::LongContactDuration { share_of_time, elastic, collisions } => write!(
                 formatter,
                 "the contact duration is {} of the time between two collisions of a disk ({elastic} of {collisions} \
-                 collisions lost nothing), so it takes about {} % of the dissipation away; a shorter one is needed",
+                 collisions lost nothing), so it removes about {} % of the dissipation; a shorter one is needed",
                 Rounded(*share_of_time),
                 Rounded((225.0 * share_of_time).min(100.0))
             ),
             Self::MostlyLeastRebound { raised, collisions, energy } => write!(
                 formatter,
-                "{raised} of {collisions} collisions parted at the least speed of LeastRebound, which put in the \
+                "{raised} of {collisions} collisions parted at the least speed of LeastRebound, which added the \
                  energy {}: right for matter at rest, but in a flow the speed is too high",
                 Rounded(*energy)
             ),
@@ -162,7 +162,7 @@ impl fmt::Display for Warning {
             ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,
-                "{waiting} disks wait at inlet {inlet}: disks or walls take its room, or it opens too often"
+                "{waiting} disks wait at inlet {inlet}: disks or walls fill its room, or it opens too often"
             ),
         }
     }

@@ -42,13 +42,13 @@ impl fmt::Display for Remedy {
                 "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"
             }
             Self::FasterDisks => {
-                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or the rule LeastRebound with a higher speed; a disk that walls drive needs a rule that loses \
+                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start, more room, or \
+                 the rule LeastRebound with a higher speed helps; a disk that walls drive needs a rule that loses \
                  energy; for custom walls see boundary::laws::check"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
             Self::WallVelocity => {
-                "the wall moves otherwise than the velocity of its surface says; boundary::laws::check compares both"
+                "the wall does not move at the velocity of its surface; boundary::laws::check compares the two"
             }
             Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
             Self::ClosedSink => {

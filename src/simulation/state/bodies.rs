@@ -285,7 +285,7 @@ impl Bodies {
         (0..self.len()).map(|disk| of(self.disk(disk, offset))).sum()
     }
 
-    /// Moves the epoch on by this time.
+    /// Moves the epoch forward by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         let (fallen, gained) = self.fall(by);
         for Particle { trajectory, forecast } in &mut self.particles {
