@@ -6,7 +6,8 @@ use std::io::{self, Read, Seek, SeekFrom};
 use super::{F32, F64};
 use crate::trajectory::ReadError;
 
-/// Bytes of the header, of an entry of the index, and of a name in the first version of the format.
+/// Numbers of bytes of the header, of an entry of the index, and of a name in the first version of the
+/// format.
 pub(super) const HEADER: usize = 256;
 pub(super) const ENTRY: usize = 32;
 const NAME: usize = 64;
