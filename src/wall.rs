@@ -11,7 +11,7 @@
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!
-//! Motions combine, and bounds on the acceleration follow:
+//! Motions combine, and the bounds on their acceleration follow automatically:
 //!
 //! | of motions | displacement |
 //! |---|---|
