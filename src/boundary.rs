@@ -82,7 +82,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// digits. A boundary whose walls move reduces the origin by whole periods to a phase of their motion, as
 /// [`WallMotion`](crate::wall::WallMotion) explains; other boundaries may ignore the origin.
 ///
-/// # Who asks what, and when
+/// # Calls of the methods
 /// ```text
 /// when                          who asks     asks                                for
 /// ----------------------------  -----------  ----------------------------------  -------------------------
@@ -157,8 +157,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///   the walls are set during a run and have a state, the first origin is the present time. It never passes a
 ///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
-///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
-///   epoch, a typical disk moves tens of diameters.
+///   when the disk leaves its cell or reaches a periodic side or end, at the latest two epochs from now. In
+///   an epoch, a typical disk moves tens of diameters.
 /// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.

@@ -222,7 +222,8 @@ impl Field<'_> {
             return 0.0;
         }
         let is_free = |place: f64| (self.is_free)(DVec2::new(place, height));
-        // An unknown curve that crosses a known one cuts off the end of an interval: both ends are examined.
+        // An unknown curve that crosses a known one cuts off the end of an interval, so both ends are
+        // examined.
         let last = self.looks - 1;
         let place = |look: u32| match look {
             0 if last > 0 => low + NEAR_END * (high - low),

@@ -281,7 +281,7 @@ pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DV
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sighted {
     nearest: Nearest,
-    /// Largest difference of distances for which two bricks count as equally far.
+    /// Largest difference between two distances for which two bricks count as equally far away.
     rounding: f64,
 }
 
