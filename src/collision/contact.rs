@@ -102,13 +102,13 @@ impl Contact {
         self.slip_speed
     }
 
-    /// Returns the reduced mass μ of the normal direction.
+    /// Returns the reduced mass μ for the normal direction.
     #[inline]
     pub const fn normal_mass(&self) -> f64 {
         self.normal_mass
     }
 
-    /// Returns the effective mass μ_t of the tangential direction, which includes rotation.
+    /// Returns the effective mass μ_t for the tangential direction, which includes rotation.
     #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass

@@ -69,8 +69,8 @@ impl Impulse {
         Self { normal, ..self }
     }
 
-    /// Returns the same impulse, with a normal part large enough that the surfaces part at this speed at
-    /// least.
+    /// Returns the same impulse, with a normal part large enough that the surfaces part at this speed or
+    /// faster.
     #[inline]
     pub(super) fn parting_at_least(self, speed: f64, contact: &Contact) -> Self {
         let least = contact.normal_mass() * (contact.closing_speed() + speed);
