@@ -60,11 +60,10 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// All methods have a default, which does nothing. All times are absolute, as in
 /// [`Simulation::time`](crate::Simulation::time).
 ///
-/// # What the engine guarantees
+/// # Guarantees of the engine
 /// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, whether the run reaches its end
 ///    time, is stopped, or fails.
-/// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
-///    changed.
+/// 2. `on_collision` is called once for each collision, in the order of time, after the disks have changed.
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
 ///    run. The sample includes all events up to and at its time. A time before the start of the run is
 ///    sampled at the start.
@@ -79,7 +78,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// or end. A verdict that fails ends the step with an error. A verdict that stops has no effect, since the
 /// caller takes each step.
 ///
-/// # What an observer guarantees
+/// # Guarantees of an observer
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
 /// 2. After a sample, `next_sample` names a later time than the sample's.
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.

@@ -9,8 +9,8 @@ use crate::statistics::{Estimate, block_average};
 /// An observer that keeps the values of an observable at set times.
 ///
 /// The times increase. A run that starts before the last sample, or that belongs to another system, ends
-/// immediately with an error. Clear the series before such a run, or use another series. The same happens if
-/// the checkpoint from which a run was resumed is older than the series.
+/// immediately with an error. Clear the series before such a run, or use another series. A run that was
+/// resumed from a checkpoint older than the series ends with an error, too.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
 /// can. JSON has no NaN, so a series with undefined values can be read back from a

@@ -202,7 +202,8 @@ impl TransportCoefficients {
     /// Returns the bulk viscosity ζ.
     pub fn bulk_viscosity(&self) -> Estimate {
         // The pressure in the first interval differs slightly from the pressure in the whole run. The square
-        // of this difference adds to the growth of the moment's mean square, but is no part of the viscosity.
+        // of this difference adds to the growth of the moment's mean square, but is not part of the
+        // viscosity.
         let interval = self.stretch.sample_times.interval();
         let (longest, half) = (self.lags[1].longest(), self.lags[1].longest() / 2);
         let excess = self.excess.mean() / (longest as f64 * interval);

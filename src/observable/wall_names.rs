@@ -4,8 +4,8 @@ use super::Snapshot;
 use super::marks::Mark;
 use crate::ParameterError;
 
-/// The names of all walls in the latest run. Like marks, they go into no file, and measurements that differ
-/// only in them are equal.
+/// The names of all walls in the latest run. Like marks, they are not written to files, and measurements that
+/// differ only in them are equal.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WallNames {
     walls: Mark,
