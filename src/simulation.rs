@@ -243,7 +243,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.snapshot_as_of(self.time())
     }
 
-    /// Returns the present state, as of the requested time. [`Self::time`] may differ from that time by
+    /// Returns the present state with the requested time. [`Self::time`] may differ from that time by
     /// rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
         let Self { bodies, boundary, marks, .. } = self;

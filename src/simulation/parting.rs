@@ -1,4 +1,4 @@
-//! The parting of partners that rounding leaves approaching after a collision.
+//! The parting of partners that still approach each other after a collision, because of rounding.
 
 use glam::DVec2;
 

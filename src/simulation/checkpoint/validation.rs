@@ -2,7 +2,7 @@
 //!
 //! A checksum reveals accidents but not intent: anyone can compute it anew over any numbers. Therefore, all
 //! numbers must pass the bounds of the constructors, and all events must be at possible places and times. A
-//! run from here may be unphysical, but it does not panic and does not hang.
+//! run that continues from such contents may be unphysical, but it neither panics nor hangs.
 
 use std::collections::HashMap;
 

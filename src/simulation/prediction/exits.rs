@@ -46,7 +46,7 @@ pub(in crate::simulation) fn leave_cell(bodies: &mut Bodies, cells: &Cells, disk
     at_wall
 }
 
-/// Returns the offset at which a disk leaves its cell, and the edge.
+/// Returns the offset at which a disk leaves its cell, and the edge through which it leaves.
 #[inline(always)]
 fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
