@@ -169,7 +169,7 @@ pub enum ReadError {
         /// The name of the missing item.
         what: String,
     },
-    /// The numbers of a line do not make a disk.
+    /// The numbers of a line do not describe a disk.
     #[error("line {line} does not describe a disk")]
     Disk {
         /// Number of the line.

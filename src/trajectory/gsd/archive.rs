@@ -57,7 +57,8 @@ impl<R: Read + Seek> Archive<R> {
             asked: BTreeSet::new(),
             is_own: head[48..].starts_with(b"granular-edmd\0"),
         };
-        // Each frame but the first has an entry, so a damaged number cannot ask for any number of frames.
+        // Each frame but the first has an entry, so a damaged number cannot claim an arbitrary number of
+        // frames.
         let is_bounded = archive.frames() <= archive.entries.len() as u64 + 1;
         if is_bounded && archive.entries.is_sorted_by_key(|entry| number(entry, 0)) {
             return Ok(archive);
