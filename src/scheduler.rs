@@ -36,7 +36,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
 /// A scheduler: it orders the events of the disks by their times.
 ///
-/// # What a scheduler guarantees
+/// # Guarantees of a scheduler
 /// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk whose last given time is the
 ///    smallest, and that time.
 /// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. If all times are infinite, the
@@ -51,7 +51,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// 6. **Queries change nothing.** [`earliest`](Self::earliest) returns the same result until the next `set`
 ///    or `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
 ///
-/// # What the engine guarantees
+/// # Guarantees of the engine
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
 ///   never comes.
 /// - `reset` is called first, and again whenever many times change at once, as when the epoch moves. After a
@@ -70,10 +70,10 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// if they show within its scripts of up to three million operations; `docs/validation.md` says which planted
 /// faults it finds.
 ///
-/// # Why the answer is a pair and not an `Option`
-/// The engine calls the method at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails
-/// the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to each
-/// event, and no information.
+/// # A pair instead of an `Option`
+/// The engine calls [`earliest`](Self::earliest) at every event. A pair comes back in two registers, and
+/// [`NOTHING_DUE`] fails the comparison with the end of the run, which is needed anyway. An `Option` would
+/// add a branch to each event, and no information.
 ///
 /// ```
 /// use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE, TournamentTree};

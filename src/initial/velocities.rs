@@ -12,7 +12,7 @@ use crate::{Disk, ParameterError};
 ///
 /// The center of mass is at rest, and all angular velocities stay unchanged.
 ///
-/// Each component of a velocity is a normal number of variance $`T/m`$. The total momentum is then removed,
+/// Each component of a velocity is a normal variable of variance $`T/m`$. The total momentum is then removed,
 /// in proportion to the masses.
 ///
 /// # Errors

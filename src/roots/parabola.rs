@@ -46,9 +46,9 @@ fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
     let discriminant = rate * rate - 2.0 * acceleration * value;
     if discriminant <= 0.0 {
         // The gap is still closed at the top of the parabola. A gap that began exactly at zero would close as
-        // fast as it opened, at twice the time of the top, so this returns that time. At the top itself the
-        // rate is zero: a disk that bounces lower than rounding would stop there, although no rule took its
-        // speed.
+        // fast as it opened, at twice the time of the top, so the function returns that time. At the top
+        // itself the rate is zero: a disk that bounces lower than rounding would stop there, although no rule
+        // took its speed.
         return (-2.0 * rate / acceleration).max(0.0);
     }
     let root = discriminant.sqrt();

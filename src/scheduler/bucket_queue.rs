@@ -113,7 +113,7 @@ impl BucketQueue {
     }
 
     /// Adds a disk to the bucket of its time, or to the heap if the bucket is open already. A disk that is
-    /// due after the page is added nowhere.
+    /// due after the end of the page is not added.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
         let bucket = self.page.bucket(due);

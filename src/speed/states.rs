@@ -29,9 +29,9 @@ pub type PaperBox = Simulation<ContactDuration<Frictional>>;
 
 /// Number of disks in each standard state.
 const DISKS: usize = 1000;
-/// Oscillations of the paper's box until it has forgotten its lattice.
+/// Number of oscillations after which the paper's box has forgotten its lattice.
 const OSCILLATIONS: f64 = 500.0;
-/// Collisions of each disk until a gas has forgotten its lattice.
+/// Number of collisions of each disk after which a gas has forgotten its lattice.
 const COLLISIONS: u64 = 100;
 
 /// Returns the paper's box as a gas that fills it: $`g = 1/64`$, $`q = 0`$, $`\kappa = 0.03`$.
