@@ -20,10 +20,18 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 
+/// Largest effect on the mean of samples that fill no block, in errors of the blocks. In a long series it is
+/// less than half an error; if it is larger, the blocks do not show the scatter of the whole series.
+const LARGEST_REST: f64 = 2.0;
+
+/// Rounding of means, relative to the error of independent samples.
+const ROUNDING: f64 = 1e-6;
+
 /// The apparent standard error from blocks of one size.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlockError {
     pub(super) error: f64,
+    mean: f64,
     /// Relative uncertainty of the error itself.
     uncertainty: f64,
     blocks: u64,
@@ -35,7 +43,7 @@ impl BlockError {
         let count = blocks.count();
         // The uncertainty of a standard deviation of normal numbers.
         let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();
-        Self { error: blocks.standard_error(), uncertainty, blocks: count }
+        Self { error: blocks.standard_error(), mean: blocks.mean(), uncertainty, blocks: count }
     }
 }
 
@@ -58,9 +66,14 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)>
         levels[at + 1..].iter().all(|larger| least(larger) <= levels[at].error)
     };
     let growth = |error: f64| error / levels[0].error;
+    let rest = |at: usize| (levels[at].mean - levels[0].mean).abs();
     let is_plateau = |&at: &usize| {
         let size = (1_u64 << at) as f64;
-        is_long_enough(size, samples, growth(levels[at].error)) && is_flat(at) && is_the_last_rise(at)
+        let shows_all = rest(at) <= LARGEST_REST * levels[at].error + ROUNDING * levels[0].error;
+        is_long_enough(size, samples, growth(levels[at].error))
+            && is_flat(at)
+            && is_the_last_rise(at)
+            && shows_all
     };
     let error = (1..known).find(is_plateau).map(|at| levels[at].error)?;
     // The largest error counts here, not the error of the plateau, since it matters how long the correlation

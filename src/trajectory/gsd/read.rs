@@ -17,6 +17,9 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
+/// Rounding of an inertia factor that follows from three numbers of single precision, relative to the factor.
+const ROUNDING: f64 = 1e-6;
+
 /// Returns whether a file that begins with these bytes is a GSD file.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
@@ -164,10 +167,13 @@ impl<R: Read + Seek> View<'_, R> {
                 let square = 0.25 * sizes[row] * sizes[row];
                 let by_density = || density.map_or(1.0, |density| density * PI * square);
                 let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
-                // Rounding must not change the inertia factor of a homogeneous disk.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
-                let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
-                if is_other { moment / unit } else { homogeneous }
+                let factor = if moment > 0.0 { moment / unit } else { homogeneous };
+                // Rounding must not change the inertia factor of a homogeneous disk, and must not take a ring
+                // or a heavy point beyond the limits.
+                let exact = [homogeneous, 1.0, 1e-6].into_iter();
+                let mut near = exact.filter(|exact| (factor - exact).abs() <= ROUNDING * exact);
+                near.next().unwrap_or(factor)
             };
             let moments: Vec<f64> = (0..count).map(|row| inertia.number(row, 2)).collect();
             let turned = self.rows("particles/orientation", count, 4)?;
