@@ -13,8 +13,8 @@ use crate::{Disk, ParameterError};
 /// The center of mass is at rest, and all angular velocities stay unchanged. A single disk keeps its
 /// velocity.
 ///
-/// Each component is normal with variance $`T/m`$. The total momentum is then removed, in proportion to the
-/// masses.
+/// Each component of a velocity is a normal variable of variance $`T/m`$. The total momentum is then removed,
+/// in proportion to the masses.
 ///
 /// # Errors
 /// If the temperature is negative or not finite.

@@ -141,7 +141,7 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(table)
     }
 
-    /// Returns the columns that the frame has beside the positions.
+    /// Returns the columns that the frame has besides the positions.
     fn columns(&mut self, count: usize) -> Result<Vec<Values>, ReadError> {
         let mut columns = Vec::new();
         for (chunk, name, order) in [
@@ -199,7 +199,7 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(columns)
     }
 
-    /// Returns the point from which positions count.
+    /// Returns the point from which positions are measured.
     fn center(&mut self) -> Result<DVec2, ReadError> {
         Ok(self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
     }
@@ -232,8 +232,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters of the disks: from the shapes if the file has shapes; otherwise from its
-    /// diameters or, if it has none, from the settings, or else 1.
+    /// Returns the diameters of the disks. They come from the shapes if the file has shapes, or else from its
+    /// diameters, or else from the settings. Without any of these, they are 1.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {
