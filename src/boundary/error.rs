@@ -66,7 +66,8 @@ pub enum VesselError {
     },
     /// A part extends over more periods of the container than a vessel can handle.
     #[error(
-        "the part \"{name}\" extends over {} periods of the container, and {most} are possible: let it end earlier",
+        "the part \"{name}\" extends over {} periods of the container, but at most {most} are possible: \
+         let it end earlier",
         Rounded(*.periods)
     )]
     TooManyPeriods {
