@@ -30,8 +30,10 @@ const SHORT: f64 = 1e-9;
 const EXACT: f64 = 1e-8;
 const JUMPS: u32 = 8;
 
-/// Fraction of a piece over which the acceleration at its ends is measured.
+/// Fraction of a piece over which the acceleration at its ends is first measured, and number of these
+/// measurements, each over half of the previous fraction.
 const SLOPE: f64 = 3e-4;
+const STEPS: u32 = 12;
 
 /// Number of phases at which two motions are compared, and the length of the interval in which they lie.
 const PHASES: u32 = 4000;
@@ -246,26 +248,43 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     }
 
     /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
+    ///
+    /// The slope of the velocity is measured over ever shorter steps. Where the acceleration is smooth, half of
+    /// a step leaves an error a quarter as large, so three slopes in a row show the error of the last: it is a
+    /// fifteenth of the sum of their differences. If a step is not short enough for this, or the acceleration
+    /// jumps within it, these differences are larger than the error, too. Twice their sum is allowed, and the
+    /// rounding.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
         if length < SHORT * (1.0 + start.abs()) {
             return Ok(());
         }
+        let AccelerationBounds { min, max, .. } = *bounds;
         let end = start + (1.0 - LAST) * length;
         for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
-            let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
-            let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
-            let step = next.phase - now.phase;
-            let [here, there, far] = [now, next, last].map(|sample| sample.state.velocity);
-            let found = (4.0 * there - 3.0 * here - far) / (2.0 * step);
-            let scale = bounds.min.abs().max(bounds.max.abs());
-            let slack = 4.0 * self.speed_rounding(now, bounds) / step.abs() + EXACT * scale;
-            let AccelerationBounds { min, max, .. } = *bounds;
-            let is_within = found >= min - slack && found <= max + slack;
-            require!(PART, "bounds", is_within;
-                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and \
-                 {max:?}");
+            let mut step = step;
+            let [mut first, mut second] = [f64::NAN; 2];
+            for _ in 0..STEPS {
+                let (slope, rounding) = self.slope(place, step, bounds)?;
+                let slack = 2.0 * ((first - second).abs() + (second - slope).abs()) + rounding;
+                let is_beyond = slope < min - slack || slope > max + slack;
+                require!(PART, "bounds", !is_beyond;
+                    "at phase {place:?} its velocity has the slope {slope:?} ± {slack:?}, beyond its bounds \
+                     {min:?} and {max:?}");
+                (first, second, step) = (second, slope, 0.5 * step);
+            }
         }
         Ok(())
+    }
+
+    /// Returns the slope of the velocity at the start of two steps, exact if the acceleration is linear there,
+    /// and its rounding.
+    fn slope(&self, place: f64, step: f64, bounds: &AccelerationBounds) -> Result<(f64, f64), Violation> {
+        let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
+        let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
+        let step = next.phase - now.phase;
+        let [here, there, far] = [now, next, last].map(|sample| sample.state.velocity);
+        let rounding = 4.0 * self.speed_rounding(now, bounds) / step.abs();
+        Ok(((4.0 * there - 3.0 * here - far) / (2.0 * step), rounding))
     }
 
     /// Checks that the wall does not jump toward the disks where a piece ends, and that the motion declares

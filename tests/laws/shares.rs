@@ -169,6 +169,7 @@ fn honest_parts_pass() {
     let all = [
         judged(blind::rules::honest(), check_rule),
         judged(blind::motions::honest(), check_motion),
+        judged(informed::motions::honest(), check_motion),
         judged(blind::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
         judged_drivings(blind::drivings::honest),
