@@ -4,10 +4,13 @@
 //! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
 //! compares two motions.
 
+mod pair;
+
+pub use pair::check_fingerprints;
+
 use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
 use crate::Violation;
-use crate::fingerprint::check_pair;
 use crate::violation::require;
 
 /// Number of samples in a piece.
@@ -34,13 +37,6 @@ const JUMPS: u32 = 8;
 /// measurements, each over half of the previous fraction.
 const SLOPE: f64 = 3e-4;
 const STEPS: u32 = 12;
-
-/// Number of phases at which two motions are compared, and the length of the interval in which they lie.
-const PHASES: u32 = 4000;
-const INTERVAL: f64 = 400.0;
-
-/// Number of later phases, each a fifth later than the previous one.
-const LATE: i32 = 40;
 
 /// Checks that a motion keeps its contract between two phases.
 ///
@@ -95,34 +91,6 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     }
     let sentence = format!("{MOST_PIECES} pieces of its motion lead only from phase {from:?} to {phase:?}");
     Err(Violation::new(PART, "pieces", sentence))
-}
-
-/// Checks that two motions with different values have different fingerprints, and that two motions with equal
-/// values have the same fingerprint. Motions without a fingerprint are not compared.
-///
-/// The motions are compared at four thousand phases from −1 to 399, and at forty later phases.
-///
-/// # Errors
-/// If the fingerprints contradict the values.
-///
-/// ```
-/// use granular_edmd::wall::{Sinusoidal, laws};
-/// laws::check_fingerprints(&Sinusoidal::new(0.1, 10.0)?, &Sinusoidal::new(0.1, 11.0)?)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn check_fingerprints<M, N>(first: &M, second: &N) -> Result<(), Violation>
-where
-    M: WallMotion + ?Sized,
-    N: WallMotion + ?Sized,
-{
-    let differ = |&phase: &f64| first.state(phase) != second.state(phase);
-    let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
-    let late = (0..LATE).map(|k| INTERVAL * libm::pow(1.2, f64::from(k)));
-    let mut difference = phases.chain(late).find(differ).map(|phase| format!("at phase {phase:?}"));
-    if (first.reach(), first.period()) != (second.reach(), second.period()) {
-        difference = Some("in reach or period".to_owned());
-    }
-    check_pair(PART, [first.fingerprint(), second.fingerprint()], difference)
 }
 
 /// The checked motion, and its reach.

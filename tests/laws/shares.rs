@@ -81,7 +81,7 @@ fn check_pair(_: usize, pair: &mut Pair) -> Verdict {
         }
     };
     if let Err(violation) = &verdict {
-        assert_eq!(violation.found().starts_with("equal"), pair.act_alike, "{violation}");
+        assert_eq!(violation.found().contains("alike"), pair.act_alike, "{violation}");
     }
     verdict
 }
@@ -176,6 +176,7 @@ fn honest_parts_pass() {
         judged(blind::observers::honest(), |_, observer| observable::laws::check(&mut **observer)),
         judged(blind::formats::honest(), |_, format| trajectory::laws::check(&**format)),
         judged(blind::fingerprints::honest(), check_pair),
+        judged(informed::fingerprints::honest(), check_pair),
     ];
     for (name, verdict) in all.into_iter().flatten() {
         assert_eq!(verdict, Ok(()), "{name}");
