@@ -217,11 +217,11 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
 
     /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
     ///
-    /// The slope of the velocity is measured over ever shorter steps. Where the acceleration is smooth, half of
-    /// a step leaves an error a quarter as large, so three slopes in a row show the error of the last: it is a
-    /// fifteenth of the sum of their differences. If a step is not short enough for this, or the acceleration
-    /// jumps within it, these differences are larger than the error, too. Twice their sum is allowed, and the
-    /// rounding.
+    /// The slope of the velocity is measured over ever shorter steps. Where the acceleration is smooth, half
+    /// of a step leaves an error a quarter as large, so three slopes in a row show the error of the last: it
+    /// is a fifteenth of the sum of their differences. If a step is not short enough for this, or the
+    /// acceleration jumps within it, these differences are larger than the error, too. Twice their sum is
+    /// allowed, and the rounding.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
         if length < SHORT * (1.0 + start.abs()) {
             return Ok(());
@@ -244,8 +244,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         Ok(())
     }
 
-    /// Returns the slope of the velocity at the start of two steps, exact if the acceleration is linear there,
-    /// and its rounding.
+    /// Returns the slope of the velocity at the start of two steps, exact if the acceleration is linear
+    /// there, and its rounding.
     fn slope(&self, place: f64, step: f64, bounds: &AccelerationBounds) -> Result<(f64, f64), Violation> {
         let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
         let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];

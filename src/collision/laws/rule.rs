@@ -217,8 +217,8 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
 }
 
 /// Checks that two rules with different impulses have different fingerprints, and that two rules of one type
-/// with equal impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint are
-/// not compared.
+/// with equal impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint
+/// are not compared.
 ///
 /// Pairs of different kinds are compared up to kind 255, most of them in one contact. Rules that differ only
 /// elsewhere are alike to the check, and if both are of one type, it refuses different fingerprints. Rules of
@@ -281,10 +281,14 @@ fn check_same(
         (one - other).abs() <= ROUNDING * (one.abs() + other.abs() + scale.abs()) + LEAST
     };
     let turning = contact.spin_inertia() * contact.relative_spin();
-    let is_same = close(impulse.normal(), other.normal(), 0.0)
-        && close(impulse.tangential(), sign * other.tangential(), impulse.normal())
-        && close(impulse.couple(), -other.couple(), turning);
-    unless(is_same, law, contact, impulse, || format!("disagrees with the impulse in that contact: {other}"))
+    let expected = Impulse::new(impulse.normal(), sign * impulse.tangential()).with_couple(-impulse.couple());
+    let is_same = close(expected.normal(), other.normal(), 0.0)
+        && close(expected.tangential(), other.tangential(), impulse.normal())
+        && close(expected.couple(), other.couple(), turning);
+    let change = if sign < 0.0 { "tangential impulse and couple change" } else { "the couple changes" };
+    unless(is_same, law, contact, impulse, || {
+        format!("should be {expected} in the {law}, where {change} sign, but is {other} there")
+    })
 }
 
 fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<(), Violation> {
