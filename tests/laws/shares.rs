@@ -173,6 +173,7 @@ fn honest_parts_pass() {
         judged(blind::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
         judged_drivings(blind::drivings::honest),
+        judged_drivings(informed::drivings::honest),
         judged(blind::observers::honest(), |_, observer| observable::laws::check(&mut **observer)),
         judged(blind::formats::honest(), |_, format| trajectory::laws::check(&**format)),
         judged(blind::fingerprints::honest(), check_pair),

@@ -17,14 +17,14 @@ const LATE: i32 = 40;
 /// Number of pieces of each motion in which the motions are compared.
 const PIECES: usize = 1000;
 
-/// Checks that two motions that move differently have different fingerprints, and that two motions of one type
-/// that move alike at every phase of the check have the same fingerprint. Motions without a fingerprint are
-/// not compared.
+/// Checks that two motions that move differently have different fingerprints, and that two motions of one
+/// type that move alike at every phase of the check have the same fingerprint. Motions without a fingerprint
+/// are not compared.
 ///
 /// The motions are compared at four thousand phases from −1 to 399, at forty later phases up to 490 000, and
-/// in the first thousand pieces of both from −1 on. Motions that differ only elsewhere are alike to the check,
-/// and if both are of one type, it refuses different fingerprints. Motions of two types may move alike and have
-/// different fingerprints.
+/// in the first thousand pieces of both from −1 on. Motions that differ only elsewhere are alike to the
+/// check, and if both are of one type, it refuses different fingerprints. Motions of two types may move alike
+/// and have different fingerprints.
 ///
 /// # Errors
 /// If the fingerprints contradict the values.
