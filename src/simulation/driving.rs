@@ -90,6 +90,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// A kick comes after all events and samples of its time, also at the end of the run. The bits do not
     /// depend on how a run is cut into pieces.
     ///
+    /// The observer watches a run from each kick to the next, with `on_start` and `on_end`, and thus sees the
+    /// velocities on both sides of a kick. Its samples are those of one run.
+    ///
     /// # Errors
     /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].
     pub fn run_driven<D: Driving + ?Sized, O: Observer + ?Sized>(
