@@ -91,11 +91,11 @@ impl Promises {
 /// The first promise that is broken.
 pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result<(), Violation> {
     let mut make = make;
-    let disks = disks().map_err(failed)?;
+    let disks = disks().map_err(|error| failed(&error))?;
     let (mut whole, mut cut) = (make(), make());
     let (mut first, mut second) = (Vec::new(), Vec::new());
     let (mut sums, mut latest) = (Sums::default(), None);
-    whole.kick(&mut []).and_then(|()| cut.kick(&mut [])).map_err(failed)?;
+    whole.kick(&mut []).and_then(|()| cut.kick(&mut [])).map_err(|error| failed(&error))?;
     let (mut last, mut random) = (0.0, Xoshiro256PlusPlus::seed_from_u64(1));
     for driving in [&mut whole, &mut cut] {
         driving.times().start_at(last);
@@ -112,7 +112,7 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
         require!(PART, "clock", time == other;
             "kick {number} is at {time:?}, and at {other:?} if the run is cut");
         let before = first.clone();
-        whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(failed)?;
+        whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(|error| failed(&error))?;
         check_kick(&before, &first, *promises, number)?;
         require!(PART, "repeatable", first == second; "kick {number} of two equal drivings differs");
         let kicks = shares_of(&before, &first);
@@ -230,7 +230,7 @@ fn kicked<D: Driving>(
     for number in 0..AGAIN {
         let first = order(number) % DISKS;
         disks.rotate_left(first);
-        driving.kick(&mut disks).map_err(failed)?;
+        driving.kick(&mut disks).map_err(|error| failed(&error))?;
         disks.rotate_right(first);
         last = upcoming(&mut driving, last, 0)?;
         driving.times().advance_past(last);
@@ -239,7 +239,7 @@ fn kicked<D: Driving>(
     Ok(all)
 }
 
-fn failed(error: ParameterError) -> Violation {
+fn failed(error: &ParameterError) -> Violation {
     Violation::new(PART, "no failure", error.to_string())
 }
 
