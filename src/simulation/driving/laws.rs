@@ -191,8 +191,7 @@ impl Sums {
 }
 
 /// Checks that kicks do not depend on changes of the order of disks, if they do not depend on the order.
-fn check_memory<D: Driving>(make: impl FnMut() -> D, disks: &[Disk]) -> Result<(), Violation> {
-    let mut make = make;
+fn check_memory<D: Driving>(mut make: impl FnMut() -> D, disks: &[Disk]) -> Result<(), Violation> {
     let orders: [fn(usize) -> usize; 3] = [|_| 0, |_| 5, |number| number * (number + 1) / 2];
     let [kept, turned, changing] = orders.map(|order| kicked(make(), disks, order));
     let (kept, turned, changing) = (kept?, turned?, changing?);
@@ -208,14 +207,12 @@ fn check_memory<D: Driving>(make: impl FnMut() -> D, disks: &[Disk]) -> Result<(
     }
     let Some(index) = differ(&changing, OTHER) else { return Ok(()) };
     let (number, id) = (index / DISKS, kept[index].id());
-    let velocities = [&kept[index], &changing[index]].map(Disk::velocity);
-    Err(Violation::new(
-        PART,
-        "memory",
-        format!(
-            "after kick {number}, disk {id} has other motions if the order of disks has changed: {velocities:?}"
-        ),
-    ))
+    let [one, other] =
+        [&kept[index], &changing[index]].map(|disk| (disk.velocity(), disk.angular_velocity()));
+    let sentence = format!(
+        "after kick {number}, disk {id} has the velocity and spin {one:?}, and {other:?} if the order changes"
+    );
+    Err(Violation::new(PART, "memory", sentence))
 }
 
 /// Returns the disks after each kick of a driving that gets them in this order: the index of the first of
