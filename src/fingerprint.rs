@@ -68,7 +68,7 @@ impl Fingerprint {
     }
 }
 
-/// Writes the number in hexadecimal digits, sixteen of them.
+/// Writes the number as sixteen hexadecimal digits.
 impl fmt::Display for Fingerprint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:016x}", self.0)

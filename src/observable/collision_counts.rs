@@ -138,7 +138,7 @@ crate::gate::from_file! {
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
-        crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
+        crate::quantity::accept(fits, "number of collisions", "at least the sum over all regimes", all as f64)?;
         Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, ..Self::default() })
     }
 }

@@ -33,9 +33,10 @@ use crate::{Disk, ParameterError};
 /// A driving guarantees:
 /// 1. A kick changes velocities and angular velocities, and nothing else: it neither moves, turns, renames,
 ///    reorders nor resizes disks, nor changes their masses, kinds or images. A driving that also moves disks
-///    must leave them inside and apart, and must declare this to the check.
-/// 2. A kick treats disks alike wherever they are in the list, and works without disks, too. What a driving
-///    remembers of a disk, it remembers by the [id](crate::Disk::id): sinks and inlets change the order.
+///    must leave them inside the walls and without overlaps, and must declare this to the check.
+/// 2. A kick treats disks alike wherever they are in the list, and works without disks, too. If a driving
+///    remembers something about a disk, it identifies the disk by its [id](crate::Disk::id), since sinks and
+///    inlets change the order.
 /// 3. The same driving gives the same kicks to the same disks, to the bit: its random numbers are its own.
 /// 4. The clock advances: after a kick, it returns a later time, and returns the same time at each call until
 ///    the next kick. A run that is cut into pieces has the same kicks.

@@ -48,12 +48,9 @@ where
 {
     let (domain, other) = (first.domain(), second.domain());
     let fingerprints = [first.fingerprint(), second.fingerprint()];
+    let judge = |difference| check_pair::<A, B>(PART, fingerprints, difference);
     if (domain, first.interior()) != (other, second.interior()) {
-        return check_pair::<A, B>(
-            PART,
-            fingerprints,
-            Some(format!("in their domains {domain} and {other}")),
-        );
+        return judge(Some(format!("in their domains {domain} and {other}")));
     }
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(7));
     let (mut first, mut second) = (first, second);
@@ -70,16 +67,16 @@ where
         one.begin(origin)?;
         other.set_origin(origin);
         if other.take_state(&one.state).is_err() {
-            return check_pair::<A, B>(PART, fingerprints, Some("in their states".to_owned()));
+            return judge(Some("in their states".to_owned()));
         }
         let until = flight.time() + one.length() / speed;
         let answers = [answer(&one, &flight, until), answer(&other, &flight, until)];
         if answers[0] != answers[1] {
-            return check_pair::<A, B>(PART, fingerprints, Some(format!("on {flight:?}: {answers:?}")));
+            return judge(Some(format!("on {flight:?}: {answers:?}")));
         }
     }
     // Walls that begin otherwise, and then are the same, may or may not have the same fingerprint.
-    if are_alike { check_pair::<A, B>(PART, fingerprints, None) } else { Ok(()) }
+    if are_alike { judge(None) } else { Ok(()) }
 }
 
 /// Returns the results of a boundary for a flight, as text.
