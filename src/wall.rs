@@ -178,8 +178,8 @@ impl AccelerationBounds {
 ///    The state at that phase is the state after the jump.
 /// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
 /// 6. [`jumps`](Self::jumps) is true if the displacement jumps at the end of any piece.
-/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and equal motions have equal
-///    fingerprints.
+/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and motions of one type made from
+///    equal numbers have equal fingerprints.
 ///
 /// [`laws::check`] tests the first six between two phases, and [`laws::check_fingerprints`] the last. A
 /// container calls the methods in any order and from any thread.

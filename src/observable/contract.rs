@@ -62,7 +62,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///
 /// # Guarantees of the engine
 /// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, whether the run reaches its end
-///    time, is stopped, or fails.
+///    time, is stopped, or fails. [`run_driven`](crate::Simulation::run_driven) calls both at each kick, too:
+///    `on_end` before it and `on_start` after it.
 /// 2. `on_collision` is called once for each collision, in the order of time, after the disks have changed.
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
 ///    run. The sample includes all events up to and at its time. A time before the start of the run is
@@ -101,7 +102,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
-    /// Receives the start of a run, which may continue an earlier run.
+    /// Receives the start of a run, which may continue an earlier run, and the disks after each kick of a
+    /// driving.
     fn on_start(&mut self, start: &Snapshot<'_>) {
         let _ = start;
     }
@@ -134,7 +136,7 @@ pub trait Observer {
         let _ = (disk, time);
     }
 
-    /// Receives the end of a run, even of a run that fails.
+    /// Receives the end of a run, even of a run that fails, and the disks before each kick of a driving.
     fn on_end(&mut self, end: &Snapshot<'_>) {
         let _ = end;
     }

@@ -98,8 +98,9 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk can reach a sink, and none has been removed: walls block the sink, for example because they
-    /// are closer than a radius to a line for centers. A gate that opens later is a harmless cause.
+    /// No disk can reach a sink, and none has been removed in a thousand collisions or more: walls block the
+    /// sink, for example because they are closer than a radius to a line for centers. A gate that opens later
+    /// is a harmless cause.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
