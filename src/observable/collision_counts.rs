@@ -72,7 +72,8 @@ impl CollisionCounts {
     /// Returns the rate of disk–disk collisions per disk, if all counted collisions happened within this
     /// duration.
     ///
-    /// Each collision counts for both partners.
+    /// Each collision counts for both partners: among the collisions [of a kind](super::OfKind), those with
+    /// another kind would count twice.
     pub fn rate_per_disk(&self, disks: usize, duration: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * duration)
     }

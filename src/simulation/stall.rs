@@ -2,7 +2,7 @@
 //! decides when a run hardly progresses, and has the defaults.
 
 use super::resolution::{resolve_pair, resolve_wall};
-use super::state::{Clock, Exit, Forecast, Standstill};
+use super::state::{Clock, Exit, Forecast, Standstill, least_progress};
 use super::{Remedy, RunError, Simulation};
 use crate::boundary::{Boundary, Response};
 use crate::collision::{CollisionRule, Contact, Impulse, Regime};
@@ -44,6 +44,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             remedy => remedy.unwrap_or(Remedy::OtherParts),
         };
         let Standstill { events, elapsed } = *standstill;
+        let is_default_met = elapsed >= least_progress(self.clock.epoch_length, self.len()) * events as f64;
+        let remedy = if is_default_met { Remedy::LessProgress } else { remedy };
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
     }
 

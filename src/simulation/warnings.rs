@@ -224,8 +224,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
         let collisions = self.counters.collisions();
         let disk_time = self.ledger.disk_time_at(self.time(), self.len());
-        // Both disks take part in a collision of two.
-        let rate = |count: u64| 2.0 * count as f64 / disk_time;
+        // Both disks take part in a collision of two, but only one in a collision with a wall.
+        let partners = 1.0 + self.counters.disk_collisions as f64 / collisions.max(1) as f64;
+        let rate = |count: u64| partners * count as f64 / disk_time;
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;

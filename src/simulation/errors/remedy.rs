@@ -27,6 +27,9 @@ pub enum Remedy {
     EnergyGain,
     /// Matter comes to rest, and walls keep it from a sink: no disk can touch the sink.
     ClosedSink,
+    /// The run advances, but more slowly than
+    /// [`Limits::with_least_progress`](crate::simulation::Limits::with_least_progress) asks.
+    LessProgress,
     /// No collision is predicted: the boundary or the scheduler names events that do not advance the run.
     OtherParts,
 }
@@ -55,6 +58,7 @@ impl fmt::Display for Remedy {
                 "matter comes to rest, and no disk can get to a sink, since walls are in its way; \
                  Simulation::warnings names it"
             }
+            Self::LessProgress => "time advances, but the least progress that was asked for is larger",
             Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
         })
     }
