@@ -315,7 +315,7 @@ fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
 #[test]
 fn collisions_with_walls_count_once_for_a_contact_duration() {
     let share = |duration: f64| {
-        let rule = ContactDuration::new(Elastic, duration).unwrap();
+        let rule = ContactDuration::new(Smooth::from_restitution(0.99999).unwrap(), duration).unwrap();
         let disk = Disk::new(DVec2::splat(2.0), 0.5).unwrap().with_velocity(DVec2::new(1.0, 0.7)).unwrap();
         let container = Container::closed(4.0, 4.0).unwrap();
         let mut run = Simulation::builder(rule, container).disks([disk]).build().unwrap();
