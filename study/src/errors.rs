@@ -233,6 +233,11 @@ impl StudyError {
         Self::Refused { path: path.to_owned(), reason: reason.into() }
     }
 
+    /// Returns the error of a file that was cut or changed.
+    pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Damaged { path: path.to_owned(), reason: reason.into() }
+    }
+
     /// Returns the error of a record that was made with another rule, other walls or another revision than
     /// the experiment has now: its code changed.
     pub(super) fn changed(path: &Path, part: &str) -> Self {

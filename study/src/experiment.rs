@@ -2,9 +2,7 @@
 //! an experiment, and the columns of its tables.
 
 pub(super) mod columns;
-pub(super) mod origin;
 pub(super) mod record;
-pub(super) mod riders;
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
@@ -16,10 +14,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::ExperimentError;
-use super::seed::derived_seed;
+use super::parameters::derived_seed;
+use super::sliced::{Interval, SavedDriving, Start};
 use columns::{Column, Table};
 use record::Record;
-use riders::{Interval, SavedDriving, Start};
 
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;
@@ -336,11 +334,4 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         let _ = record;
         None
     }
-}
-
-/// Returns the column of this name that has an error. If the tables of samples and of values have a column of
-/// this name each, it is the column of the table of values.
-pub(crate) fn with_error<'a, E: Experiment>(columns: &'a [Column<E>], name: &str) -> Option<&'a Column<E>> {
-    let named = columns.iter().filter(|column| column.name() == name && column.has_error());
-    named.max_by_key(|column| column.in_values)
 }

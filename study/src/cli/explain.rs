@@ -7,10 +7,9 @@ use std::sync::LazyLock;
 use serde_json::{Map, Value, json};
 
 use super::shape::{Kind, Shape};
-use crate::experiment::columns::{Meanings, OF_TABLES, meanings};
-use crate::meanings::{find, of_error};
+use crate::experiment::columns::{Meanings, OF_TABLES, find, meanings, of_error};
 use crate::parameters;
-use crate::plan::steps::Steps;
+use crate::plan::values::Steps;
 use crate::{Column, Experiment, Plan, PlanError, Table};
 
 /// The keys that every plan has, whatever its experiment, by section.
@@ -153,7 +152,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     }
     let absent = EXAMPLES.iter().filter(|(start, _)| !bare.lines().any(|line| begins(line, start)));
     lines.extend(absent.map(|(_, example)| format!("\n# {example}")));
-    let names = parameters::names(&parameters::tree(&plan.experiment)?).join(", ");
+    let names = parameters::names(&parameters::tree(&plan.parts.experiment)?).join(", ");
     let columns = E::columns();
     // A column of the values and a column of the samples may have the same name.
     let mut known = HashSet::new();
@@ -175,7 +174,7 @@ fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
 
 /// Returns the parameters that have no value in the plan, as comments.
 fn without_values<E: Experiment>(plan: &Plan<E>) -> Result<Vec<String>, PlanError> {
-    let given = parameters::tree(&plan.experiment)?;
+    let given = parameters::tree(&plan.parts.experiment)?;
     let parts = Shape::of::<E>().parts.into_iter();
     let absent = parts.map(|(name, _)| name).filter(|name| !given.contains_key(*name));
     Ok(absent

@@ -17,7 +17,7 @@ use super::arguments::{Place, Trajectory};
 use super::convert::Ending;
 use super::run::{Watch, is_stopped};
 use super::{End, Failure, Plan, PlanError, StudyError, chain, read, refused, say};
-use crate::seed::derived_seed;
+use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 
 /// Wall-clock time between two checks for signals.

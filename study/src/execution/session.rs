@@ -1,17 +1,27 @@
-//! Data that all threads of a running study share.
+//! One run of a study: its blocks of ramps, for all threads, and the data that they share.
 
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use serde_json::json;
 
-use super::earlier::Earlier;
-use super::queue::Queue;
-use crate::store::{Entry, Marks};
-use crate::{Control, Experiment, Progress, Study, StudyError, Summary};
+use super::{Control, Progress, Summary, ramp};
+use crate::claims::Queue;
+use crate::parameters;
+use crate::store::{Entry, Head};
+use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
+
+/// Shortest and longest time between two checks of the work of other processes. It doubles from check to
+/// check, since a process that waits must not burden a file system that others need.
+const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
+
+/// Largest number of blocks of other processes that one check tries to take over.
+const TRIED: usize = 8;
 
 /// Longest time between two checks of a thread for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
@@ -20,7 +30,9 @@ pub(super) const LOOK: Duration = Duration::from_millis(200);
 pub(super) struct Session<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) control: &'a Control<'a>,
-    pub(super) earlier: Earlier<E>,
+    /// Earlier studies, each with the indices of its ramps by seed.
+    earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
+    queue: Queue,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
     /// Number of finished steps, and number of steps in all values.
@@ -30,7 +42,7 @@ pub(super) struct Session<'a, E: Experiment> {
     /// True once a thread has met an error.
     ///
     /// The others then stop as if interrupted.
-    pub(super) broken: AtomicBool,
+    broken: AtomicBool,
     /// True once this run has removed the mark that the study is complete.
     is_opened: AtomicBool,
 }
@@ -40,12 +52,22 @@ impl<'a, E: Experiment> Session<'a, E> {
         study: &'a Study<E>,
         control: &'a Control<'a>,
         ramps: Range<usize>,
+        blocks: impl Iterator<Item = Range<usize>>,
     ) -> Result<Self, StudyError> {
+        let open = |folder: &PathBuf| {
+            let earlier = Study::open(folder)?;
+            StudyError::if_different(folder, differences(&earlier.plan, &study.plan)?)?;
+            earlier.store.refreshed()?;
+            let seeds = (0..earlier.plan.ramp_count()).map(|ramp| (earlier.plan.ramp_seed(ramp), ramp));
+            let ramps = seeds.collect();
+            Ok((earlier, ramps))
+        };
         let values = (ramps.len() * study.plan().value_count()) as u64;
         Ok(Self {
             study,
             control,
-            earlier: Earlier::open(control.earlier, study.plan())?,
+            earlier: control.earlier.iter().map(open).collect::<Result<_, StudyError>>()?,
+            queue: Queue::new(blocks),
             ramps,
             steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
             redone: Mutex::default(),
@@ -54,18 +76,56 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Marks the finished blocks of a queue as taken. A verification keeps all blocks.
-    pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
+    /// Runs blocks until each block is finished, in this process or another. If it need not wait, it returns
+    /// the ramps of other processes.
+    pub(super) fn run(&self) -> Result<Vec<usize>, StudyError> {
+        self.strike_done()?;
+        let mut patience = PATIENCE[0];
+        loop {
+            let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
+            threads
+                .try_for_each(|_| self.work().inspect_err(|_| self.broken.store(true, Ordering::Relaxed)))?;
+            self.strike_done()?;
+            let elsewhere = self.queue.elsewhere();
+            if elsewhere.is_empty() || !self.control.waits || self.must_stop() {
+                return Ok(elsewhere);
+            }
+            self.sleep(patience);
+            patience = PATIENCE[1].min(2 * patience);
+            // The process of these blocks may have been killed.
+            self.queue.retry(TRIED);
+        }
+    }
+
+    /// Runs blocks of the queue until it is empty.
+    fn work(&self) -> Result<(), StudyError> {
+        while !self.must_stop()
+            && let Some(ramps) = self.queue.next()
+        {
+            if !ramp::attempt(self, &ramps)? {
+                self.queue.leave(ramps);
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the finished blocks from the queue. A verification keeps all blocks.
+    fn strike_done(&self) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
         }
         let entries = self.study.store.refreshed()?;
-        queue.strike(|ramps| {
+        self.queue.strike(|ramps| {
             let is_done = ramps.clone().all(|ramp| entries.is_done(ramp));
             self.skip(if is_done { ramps.len() } else { 0 });
             is_done
         });
         Ok(())
+    }
+
+    /// Returns the ramps of earlier studies that have this seed.
+    pub(super) fn earlier_ramps(&self, seed: u64) -> Vec<(&Study<E>, usize)> {
+        self.earlier.iter().filter_map(|(study, ramps)| Some((study, *ramps.get(&seed)?))).collect()
     }
 
     /// Counts the steps of finished ramps.
@@ -111,7 +171,8 @@ impl<'a, E: Experiment> Session<'a, E> {
     }
 
     pub(super) fn must_stop(&self) -> bool {
-        self.control.is_interrupted() || self.broken.load(Ordering::Relaxed)
+        self.control.interrupt.is_some_and(|stop| stop.load(Ordering::Relaxed))
+            || self.broken.load(Ordering::Relaxed)
     }
 
     /// Sleeps for this time, or until the run must stop.
@@ -128,16 +189,40 @@ impl<'a, E: Experiment> Session<'a, E> {
         elsewhere.retain(|ramp| !entries.is_done(*ramp));
         let values = self.study.plan().value_count();
         let found = || entries.of(self.ramps.clone()).map(Entry::head);
-        let with = |mark: Marks| found().filter(|head| head.marks.has(mark)).count();
+        let with = |mark| found().filter(|head| head.has(mark)).count();
         let finished = found().count();
         let more = found().filter(|head| head.value >= values).count();
         // An unfinished refinement lacks at least one value.
         let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
-        let (failed, warned) = (with(Marks::FAILED), with(Marks::WARNED));
+        let (failed, warned) = (with(Head::FAILED), with(Head::WARNED));
         let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
         redone.sort();
         redone.dedup();
         Ok(Summary { finished, failed, warned, total, elsewhere, redone })
     }
+}
+
+/// Returns the fields in which two plans differ, except for fields by which a study may grow.
+fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Difference>, PlanError> {
+    const FREE: [&str; 7] =
+        ["repeats", "end_states", "sweep", "protocol.samples", "ramp.values", "ramp.course", "ramp.refine"];
+    let mut all = parameters::differences(&parameters::tree(old)?, &parameters::tree(new)?);
+    let is_free =
+        |field: &str| FREE.iter().any(|free| field == *free || field.starts_with(&format!("{free}.")));
+    let varies = |field: &str| {
+        field.strip_prefix("experiment.").is_some_and(|name| new.varied.iter().any(|varied| varied == name))
+    };
+    all.retain(|Difference { field, .. }| !is_free(field) && !varies(field));
+    let swept = |plan: &Plan<E>| {
+        let mut names = plan.varied[..plan.parts.sweep.len()].to_vec();
+        names.sort();
+        names.join(", ")
+    };
+    let [old, new] = [old, new].map(swept);
+    if old != new {
+        let field = "the list of swept parameters".to_owned();
+        all.push(Difference { field, old: Some(old), new: Some(new) });
+    }
+    Ok(all)
 }

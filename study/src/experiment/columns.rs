@@ -1,12 +1,14 @@
-//! Columns of tables, each defined once by its name, unit and value.
+//! Columns of tables, each defined once by its name, unit and value, and the meanings of their names.
 
 use std::fmt;
 use std::sync::LazyLock;
 
+use granular_edmd::Fingerprint;
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
 
-use crate::{Experiment, PlanError, Record, Scalar};
+use crate::parameters::Scalar;
+use crate::{Experiment, PlanError, Record};
 
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
 type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
@@ -114,6 +116,14 @@ impl<E: Experiment> Column<E> {
         !matches!(self.kind, Kind::Record(_))
     }
 
+    /// Returns the value for a sample, or `None` if the column is not of samples.
+    pub(crate) fn of(&self, sample: &E::Sample) -> Option<Scalar> {
+        match &self.kind {
+            Kind::Sample(value) => Some(value(sample)),
+            _ => None,
+        }
+    }
+
     /// Returns the estimate for a record, or `None` if the column has no error.
     pub(crate) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
@@ -194,6 +204,20 @@ pub(crate) fn meanings(text: &'static str) -> Vec<(&'static str, &'static str)> 
     text.lines().filter_map(|line| line.split_once(": ")).collect()
 }
 
+/// Returns the meaning of one of the two columns that follow a mean.
+pub(crate) fn of_error<E: Experiment>(column: &str) -> Option<String> {
+    E::columns().iter().filter(|mean| mean.has_error()).map(Column::name).find_map(|mean| {
+        let told = ["Standard error of the mean", "Number of independent samples behind the mean"];
+        let of = error_names(mean).into_iter().zip(told).find(|(name, _)| name == column);
+        of.map(|(_, told)| format!("{told} of {mean}."))
+    })
+}
+
+/// Returns the meaning of a name.
+pub(crate) fn find(meanings: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
+    meanings.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
+}
+
 /// The names of the tables of every study.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 
@@ -246,4 +270,24 @@ fn check(what: &str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
 
 fn refused(what: &str, name: &str, reason: &str) -> PlanError {
     PlanError::Refused(format!("{name:?} cannot be the name of a {what}: {reason}"))
+}
+
+/// Returns the column of this name that has an error. If the tables of samples and of values have a column of
+/// this name each, it is the column of the table of values.
+pub(crate) fn with_error<'a, E: Experiment>(columns: &'a [Column<E>], name: &str) -> Option<&'a Column<E>> {
+    let named = columns.iter().filter(|column| column.name() == name && column.has_error());
+    named.max_by_key(|column| column.in_values)
+}
+
+/// Returns a fingerprint of the names and units in all tables.
+pub(crate) fn fingerprint<E: Experiment>() -> Fingerprint {
+    let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);
+    let columns = E::columns().iter().fold(Fingerprint::of("columns"), |hash, column| {
+        let tables = f64::from(u8::from(column.in_samples) + 2 * u8::from(column.in_values));
+        heading(hash, column.name(), column.unit()).number(tables)
+    });
+    E::tables().iter().fold(columns, |hash, table| {
+        let hash = hash.text(table.name());
+        table.columns().iter().fold(hash, |hash, column| heading(hash, column.name(), column.unit()))
+    })
 }

@@ -1,13 +1,15 @@
-//! Creating and opening a study in its folder, with the checks at that time.
+//! A study: a plan in a folder, and the code that may continue it. Creating and opening check both.
 
 use std::path::Path;
 
-use super::experiment::origin::{Maker, Origin};
+use granular_edmd::boundary::Boundary;
+use granular_edmd::collision::CollisionRule;
+
+use super::claims::Claims;
+use super::experiment::record::{Maker, Origin};
 use super::folder::Folder;
 use super::parameters::{self, tree};
-use super::provenance::{self, Provenance};
-use super::store::{Claims, Store};
-use super::whole::damaged;
+use super::store::Store;
 use super::{Difference, Experiment, Plan, PlanError, StudyError};
 
 /// A [`Plan`] in a folder, with the records of its finished values.
@@ -73,7 +75,7 @@ impl<E: Experiment> Study<E> {
         check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>,
     ) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder)?, plan)?;
-        if !study.folder.holds_study() || !study.folder.provenance_file().exists() {
+        if !study.folder.holds_study() || !study.folder.provenance().exists() {
             study.put_plan(check)?;
         }
         study.check_plan()?;
@@ -95,7 +97,7 @@ impl<E: Experiment> Study<E> {
         let now = study.ours();
         let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
-            study.folder.replace_provenance(&now.after(before.as_ref()))?;
+            study.folder.replace_provenance(&now.after(before.as_ref()).text())?;
         }
         Ok(differences)
     }
@@ -118,7 +120,7 @@ impl<E: Experiment> Study<E> {
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
-        let maker = provenance::maker::<E>();
+        let maker = Maker::here::<E>();
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
         Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
     }
@@ -126,7 +128,7 @@ impl<E: Experiment> Study<E> {
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
     /// plan.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        self.folder.create(&self.text, &self.ours(), || check(&self.plan))
+        self.folder.create(&self.text, &self.ours().text(), || check(&self.plan))
     }
 
     /// Returns the study, or an error if this program may not continue it.
@@ -137,16 +139,19 @@ impl<E: Experiment> Study<E> {
 
     /// Returns this program as the maker of the study.
     fn ours(&self) -> Provenance {
-        Provenance::here(&self.plan, &self.hash)
+        Provenance::here(&self.plan, &self.maker, &self.hash)
     }
 
     /// Reads the provenance, which must belong to this plan if it is there.
     fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
-        let provenance = self.folder.provenance()?;
-        if provenance.as_ref().is_some_and(|provenance| !provenance.is_of(&self.hash)) {
-            return Err(StudyError::foreign(&self.folder.provenance_file()));
+        let (path, text) = (self.folder.provenance(), self.folder.read_provenance()?);
+        let Some(text) = text else { return Ok(None) };
+        let provenance: Provenance = serde_json::from_str(&text)
+            .map_err(|reason| StudyError::damaged(&path, format!("it is no provenance ({reason})")))?;
+        if provenance.plan == self.hash.to_hex().as_str() {
+            return Ok(Some(provenance));
         }
-        Ok(provenance)
+        Err(StudyError::foreign(&path))
     }
 
     fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
@@ -208,7 +213,7 @@ impl<E: Experiment> Study<E> {
             return Err(StudyError::foreign(path));
         }
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
-            return Err(damaged(path, "it is of another value"));
+            return Err(StudyError::damaged(path, "it is of another value"));
         }
         if self.is_ours(found) || self.provenance.as_ref().is_some_and(|code| code.takes(&found.maker)) {
             return Ok(());
@@ -219,5 +224,89 @@ impl<E: Experiment> Study<E> {
     /// Returns whether a file comes from code with the same results as this program.
     pub(super) fn is_ours(&self, found: &Origin) -> bool {
         found.maker.key() == self.maker.key()
+    }
+}
+
+/// The file `provenance.json`: the code that may continue a study, and the program that began it.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+struct Provenance {
+    results: String,
+    revision: String,
+    columns: String,
+    rule: String,
+    boundary: String,
+    version: String,
+    program: String,
+    target: String,
+    /// Hash of the plan.
+    plan: String,
+    /// The earlier makers that were accepted, as keys separated by blanks.
+    accepted: String,
+}
+
+impl Provenance {
+    /// Describes this program as the maker of the study of a plan.
+    fn here<E: Experiment>(plan: &Plan<E>, maker: &Maker, hash: &blake3::Hash) -> Self {
+        let program = std::env::current_exe().ok();
+        let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
+        let rule = plan.parts.experiment.rule().ok().and_then(|rule| rule.fingerprint());
+        let boundary = plan.parts.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
+        let [rule, boundary] =
+            [rule, boundary].map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
+        Self {
+            results: maker.results.to_string(),
+            revision: maker.revision.to_string(),
+            columns: maker.columns.to_string(),
+            rule,
+            boundary,
+            version: maker.version.clone(),
+            program: program.to_string_lossy().into_owned(),
+            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            plan: hash.to_hex().to_string(),
+            accepted: String::new(),
+        }
+    }
+
+    /// Returns the text of the file.
+    fn text(&self) -> String {
+        // Texts are always JSON.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Returns the same provenance after an earlier one, all of whose makers were accepted.
+    fn after(self, before: Option<&Self>) -> Self {
+        Self { accepted: before.map_or_else(String::new, Self::keys), ..self }
+    }
+
+    /// Returns the deciding fields in which this program differs from the one that made the study.
+    fn differences(&self, there: Option<&Self>) -> Vec<Difference> {
+        let all = self.deciding().into_iter().enumerate().map(|(place, (name, ours))| Difference {
+            field: name.to_owned(),
+            old: there.map(|there| there.deciding()[place].1.clone()),
+            new: Some(ours.clone()),
+        });
+        all.filter(|field| field.old != field.new).collect()
+    }
+
+    /// Returns the fields that decide whether a program may continue the study of a plan.
+    const fn deciding(&self) -> [(&'static str, &String); 5] {
+        [
+            ("results", &self.results),
+            ("revision", &self.revision),
+            ("columns", &self.columns),
+            ("rule", &self.rule),
+            ("boundary", &self.boundary),
+        ]
+    }
+
+    /// Returns the present maker and the earlier, accepted ones, as keys separated by blanks.
+    fn keys(&self) -> String {
+        let Self { results, revision, columns, accepted, .. } = self;
+        format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()
+    }
+
+    /// Returns whether the study accepts records of this maker.
+    fn takes(&self, maker: &Maker) -> bool {
+        self.keys().split(' ').any(|key| key == maker.key())
     }
 }

@@ -4,10 +4,11 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::quantity::accept;
 
-use super::values::tried;
+use super::values::{Axis, tried};
+use super::{Parts, Plan};
 use crate::experiment::{Experiment, columns};
 use crate::parameters::{self, probe, whole_name};
-use crate::{Plan, PlanError, Ramp};
+use crate::{PlanError, Ramp};
 
 /// Largest number of values of a study, in all ramps together.
 const MOST_VALUES: usize = 1_000_000;
@@ -15,27 +16,30 @@ const MOST_VALUES: usize = 1_000_000;
 /// Largest seed: a plan has no larger integers.
 const LARGEST_SEED: u64 = i64::MAX as u64;
 
-impl<E: Experiment> Plan<E> {
+impl<E: Experiment> Parts<E> {
     /// Returns the plan, or an error if it cannot be run.
-    pub(super) fn checked(self) -> Result<Self, PlanError> {
+    pub(super) fn checked(self) -> Result<Plan<E>, PlanError> {
         let plan = self.consistent()?;
         plan.check_experiments()?;
         Ok(plan)
     }
 
     /// Returns the plan, or an error if one of its parts is not valid.
-    pub(super) fn consistent(mut self) -> Result<Self, PlanError> {
+    pub(super) fn consistent(self) -> Result<Plan<E>, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
-        self.tree = parameters::tree(&self.experiment)?;
-        self.check_count()?;
-        self.varied = self.varied().map(|name| whole_name(&self.tree, name)).collect::<Result<_, _>>()?;
-        self.check_varied()?;
-        self.try_names()?;
-        columns::check_names::<E>(&self.varied().collect::<Vec<_>>())?;
-        Ok(self)
+        let tree = parameters::tree(&self.experiment)?;
+        let mut plan = Plan { parts: self, tree, varied: Vec::new(), kinds: Vec::new() };
+        plan.check_count()?;
+        plan.varied = plan.varied().map(|name| whole_name(&plan.tree, name)).collect::<Result<_, _>>()?;
+        plan.check_varied()?;
+        plan.try_names()?;
+        columns::check_names::<E>(&plan.varied().collect::<Vec<_>>())?;
+        Ok(plan)
     }
+}
 
+impl<E: Experiment> Plan<E> {
     /// Checks that no parameter varies twice, and that the ramped parameter can be ramped.
     fn check_varied(&self) -> Result<(), PlanError> {
         let twice = self.varied.iter().enumerate().find(|&(index, name)| self.varied[..index].contains(name));
@@ -43,7 +47,7 @@ impl<E: Experiment> Plan<E> {
             let reason = "varies twice: each parameter can be ramped or swept once";
             return Err(PlanError::varied(parameter, reason));
         }
-        match (&self.ramp, self.varied.last()) {
+        match (&self.parts.ramp, self.varied.last()) {
             (Some(ramp), Some(name)) if !E::can_be_ramped(name) => Err(not_rampable(ramp)),
             _ => Ok(()),
         }
@@ -52,14 +56,13 @@ impl<E: Experiment> Plan<E> {
     /// Sets each parameter that varies to its first value, to check that it exists and to see the kind of its
     /// values as the experiment reads them.
     fn try_names(&mut self) -> Result<(), PlanError> {
-        self.kinds.clear();
-        for (axis, name) in self.sweep.iter_mut().zip(&self.varied) {
+        for (axis, name) in self.parts.sweep.iter_mut().zip(&self.varied) {
             let Some(first) = axis.value(0) else { continue };
             let kind = probe::<E>(&self.tree, axis.parameter(), name, &first)?;
             axis.set_kind(&kind)?;
             self.kinds.push(kind);
         }
-        if let (Some(ramp), Some(name)) = (&self.ramp, self.varied.last())
+        if let (Some(ramp), Some(name)) = (&self.parts.ramp, self.varied.last())
             && let Some((_, at)) = ramp.at(0)
         {
             probe::<E>(&self.tree, ramp.parameter(), name, &at.into())?;
@@ -68,7 +71,7 @@ impl<E: Experiment> Plan<E> {
     }
 
     fn check_count(&self) -> Result<(), PlanError> {
-        let lengths = self.sweep.iter().map(super::axis::Axis::len).chain([self.value_count(), self.repeats]);
+        let lengths = self.parts.sweep.iter().map(Axis::len).chain([self.value_count(), self.parts.repeats]);
         let count = lengths.map(|length| length as u128).fold(1_u128, u128::saturating_mul);
         if count > MOST_VALUES as u128 {
             let reason = format!("ramps and values are too many: at most {MOST_VALUES} are possible");
@@ -82,11 +85,11 @@ impl<E: Experiment> Plan<E> {
     pub(crate) fn check_experiments(&self) -> Result<(), PlanError> {
         // With parameters that vary, the experiment as it stands is never run, and need not be possible.
         if self.varied.is_empty() {
-            self.experiment.check().map_err(|source| Self::refused(&[], source))?;
+            self.parts.experiment.check().map_err(|source| Self::refused(&[], source))?;
         }
         let values = self.value_count();
         let all = tried(self.point_count() * values);
-        for (ramp, value) in all.map(|index| (index / values * self.repeats, index % values)) {
+        for (ramp, value) in all.map(|index| (index / values * self.parts.repeats, index % values)) {
             self.sound_experiment(&self.parameters(ramp, value))?;
         }
         self.check_disks()?;
@@ -96,7 +99,7 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the ramped parameter changes the simulation, and not only the disks at its start, which
     /// stay the same along a ramp.
     fn check_ramp(&self) -> Result<(), PlanError> {
-        let (Some(ramp), true) = (&self.ramp, self.value_count() > 1) else { return Ok(()) };
+        let (Some(ramp), true) = (&self.parts.ramp, self.value_count() > 1) else { return Ok(()) };
         let varied = self.parameters(0, 1);
         let refused = |source| Self::refused(&varied, source);
         let first = self.experiment_of(&self.parameters(0, 0))?;
@@ -117,7 +120,7 @@ impl<E: Experiment> Plan<E> {
     fn check_disks(&self) -> Result<(), PlanError> {
         let mut stride = self.ramp_count();
         let mut ramps = vec![0];
-        for axis in &self.sweep {
+        for axis in &self.parts.sweep {
             stride /= axis.len();
             ramps.extend(axis.tried().filter(|index| *index > 0).map(|index| index * stride));
         }
