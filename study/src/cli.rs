@@ -124,6 +124,11 @@ fn say(line: &str) -> Result<(), Failure> {
     told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
 }
 
+/// Prints notes for the reader of a result, on standard error.
+fn tell(note: &str) {
+    let _ = writeln!(io::stderr(), "note: {note}");
+}
+
 /// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
 /// the result is then false. A full disk is an error.
 fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {

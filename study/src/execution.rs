@@ -7,15 +7,23 @@ mod value;
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use granular_edmd::ParameterError;
 use granular_edmd::quantity::positive;
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 use super::claims::blocks;
 use super::{Experiment, Study, StudyError};
 use session::Session;
+
+/// Shortest and longest time between two checks of the work of other processes. It doubles from check to
+/// check, since a process that waits must not burden a file system that others need.
+const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
+
+/// Largest number of blocks of other processes that one check tries to take over.
+const TRIED: usize = 8;
 
 /// Progress of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +43,7 @@ pub struct Progress {
 ///
 /// ```
 /// use granular_edmd_study::{Control, Progress};
-/// use std::sync::atomic::AtomicBool;
+/// use std::sync::atomic::{AtomicBool, Ordering};
 ///
 /// let stop = AtomicBool::new(false);
 /// let show = |progress: &Progress| eprintln!("{} of {}", progress.done, progress.total);
@@ -215,7 +223,7 @@ impl<E: Experiment> Study<E> {
         self.check_unchanged()?;
         let is_whole = ramps.len() == self.plan().ramp_count();
         let session = Session::new(self, control, ramps, blocks)?;
-        let elsewhere = session.run()?;
+        let elsewhere = all(&session)?;
         self.store.sync()?;
         let summary = session.summary(elsewhere)?;
         if control.writes_tables && summary.is_complete() {
@@ -241,4 +249,36 @@ impl<E: Experiment> Study<E> {
         self.tables(self.folder())?;
         self.folder.mark_complete()
     }
+}
+
+/// Runs blocks until each block is finished, in this process or another. If it need not wait, it returns the
+/// ramps of other processes.
+fn all<E: Experiment>(session: &Session<'_, E>) -> Result<Vec<usize>, StudyError> {
+    session.strike_done()?;
+    let mut patience = PATIENCE[0];
+    loop {
+        let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
+        threads.try_for_each(|_| work(session))?;
+        session.strike_done()?;
+        let elsewhere = session.queue.elsewhere();
+        if elsewhere.is_empty() || !session.control.waits || session.must_stop() {
+            return Ok(elsewhere);
+        }
+        session.sleep(patience);
+        patience = PATIENCE[1].min(2 * patience);
+        // The process of these blocks may have been killed.
+        session.queue.retry(TRIED);
+    }
+}
+
+/// Runs blocks of the queue until it is empty.
+fn work<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
+    while !session.must_stop()
+        && let Some(ramps) = session.queue.next()
+    {
+        if !ramp::attempt(session, &ramps).inspect_err(|_| session.broken.store(true, Ordering::Relaxed))? {
+            session.queue.leave(ramps);
+        }
+    }
+    Ok(())
 }

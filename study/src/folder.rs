@@ -96,6 +96,7 @@ impl Folder {
         check: impl FnOnce() -> Result<(), PlanError>,
     ) -> Result<bool, StudyError> {
         self.check_free()?;
+        create(&self.root)?;
         let _lock = self.take_lock()?;
         let is_new = !self.plan().exists();
         remove_temporaries(&self.root)?;

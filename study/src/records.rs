@@ -2,8 +2,8 @@
 
 use granular_edmd::statistics::Estimate;
 
-use super::experiment::columns::with_error;
 use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
+use super::experiment::with_error;
 use super::plan::ramp::{Bracket, Seen};
 use super::store::Entry;
 use super::{Experiment, Plan, Study, StudyError};

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use granular_edmd::RESULTS;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 
 use super::claims::Claims;
+use super::experiment::columns;
 use super::experiment::record::{Maker, Origin};
 use super::folder::Folder;
 use super::parameters::{self, tree};
@@ -120,7 +122,9 @@ impl<E: Experiment> Study<E> {
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
-        let maker = Maker::here::<E>();
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        let (revision, columns) = (E::revision(), columns::fingerprint::<E>());
+        let maker = Maker { version, results: RESULTS, revision, columns };
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
         Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
     }

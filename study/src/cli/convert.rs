@@ -9,8 +9,7 @@ use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump
 use granular_edmd::{Disk, ParameterError};
 
 use super::arguments::Convert;
-use super::source::tell;
-use super::{End, Failure, PlanError, write_new};
+use super::{End, Failure, PlanError, tell, write_new};
 
 impl Convert {
     fn reader(&self) -> Result<Reader, ParameterError> {

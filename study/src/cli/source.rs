@@ -1,7 +1,6 @@
 //! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a
 //! file. The command `trajectory`, which needs nothing more.
 
-use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
 
@@ -16,7 +15,7 @@ use granular_edmd::trajectory::{ByEnding, Reader, Recorder};
 use super::arguments::{Place, Trajectory};
 use super::convert::Ending;
 use super::run::{Watch, is_stopped};
-use super::{End, Failure, Plan, PlanError, StudyError, chain, read, refused, say};
+use super::{End, Failure, Plan, PlanError, StudyError, chain, read, refused, say, tell};
 use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 
@@ -115,11 +114,6 @@ fn is_no_checkpoint(error: &CheckpointError) -> bool {
         CheckpointError::File { source, .. } => matches!(**source, CheckpointError::NotACheckpoint),
         error => matches!(error, CheckpointError::Io { .. }),
     }
-}
-
-/// Prints notes for the reader of a result, on standard error.
-pub(super) fn tell(note: &str) {
-    let _ = writeln!(io::stderr(), "note: {note}");
 }
 
 /// Prints the error with which a run ended. Errors name disks by their indices, and tables name them by their

@@ -125,8 +125,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
             let record = work.taken_over(record);
-            let warnings = record.counters().warnings().iter().map(ToString::to_string).collect();
-            return self.keep(record, warnings, None);
+            let warnings: Vec<_> = record.counters().warnings().iter().map(ToString::to_string).collect();
+            return self.keep(record, &warnings, None);
         }
         let mut active = match self.saved(&work)? {
             Some(active) => active,
@@ -135,7 +135,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.advance(active.steps());
         let Some(outcome) = self.steps(&mut active)? else { return Ok(false) };
         let warnings = active.warnings();
-        self.keep(active.record(outcome)?, warnings, Some(started.elapsed()))
+        self.keep(active.record(outcome)?, &warnings, Some(started.elapsed()))
     }
 
     /// Returns the record of the next value, if an earlier study has it.
@@ -220,7 +220,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn keep(
         &mut self,
         record: Record<E>,
-        warnings: Vec<String>,
+        warnings: &[String],
         time: Option<Duration>,
     ) -> Result<bool, StudyError> {
         let study = self.session.study;

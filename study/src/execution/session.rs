@@ -7,21 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use serde_json::json;
 
-use super::{Control, Progress, Summary, ramp};
+use super::{Control, Progress, Summary};
 use crate::claims::Queue;
 use crate::parameters;
 use crate::store::{Entry, Head};
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
-
-/// Shortest and longest time between two checks of the work of other processes. It doubles from check to
-/// check, since a process that waits must not burden a file system that others need.
-const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
-
-/// Largest number of blocks of other processes that one check tries to take over.
-const TRIED: usize = 8;
 
 /// Longest time between two checks of a thread for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
@@ -32,7 +24,7 @@ pub(super) struct Session<'a, E: Experiment> {
     pub(super) control: &'a Control<'a>,
     /// Earlier studies, each with the indices of its ramps by seed.
     earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
-    queue: Queue,
+    pub(super) queue: Queue,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
     /// Number of finished steps, and number of steps in all values.
@@ -42,7 +34,7 @@ pub(super) struct Session<'a, E: Experiment> {
     /// True once a thread has met an error.
     ///
     /// The others then stop as if interrupted.
-    broken: AtomicBool,
+    pub(super) broken: AtomicBool,
     /// True once this run has removed the mark that the study is complete.
     is_opened: AtomicBool,
 }
@@ -76,41 +68,8 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Runs blocks until each block is finished, in this process or another. If it need not wait, it returns
-    /// the ramps of other processes.
-    pub(super) fn run(&self) -> Result<Vec<usize>, StudyError> {
-        self.strike_done()?;
-        let mut patience = PATIENCE[0];
-        loop {
-            let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
-            threads
-                .try_for_each(|_| self.work().inspect_err(|_| self.broken.store(true, Ordering::Relaxed)))?;
-            self.strike_done()?;
-            let elsewhere = self.queue.elsewhere();
-            if elsewhere.is_empty() || !self.control.waits || self.must_stop() {
-                return Ok(elsewhere);
-            }
-            self.sleep(patience);
-            patience = PATIENCE[1].min(2 * patience);
-            // The process of these blocks may have been killed.
-            self.queue.retry(TRIED);
-        }
-    }
-
-    /// Runs blocks of the queue until it is empty.
-    fn work(&self) -> Result<(), StudyError> {
-        while !self.must_stop()
-            && let Some(ramps) = self.queue.next()
-        {
-            if !ramp::attempt(self, &ramps)? {
-                self.queue.leave(ramps);
-            }
-        }
-        Ok(())
-    }
-
     /// Removes the finished blocks from the queue. A verification keeps all blocks.
-    fn strike_done(&self) -> Result<(), StudyError> {
+    pub(super) fn strike_done(&self) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
         }

@@ -272,13 +272,6 @@ fn refused(what: &str, name: &str, reason: &str) -> PlanError {
     PlanError::Refused(format!("{name:?} cannot be the name of a {what}: {reason}"))
 }
 
-/// Returns the column of this name that has an error. If the tables of samples and of values have a column of
-/// this name each, it is the column of the table of values.
-pub(crate) fn with_error<'a, E: Experiment>(columns: &'a [Column<E>], name: &str) -> Option<&'a Column<E>> {
-    let named = columns.iter().filter(|column| column.name() == name && column.has_error());
-    named.max_by_key(|column| column.in_values)
-}
-
 /// Returns a fingerprint of the names and units in all tables.
 pub(crate) fn fingerprint<E: Experiment>() -> Fingerprint {
     let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);

@@ -2,13 +2,13 @@
 
 use std::fmt;
 
+use granular_edmd::Fingerprint;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
-use granular_edmd::{Fingerprint, RESULTS};
 
-use super::columns::{self, with_error};
+use super::with_error;
 use crate::parameters::{self, Scalar};
 use crate::{Experiment, ExperimentError, Interval};
 
@@ -115,12 +115,6 @@ pub(crate) struct Maker {
 }
 
 impl Maker {
-    /// Returns the maker of this program's records.
-    pub(crate) fn here<E: Experiment>() -> Self {
-        let version = env!("CARGO_PKG_VERSION").to_owned();
-        Self { version, results: RESULTS, revision: E::revision(), columns: columns::fingerprint::<E>() }
-    }
-
     /// Returns, in one word, the numbers that decide whether a study accepts the code.
     pub(crate) fn key(&self) -> String {
         format!("{}:{}:{}", self.results, self.revision, self.columns)
