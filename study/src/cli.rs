@@ -44,11 +44,10 @@ mod replay;
 mod run;
 mod shape;
 mod source;
+mod terminal;
 
 use std::error::Error;
-use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -116,44 +115,6 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
     let of_study = error.downcast_ref::<StudyError>();
     let is_of_plan = matches!(of_study, Some(StudyError::Plan(_) | StudyError::Unreadable { .. }));
     ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
-}
-
-/// Prints a line.
-fn say(line: &str) -> Result<(), Failure> {
-    let mut out = io::stdout();
-    told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
-}
-
-/// Prints notes for the reader of a result, on standard error.
-fn tell(note: &str) {
-    let _ = writeln!(io::stderr(), "note: {note}");
-}
-
-/// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
-/// the result is then false. A full disk is an error.
-fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
-    match written {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
-        written => Ok(written.map(|()| true).map_err(StudyError::io("write", path))?),
-    }
-}
-
-/// Reads a file, or standard input for the name `-`.
-fn read(path: &Path) -> Result<String, Failure> {
-    let text =
-        if path == Path::new("-") { io::read_to_string(io::stdin()) } else { fs::read_to_string(path) };
-    Ok(text.map_err(StudyError::io("read", path))?)
-}
-
-/// Writes a new file. An existing one is not overwritten.
-fn write_new(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(bytes));
-    Ok(written.map_err(StudyError::io("write", path))?)
-}
-
-/// Returns the error of a plan, with the name of its file.
-fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
-    move |source| StudyError::Unreadable { path: path.to_owned(), source }
 }
 
 /// Returns a time on one core as text.

@@ -13,7 +13,7 @@ use granular_edmd::file::{Damage, Locked, Seal, is_temporary, write_whole};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::{PlanError, StudyError};
+use super::StudyError;
 
 /// Text of the README in the folder of a study.
 const ABOUT: &str = include_str!("folder.txt");
@@ -85,31 +85,25 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Writes a plan to the folder, and creates the folder if needed. Returns false if the folder already has
-    /// a plan.
-    ///
-    /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
-    pub(super) fn create(
-        &self,
-        plan: &str,
-        provenance: &str,
-        check: impl FnOnce() -> Result<(), PlanError>,
-    ) -> Result<bool, StudyError> {
+    /// Creates the folder if needed, and locks it in order to write a plan.
+    pub(super) fn prepare(&self) -> Result<Locked, StudyError> {
         self.check_free()?;
         create(&self.root)?;
-        let _lock = self.take_lock()?;
-        let is_new = !self.plan().exists();
+        let lock = self.take_lock()?;
         remove_temporaries(&self.root)?;
-        if is_new {
-            check()?;
+        Ok(lock)
+    }
+
+    /// Writes a plan and its provenance, unless they are there. The caller holds the lock.
+    pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
+        if !self.plan().exists() {
             write(&self.plan(), plan.as_bytes())?;
         }
         // If a process is killed here, the folder has a plan but no provenance and no records.
         if !self.root.join(LOGS).exists() && !self.provenance().exists() {
             write(&self.provenance(), provenance.as_bytes())?;
         }
-        self.write_about()?;
-        Ok(is_new)
+        self.write_about()
     }
 
     pub(super) fn provenance(&self) -> PathBuf {

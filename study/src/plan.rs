@@ -1,6 +1,6 @@
 //! Plans: studies as data.
 
-mod checks;
+mod checked;
 pub(super) mod protocol;
 pub(super) mod ramp;
 pub(super) mod values;
@@ -11,7 +11,6 @@ use granular_edmd::quantity::accept;
 use serde::{Deserialize, Serialize, Serializer};
 use toml::Table;
 
-use super::errors::chain;
 use super::parameters::{self, Scalar, derived_seed, place, seed_at};
 use super::{Experiment, ExperimentError, Leg, PlanError};
 use protocol::Protocol;
@@ -97,14 +96,6 @@ const fn is_one(count: &usize) -> bool {
     *count == 1
 }
 
-impl<E: Experiment> TryFrom<Parts<E>> for Plan<E> {
-    type Error = String;
-
-    fn try_from(parts: Parts<E>) -> Result<Self, String> {
-        parts.checked().map_err(|error| chain(&error))
-    }
-}
-
 impl<E: Experiment> Serialize for Plan<E> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.parts.serialize(serializer)
@@ -119,66 +110,12 @@ impl<E: Experiment> fmt::Display for Plan<E> {
 }
 
 impl<E: Experiment> Plan<E> {
-    /// Creates the plan of one value.
-    ///
-    /// # Errors
-    /// If the experiment refuses its parameters, the protocol is out of range, or the seed is not below
-    /// $`2^{63}`$.
-    pub fn new(experiment: E, protocol: Protocol, seed: u64) -> Result<Self, PlanError> {
-        let (ramp, sweep) = (None, Vec::new());
-        Parts { seed, repeats: 1, end_states: false, experiment, protocol, ramp, sweep }.checked()
-    }
-
-    /// Reads a plan in TOML.
-    ///
-    /// # Errors
-    /// If the text is not TOML, a field is unknown or missing, or a value is refused. The error names it.
-    pub fn from_toml(text: &str) -> Result<Self, PlanError> {
-        let plan = Self::from_toml_unproven(text)?;
-        plan.check_experiments()?;
-        Ok(plan)
-    }
-
-    /// Reads a plan without a check of its experiments, which is needed only once.
-    pub(crate) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
-        let parts: Parts<E> = toml::from_str(text).map_err(|error| PlanError::toml(&error))?;
-        parts.consistent()
-    }
-
     /// Returns the plan in TOML.
     ///
     /// # Errors
     /// If the plan cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, PlanError> {
         toml::to_string(self).map_err(|error| PlanError::toml(&error))
-    }
-
-    /// Returns the same plan with a ramp at each point.
-    ///
-    /// # Errors
-    /// If the parameter cannot be ramped, is swept already, or does not belong to the experiment, or if its
-    /// values are refused or do not increase.
-    pub fn with_ramp(self, ramp: Ramp) -> Result<Self, PlanError> {
-        Parts { ramp: Some(ramp), ..self.parts }.checked()
-    }
-
-    /// Returns the same plan with one more axis.
-    ///
-    /// The value of the last axis changes fastest.
-    ///
-    /// # Errors
-    /// If the parameter varies already or does not belong to the experiment, or if a value is refused.
-    pub fn with_axis(mut self, axis: Axis) -> Result<Self, PlanError> {
-        self.parts.sweep.push(axis);
-        self.parts.checked()
-    }
-
-    /// Returns the same plan with `repeats` repeats of each point, each with another seed.
-    ///
-    /// # Errors
-    /// If the number is 0, or the plan then has too many values.
-    pub fn with_repeats(self, repeats: usize) -> Result<Self, PlanError> {
-        Parts { repeats, ..self.parts }.checked()
     }
 
     /// Returns the same plan with records that all keep the state at their end

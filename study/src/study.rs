@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use granular_edmd::RESULTS;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
+use granular_edmd::{Fingerprint, RESULTS};
 
 use super::claims::Claims;
-use super::experiment::columns;
 use super::experiment::record::{Maker, Origin};
 use super::folder::Folder;
 use super::parameters::{self, tree};
@@ -123,7 +122,7 @@ impl<E: Experiment> Study<E> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
         let version = env!("CARGO_PKG_VERSION").to_owned();
-        let (revision, columns) = (E::revision(), columns::fingerprint::<E>());
+        let (revision, columns) = (E::revision(), columns::<E>());
         let maker = Maker { version, results: RESULTS, revision, columns };
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
         Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
@@ -131,8 +130,16 @@ impl<E: Experiment> Study<E> {
 
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
     /// plan.
+    ///
+    /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        self.folder.create(&self.text, &self.ours().text(), || check(&self.plan))
+        let _lock = self.folder.prepare()?;
+        let is_new = !self.folder.plan().exists();
+        if is_new {
+            check(&self.plan)?;
+        }
+        self.folder.put(&self.text, &self.ours().text())?;
+        Ok(is_new)
     }
 
     /// Returns the study, or an error if this program may not continue it.
@@ -313,4 +320,17 @@ impl Provenance {
     fn takes(&self, maker: &Maker) -> bool {
         self.keys().split(' ').any(|key| key == maker.key())
     }
+}
+
+/// Returns a fingerprint of the names and units in all tables.
+fn columns<E: Experiment>() -> Fingerprint {
+    let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);
+    let columns = E::columns().iter().fold(Fingerprint::of("columns"), |hash, column| {
+        let tables = f64::from(u8::from(column.in_samples) + 2 * u8::from(column.in_values));
+        heading(hash, column.name(), column.unit()).number(tables)
+    });
+    E::tables().iter().fold(columns, |hash, table| {
+        let hash = hash.text(table.name());
+        table.columns().iter().fold(hash, |hash, column| heading(hash, column.name(), column.unit()))
+    })
 }

@@ -9,7 +9,8 @@ use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump
 use granular_edmd::{Disk, ParameterError};
 
 use super::arguments::Convert;
-use super::{End, Failure, PlanError, tell, write_new};
+use super::terminal::{tell, write_new};
+use super::{End, Failure, PlanError};
 
 impl Convert {
     fn reader(&self) -> Result<Reader, ParameterError> {

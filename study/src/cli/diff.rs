@@ -7,9 +7,9 @@ use granular_edmd::quantity::non_negative;
 use granular_edmd::replay::{Differences, Replay};
 
 use super::arguments::Diff;
-use super::run::end_at_once;
 use super::source::{HEADINGS, Source, row, tell_end};
-use super::{End, Failure, PlanError, say, tell};
+use super::terminal::{end_at_once, say, tell};
+use super::{End, Failure, PlanError};
 use crate::{Experiment, Run};
 
 /// Number of parts of a compared interval, after each of which the progress is shown.

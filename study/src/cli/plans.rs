@@ -6,7 +6,8 @@ use std::path::Path;
 use clap::{CommandFactory, ValueEnum};
 
 use super::arguments::Arguments;
-use super::{End, Failure, LISTED, explain, read, refused, say, write_new};
+use super::terminal::{read, refused, say, write_new};
+use super::{End, Failure, LISTED, explain};
 use crate::{Experiment, Plan, PlanError, Ramp};
 
 /// Largest number of values of a ramp that `check` prints in full.

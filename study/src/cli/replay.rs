@@ -10,9 +10,9 @@ use granular_edmd::trajectory::State;
 
 use super::arguments::Replay;
 use super::convert::Ending;
-use super::run::{is_stopped, listen};
 use super::source::{HEADINGS, Source, row, tell_end};
-use super::{End, Failure, PlanError, StudyError, told};
+use super::terminal::{is_stopped, listen, told};
+use super::{End, Failure, PlanError, StudyError};
 use crate::{Experiment, Run};
 
 /// Default number of collisions to write.

@@ -14,8 +14,8 @@ use granular_edmd::trajectory::{ByEnding, Reader, Recorder};
 
 use super::arguments::{Place, Trajectory};
 use super::convert::Ending;
-use super::run::{Watch, is_stopped};
-use super::{End, Failure, Plan, PlanError, StudyError, chain, read, refused, say, tell};
+use super::terminal::{Watch, is_stopped, read, refused, say, tell};
+use super::{End, Failure, Plan, PlanError, StudyError, chain};
 use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 

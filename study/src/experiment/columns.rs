@@ -3,12 +3,11 @@
 use std::fmt;
 use std::sync::LazyLock;
 
-use granular_edmd::Fingerprint;
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
 
 use crate::parameters::Scalar;
-use crate::{Experiment, PlanError, Record};
+use crate::{Experiment, Record};
 
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
 type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
@@ -218,69 +217,8 @@ pub(crate) fn find(meanings: &[(&str, &'static str)], name: &str) -> Option<&'st
     meanings.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
 }
 
-/// The names of the tables of every study.
-const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-
-/// The columns of [`OF_TABLES`] that some tables alone have, so that others may have columns of these names.
-const OF_SOME: [&str; 3] = ["time", "from_state", "to_state"];
-
 /// Returns the names of the two columns that follow a column of means: the error, and the number of
 /// independent samples.
 pub(crate) fn error_names(name: &str) -> [String; 2] {
     ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
-}
-
-/// Checks that the names of an experiment's columns and tables are valid and unique, also among the varied
-/// parameters and the built-in columns.
-pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
-    let (columns, tables) = (E::columns(), E::tables());
-    let names = OF_TABLES.iter().map(|(name, _)| *name);
-    let of_all: Vec<&str> = names.filter(|name| !OF_SOME.contains(name)).collect();
-    let taken = [of_all.as_slice(), varied].concat();
-    let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
-        columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
-    };
-    check("column", &of(|column| column.in_samples), &[taken.as_slice(), &["time"]].concat())?;
-    let with_errors = columns.iter().filter(|column| column.in_values && column.has_error());
-    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
-    let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
-    check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
-    let all = [of_all.as_slice(), &["time"], &errors].concat();
-    if let Some(name) = varied.iter().find(|name| all.contains(name)) {
-        return Err(refused("varied parameter", name, "a column of the tables has it"));
-    }
-    for table in &tables {
-        check("column", &table.columns.iter().map(Heading::name).collect::<Vec<_>>(), &taken)?;
-    }
-    check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
-}
-
-fn check(what: &str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
-    for (index, name) in names.iter().enumerate() {
-        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
-        if name.is_empty() || !name.chars().all(is_plain) {
-            return Err(refused(what, name, "it must be of letters, digits and underscores"));
-        }
-        if taken.contains(name) || names[..index].contains(name) {
-            return Err(refused(what, name, "another one has it"));
-        }
-    }
-    Ok(())
-}
-
-fn refused(what: &str, name: &str, reason: &str) -> PlanError {
-    PlanError::Refused(format!("{name:?} cannot be the name of a {what}: {reason}"))
-}
-
-/// Returns a fingerprint of the names and units in all tables.
-pub(crate) fn fingerprint<E: Experiment>() -> Fingerprint {
-    let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);
-    let columns = E::columns().iter().fold(Fingerprint::of("columns"), |hash, column| {
-        let tables = f64::from(u8::from(column.in_samples) + 2 * u8::from(column.in_values));
-        heading(hash, column.name(), column.unit()).number(tables)
-    });
-    E::tables().iter().fold(columns, |hash, table| {
-        let hash = hash.text(table.name());
-        table.columns().iter().fold(hash, |hash, column| heading(hash, column.name(), column.unit()))
-    })
 }
