@@ -150,12 +150,16 @@ pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
     }
 }
 
-/// Sets a parameter by its whole name; returns false if one of the names before the last does not name a
-/// group.
+/// Sets a parameter by its whole name, in the type of its present value; returns false if one of the names
+/// before the last does not name a group.
 #[must_use]
 pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     match name.split_once('.') {
-        None => Value::try_from(to).map(|to| tree.insert(name.to_owned(), to)).is_ok(),
+        None => {
+            let known = tree.get(name).and_then(Scalar::of_toml);
+            let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
+            Value::try_from(to).map(|to| tree.insert(name.to_owned(), to)).is_ok()
+        }
         Some((first, rest)) => {
             let group = tree.entry(first).or_insert_with(|| Value::Table(Table::new()));
             group.as_table_mut().is_some_and(|group| set(group, rest, to))
@@ -187,18 +191,17 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
     name: &str,
     to: &Scalar,
 ) -> Result<Scalar, PlanError> {
-    let known = get(base, name);
-    let to = known.and_then(Scalar::of_toml).map_or_else(|| to.clone(), |known| to.clone().like(&known));
     let mut changed = base.clone();
     let unknown = |reason: &str| {
         let known = names(base).join(", ");
         PlanError::Refused(format!("there is no parameter `{parameter}` ({reason}); there are {known}"))
     };
-    if !set(&mut changed, name, &to) {
+    if !set(&mut changed, name, to) {
         return Err(unknown("a part of its name is that of a parameter without parts"));
     }
-    let refused = |reason: String| match known {
-        Some(_) => PlanError::Experiment { place: place(&[(parameter, to.clone())]), source: reason.into() },
+    let tried = get(&changed, name).and_then(Scalar::of_toml).filter(|_| get(base, name).is_some());
+    let refused = |reason: String| match tried {
+        Some(to) => PlanError::Experiment { place: place(&[(parameter, to)]), source: reason.into() },
         None => unknown(&reason),
     };
     let read = experiment::<E>(changed).map_err(refused)?;

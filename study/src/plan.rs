@@ -61,13 +61,11 @@ use values::Axis;
 #[serde(try_from = "Parts<E>", bound(deserialize = "E: Experiment"))]
 pub struct Plan<E> {
     pub(super) parts: Parts<E>,
-    /// The parameters of the experiment by name.
+    /// The parameters of the experiment by name. Each parameter of the sweep has its first value, as the
+    /// experiment reads it, which shows the kind of number.
     tree: Table,
     /// The full names of the parameters that vary: first the axes in their order, then the ramp.
     pub(super) varied: Vec<String>,
-    /// The first value of each parameter that varies, as the experiment reads it. The value shows the kind of
-    /// number.
-    kinds: Vec<Scalar>,
 }
 
 /// The parts of a plan, as they are in its file.
@@ -192,9 +190,10 @@ impl<E: Experiment> Plan<E> {
     pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
         let mut rest = ramp / self.parts.repeats;
         let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
-        for (axis, kind) in self.parts.sweep.iter().zip(&self.kinds).rev() {
-            let value = axis.value(rest % axis.len());
-            found.extend(value.map(|value| (axis.parameter(), value.like(kind))));
+        for (axis, name) in self.parts.sweep.iter().zip(&self.varied).rev() {
+            let kind = parameters::get(&self.tree, name).and_then(Scalar::of_toml);
+            let value = axis.value(rest % axis.len()).zip(kind);
+            found.extend(value.map(|(value, kind)| (axis.parameter(), value.like(&kind))));
             rest /= axis.len();
         }
         found.reverse();
@@ -238,10 +237,8 @@ impl<E: Experiment> Plan<E> {
     fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
         let mut tree = self.tree.clone();
         for (name, (_, to)) in self.varied.iter().zip(varied) {
-            let known = parameters::get(&tree, name).and_then(Scalar::of_toml);
-            let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
             // The names were checked when the plan was made, so this succeeds.
-            let _ = parameters::set(&mut tree, name, &to);
+            let _ = parameters::set(&mut tree, name, to);
         }
         let refused = |reason: String| Self::refused(varied, reason.into());
         parameters::experiment(tree).map_err(refused)

@@ -17,7 +17,7 @@ use serde::de::DeserializeOwned;
 use super::StudyError;
 use super::folder::{decoded, encoded, files_in, open_lock};
 use super::parameters::anywhere;
-use log::{HEAD, Log, Piece, read_piece};
+use log::{HEAD, Log, Piece, pieces, read_piece};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
@@ -188,13 +188,14 @@ impl Store {
         }
         let sorted = state.entries.0.len();
         for (number, log) in state.logs.iter_mut().enumerate() {
-            let entries = &mut state.entries;
-            let show = |piece| Arc::make_mut(entries).0.push(Entry { log: number as u32, ..piece });
             // The file is opened anew each time, since a client of NFS asks for the present length only then.
-            let read = Log::each(&log.path, SEAL, log.end, show);
-            let (end, is_damaged) = read.map_err(|error| failed("read", &log.path, error))?;
-            log.end = end;
-            log.is_damaged |= is_damaged;
+            let read = pieces(&log.path, SEAL, log.end).map_err(|error| failed("read", &log.path, error))?;
+            log.end = read.end;
+            log.is_damaged |= read.is_damaged;
+            if !read.found.is_empty() {
+                let new = read.found.into_iter().map(|piece| Entry { log: number as u32, ..piece });
+                Arc::make_mut(&mut state.entries).0.extend(new);
+            }
         }
         if state.entries.0.len() > sorted {
             Arc::make_mut(&mut state.entries).settle(sorted);

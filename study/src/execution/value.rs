@@ -244,7 +244,7 @@ impl<E: Experiment> Active<'_, E> {
             }
             Ok(RunEnd::WallClock) => Ok(false),
             Ok(RunEnd::Collisions) => {
-                let most = self.value.plan.protocol().most_collisions().unwrap_or(u64::MAX);
+                let most = self.value.plan.protocol().most_collisions.unwrap_or(u64::MAX);
                 Err(self.limited(format!("it has reached the limit of {most} collisions")))
             }
             Ok(_) => Err(Outcome::Stopped { time }),
@@ -273,7 +273,7 @@ impl<E: Experiment> Active<'_, E> {
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.plan.protocol(), self.value.experiment.cycle());
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
-        let [to_sample, to_end] = [end - protocol.lead(), end]
+        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end]
             .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
         let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
             &mut self.work;
@@ -296,7 +296,7 @@ impl<E: Experiment> Active<'_, E> {
     /// Returns the limits of one part of the value's run.
     fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
         let limits = Limits::until(end).with_wall_clock(slice);
-        let Some(most) = self.value.plan.protocol().most_collisions() else { return limits };
+        let Some(most) = self.value.plan.protocol().most_collisions else { return limits };
         let done = self.run.counters().since(&self.work.counters).collisions();
         limits.with_most_collisions(most.saturating_sub(done))
     }

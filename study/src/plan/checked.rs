@@ -48,7 +48,7 @@ impl<E: Experiment> Parts<E> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
         let tree = parameters::tree(&self.experiment)?;
-        let mut plan = Plan { parts: self, tree, varied: Vec::new(), kinds: Vec::new() };
+        let mut plan = Plan { parts: self, tree, varied: Vec::new() };
         plan.check_count()?;
         plan.varied = plan.varied().map(|name| whole_name(&plan.tree, name)).collect::<Result<_, _>>()?;
         plan.check_varied()?;
@@ -133,7 +133,7 @@ impl<E: Experiment> Plan<E> {
             let Some(first) = axis.value(0) else { continue };
             let kind = probe::<E>(&self.tree, axis.parameter(), name, &first)?;
             axis.set_kind(&kind)?;
-            self.kinds.push(kind);
+            let _ = parameters::set(&mut self.tree, name, &kind);
         }
         if let (Some(ramp), Some(name)) = (&self.parts.ramp, self.varied.last())
             && let Some((_, at)) = ramp.at(0)

@@ -27,9 +27,11 @@ pub struct Protocol {
     settle: u64,
     samples: u64,
     every: u64,
-    phase: f64,
+    /// Phase of the samples in their cycle, in `(0, 1]`.
+    pub(crate) phase: f64,
+    /// Largest number of collisions in a value, or `None` if there is no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
-    most_collisions: Option<u64>,
+    pub(crate) most_collisions: Option<u64>,
 }
 
 from_file! {
@@ -91,11 +93,6 @@ impl Protocol {
         Ok(Self { most_collisions: Some(most), ..self })
     }
 
-    /// Returns the largest number of collisions in a value, or `None` if there is no limit.
-    pub(crate) const fn most_collisions(&self) -> Option<u64> {
-        self.most_collisions
-    }
-
     /// Returns the number of cycles from a sample to the next.
     pub const fn every(&self) -> u64 {
         self.every
@@ -142,11 +139,6 @@ impl Protocol {
     /// Returns the step of this index.
     pub(crate) fn interval(&self, index: u64) -> Interval {
         Interval { index, sample: index.checked_sub(self.settling_steps()) }
-    }
-
-    /// Returns the time from a sample to the end of its step, in cycles.
-    pub(crate) const fn lead(&self) -> f64 {
-        1.0 - self.phase
     }
 }
 
