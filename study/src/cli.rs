@@ -41,20 +41,22 @@ mod diff;
 mod explain;
 mod plans;
 mod replay;
-mod run;
 mod shape;
 mod source;
 mod terminal;
 
 use std::error::Error;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde_json::json;
 
 use super::errors::{PlanError, StudyError, chain};
-use super::{Experiment, Plan};
-use arguments::{Arguments, Command};
+use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
+use arguments::{Arguments, Command, Manner};
+use terminal::{STOP, Watch, is_stopped, listen, read, refused, say};
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status`
 /// has all.
@@ -91,15 +93,15 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::New { file } => plans::new(example, file.as_deref()),
         Command::Explain { key, schema } => plans::explain::<E>(key.as_deref(), schema),
         Command::Check { plan } => plans::check::<E>(&plan),
-        Command::Run { plan, out, ramp, manner } => run::run::<E>(&plan, &out, ramp, &manner),
-        Command::Status { folder, json } => run::status::<E>(&folder, json),
-        Command::Tables { folder, out } => run::tables::<E>(&folder, out.as_deref()),
+        Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
+        Command::Status { folder, json } => status::<E>(&folder, json),
+        Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
         Command::Trajectory(wishes) => source::trajectory::<E>(&wishes),
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
         Command::Completions { shell } => plans::completions(&shell),
-        Command::Accept { folder } => run::accept::<E>(&folder),
+        Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan: Some(plan), json, quick } => bench::plan::<E>(&plan, json, quick),
         Command::Bench { plan: None, quick, .. } => bench::table(quick),
     };
@@ -115,6 +117,122 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
     let of_study = error.downcast_ref::<StudyError>();
     let is_of_plan = matches!(of_study, Some(StudyError::Plan(_) | StudyError::Unreadable { .. }));
     ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
+}
+
+/// Opens or creates the study of a plan in a folder.
+fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
+    let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
+    Ok(Study::open_or_put(folder, plan, Plan::check_experiments).map_err(|error| match error {
+        StudyError::Plan(source) => refused(path)(source),
+        error => error,
+    })?)
+}
+
+fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {
+    let study = study::<E>(path, out)?;
+    if manner.retry {
+        for [failed, _] in study.failed()? {
+            if ramp.is_none_or(|ramp| ramp == failed) {
+                study.forget_failed(failed)?;
+            }
+        }
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build()?;
+    listen()?;
+    let watch = Watch::new();
+    let show = |progress: &Progress| watch.show(progress);
+    let control = manner.of(Control::default().with_progress(&show).with_interrupt(&STOP))?;
+    let summary = pool.install(|| match ramp {
+        Some(ramp) => study.run_ramp(ramp, &control),
+        None => study.run(&control),
+    })?;
+    watch.end();
+    for file in &summary.redone {
+        say(&format!("{} was damaged and has been done again", file.display()))?;
+    }
+    say(&format!("{} of {} values have ended in {}", summary.finished, summary.total, out.display()))?;
+    let logs = out.join("logs/*.jsonl");
+    for (count, told, of) in [
+        (summary.failed, "stalled, failed or reached a limit; status lists them,", "why"),
+        (summary.warned, "have warnings;", "of what"),
+    ] {
+        if count > 0 {
+            say(&format!("{count} of them {told} {} say {of}", logs.display()))?;
+        }
+    }
+    Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
+        (true, _) if summary.failed > 0 => End::Unfinished,
+        (true, _) => End::Done,
+        (false, false) if !is_stopped() => End::Elsewhere,
+        _ => End::Interrupted,
+    })
+}
+
+fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
+    let study = Study::<E>::open(folder)?;
+    let (all, has_tables) = (study.all_status()?, study.has_tables());
+    let ramps = all.len();
+    let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
+    let found = [
+        ("done", of(RampStatus::Done)),
+        ("running", of(RampStatus::Running)),
+        ("begun", of(RampStatus::Begun)),
+        ("waiting", of(RampStatus::Waiting)),
+    ];
+    let failed = study.failed()?;
+    let (spent, left) = study.seconds()?;
+    if json {
+        let [done, running, begun, waiting] = found.each_ref().map(|(_, of)| of);
+        let object = json!({
+            "ramps": ramps, "done": done, "running": running, "begun": begun, "waiting": waiting,
+            "failed": failed, "tables": has_tables, "seconds": spent, "seconds_left": left,
+        });
+        say(&object.to_string())?;
+    } else {
+        let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
+        let tables = if has_tables { "tables of all" } else { "no tables of all" };
+        say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
+        if left.is_finite() {
+            say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
+        }
+        if !failed.is_empty() {
+            let first: Vec<String> =
+                failed.iter().take(LISTED).map(|[r, v]| format!("{r:04}/{v:04}")).collect();
+            let more = if failed.len() > LISTED { " …" } else { "" };
+            say(&format!(
+                "{} values stalled, failed or reached a limit: {}{more}",
+                failed.len(),
+                first.join(" ")
+            ))?;
+        }
+    }
+    Ok(match (found[0].1.len() == ramps, has_tables) {
+        (true, true) if failed.is_empty() => End::Done,
+        (true, true) => End::Unfinished,
+        (true, false) => End::NoTables,
+        (false, _) if found[1].1.is_empty() => End::Idle,
+        (false, _) => End::Elsewhere,
+    })
+}
+
+fn tables<E: Experiment>(folder: &Path, out: Option<&Path>) -> Result<End, Failure> {
+    let study = Study::<E>::open(folder)?;
+    let finished = out.map_or_else(|| study.write_tables(), |out| study.write_tables_to(out))?;
+    say(&format!("tables of {finished} values are in {}", out.unwrap_or(folder).display()))?;
+    Ok(End::Done)
+}
+
+fn accept<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+    let differences = Study::<E>::accept_changes(folder)?;
+    for difference in &differences {
+        say(&difference.to_string())?;
+    }
+    say(if differences.is_empty() {
+        "the study is of this code: there is nothing to accept"
+    } else {
+        "from here on, records are of this code: the column made_by of values.csv tells them from those before"
+    })?;
+    Ok(End::Done)
 }
 
 /// Returns a time on one core as text.

@@ -94,7 +94,7 @@ const fn is_one(count: &usize) -> bool {
     *count == 1
 }
 
-impl<E: Experiment> Serialize for Plan<E> {
+impl<E: Serialize> Serialize for Plan<E> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.parts.serialize(serializer)
     }

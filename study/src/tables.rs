@@ -186,7 +186,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
             let leading = place.leading(plan).into_iter().map(|(name, _)| Heading::new(name, ""));
             let headings: Vec<Heading> = leading.chain(own).collect();
             for heading in &headings {
-                let meaning = meaning(plan, name, heading.name());
+                let meaning = meaning(plan, &columns, name, heading.name());
                 described.push(name, [heading.name().into(), heading.unit().into(), meaning.into()])?;
             }
             let mut rows = Rows::begin(folder, name)?;
@@ -334,7 +334,7 @@ fn between(first: &[&str], own: impl Iterator<Item = Heading>) -> Vec<Heading> {
 }
 
 /// Returns the meaning of a column of a table of a plan; empty if the experiment gives none.
-fn meaning<E: Experiment>(plan: &Plan<E>, table: &str, column: &str) -> String {
+fn meaning<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>], table: &str, column: &str) -> String {
     let whole_name = |name: &str| plan.varied().zip(&plan.varied).find(|(short, _)| *short == name);
     let parameter = |name: &str| whole_name(name).and_then(|(_, whole)| find(E::meanings(), whole));
     let side = |ending| column.strip_suffix(ending).filter(|_| table == "transitions");
@@ -344,5 +344,5 @@ fn meaning<E: Experiment>(plan: &Plan<E>, table: &str, column: &str) -> String {
     }
     let own = find(&OF_TABLES, column).or_else(|| parameter(column)).or_else(|| find(E::meanings(), column));
     let own = own.map(|meaning| meaning.trim_end_matches(" Required.").to_owned());
-    own.or_else(|| of_error::<E>(column)).unwrap_or_default()
+    own.or_else(|| of_error(columns, column)).unwrap_or_default()
 }

@@ -49,7 +49,7 @@ pub(super) fn explained<E: Experiment>(key: Option<&str>) -> Result<String, Stri
     let mut meant: Vec<String> = meant.map(|(name, meaning)| line::<E>(name, meaning)).collect();
     if meant.is_empty() {
         let other = of_key::<E>(key).filter(|_| name == key).map(str::to_owned);
-        let other = other.or_else(|| of_error::<E>(key));
+        let other = other.or_else(|| of_error(&E::columns(), key));
         meant.extend(other.map(|meaning| line::<E>(key, &meaning)));
     }
     if !meant.is_empty() {
