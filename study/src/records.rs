@@ -104,7 +104,7 @@ impl<E: Experiment> Study<E> {
         let record = self.read_unproven(entry)?;
         // Accepted code differs from this program on purpose.
         let is_ours = self.is_ours(&record.contents.origin);
-        let last = self.plan.protocol().last_of(record.contents.steps);
+        let last = self.plan.protocol().step(record.contents.steps);
         match record.changed_part(&last).filter(|_| is_ours) {
             Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
             None => Ok(record),

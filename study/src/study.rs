@@ -95,10 +95,11 @@ impl<E: Experiment> Study<E> {
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
         let before = study.read_provenance()?;
-        let now = study.ours();
+        let accepted = before.as_ref().map_or_else(String::new, Provenance::keys);
+        let now = Provenance { accepted, ..study.ours() };
         let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
-            study.folder.replace_provenance(&now.after(before.as_ref()).text())?;
+            study.folder.replace_provenance(&now.text())?;
         }
         Ok(differences)
     }
@@ -282,11 +283,6 @@ impl Provenance {
     fn text(&self) -> String {
         // Texts are always JSON.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
-    }
-
-    /// Returns the same provenance after an earlier one, all of whose makers were accepted.
-    fn after(self, before: Option<&Self>) -> Self {
-        Self { accepted: before.map_or_else(String::new, Self::keys), ..self }
     }
 
     /// Returns the deciding fields in which this program differs from the one that made the study.

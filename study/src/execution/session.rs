@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::{Control, Progress, Summary};
 use crate::parameters::{self, anywhere};
-use crate::store::{Entry, Head};
+use crate::store::{Entries, Entry, Head};
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
 
 /// Longest time between two checks of a thread for a request to stop.
@@ -31,7 +31,7 @@ struct Blocks {
 }
 
 impl Queue {
-    pub(super) fn new(blocks: impl Iterator<Item = Range<usize>>) -> Self {
+    fn new(blocks: impl Iterator<Item = Range<usize>>) -> Self {
         let (waiting, elsewhere) = (begun_anywhere(blocks.collect()), VecDeque::new());
         Self(Mutex::new(Blocks { waiting, elsewhere }))
     }
@@ -48,12 +48,18 @@ impl Queue {
         blocks.waiting = begun_anywhere(std::mem::take(&mut blocks.waiting));
     }
 
-    /// Removes the finished blocks.
-    pub(super) fn strike(&self, is_done: impl Fn(&Range<usize>) -> bool) {
+    /// Removes the finished blocks, and returns the number of their ramps.
+    fn strike(&self, entries: &Entries) -> usize {
         let Blocks { waiting, elsewhere } = &mut *self.blocks();
+        let mut ramps = 0;
         for blocks in [waiting, elsewhere] {
-            blocks.retain(|ramps| !is_done(ramps));
+            blocks.retain(|block| {
+                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
+                ramps += if is_done { block.len() } else { 0 };
+                !is_done
+            });
         }
+        ramps
     }
 
     /// Returns the ramps of other processes.
@@ -135,12 +141,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         if self.control.verifies {
             return Ok(());
         }
-        let entries = self.study.store.refreshed()?;
-        self.queue.strike(|ramps| {
-            let is_done = ramps.clone().all(|ramp| entries.is_done(ramp));
-            self.skip(if is_done { ramps.len() } else { 0 });
-            is_done
-        });
+        self.skip(self.queue.strike(&*self.study.store.refreshed()?));
         Ok(())
     }
 

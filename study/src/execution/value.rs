@@ -149,7 +149,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         check_state(&state, from..=to)?;
         work.measured.check(&self.experiment, Some(&state))?;
         let boundary = match work.steps.checked_sub(u64::from(!work.is_prepared)) {
-            Some(last) => self.experiment.boundary_in(&protocol.interval(last), &work.measured.observer),
+            Some(last) => self.experiment.boundary_in(&protocol.step(last), &work.measured.observer),
             None => self.experiment.boundary(),
         };
         let run = boundary.and_then(|boundary| Self::resume(&state, &self.experiment, boundary));
@@ -172,7 +172,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let walls = before.last_boundary(&self.plan.protocol().last_of(before.contents.steps));
+        let walls = before.last_boundary(&self.plan.protocol().step(before.contents.steps));
         let run = walls.and_then(|walls| Self::resume(state, &before.experiment, walls));
         let mut run = run.map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
@@ -263,7 +263,7 @@ impl<E: Experiment> Active<'_, E> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
         }
-        let interval = self.value.plan.protocol().interval(self.work.steps);
+        let interval = self.value.plan.protocol().step(self.work.steps);
         let observer = &mut self.work.measured.observer;
         let prepared = self.value.experiment.prepare(&interval, &mut self.run, observer);
         prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
@@ -277,7 +277,7 @@ impl<E: Experiment> Active<'_, E> {
             .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
         let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
             &mut self.work;
-        if protocol.interval(*steps).sample.is_none() {
+        if protocol.step(*steps).sample.is_none() {
             return sliced::run(&mut self.run, &to_end, &mut self.riders, &mut (), is_under_way);
         }
         // A slice may have ended between the sample and the end of the step.

@@ -132,12 +132,8 @@ impl Protocol {
     }
 
     /// Returns the step after this number of finished steps, or the last step of a finished value.
-    pub(crate) fn last_of(&self, steps: u64) -> Interval {
-        self.interval(self.steps().saturating_sub(1).min(steps))
-    }
-
-    /// Returns the step of this index.
-    pub(crate) fn interval(&self, index: u64) -> Interval {
+    pub(crate) fn step(&self, finished: u64) -> Interval {
+        let index = finished.min(self.steps().saturating_sub(1));
         Interval { index, sample: index.checked_sub(self.settling_steps()) }
     }
 }
@@ -152,6 +148,6 @@ mod tests {
         let ends: Vec<u64> = (0..=protocol.steps()).map(|steps| protocol.cycles_of(steps)).collect();
         assert_eq!(ends, [0, 10, 20, 25, 35, 45, 55]);
         assert_eq!(ends.last(), Some(&protocol.cycles()));
-        assert_eq!((0..6).filter(|&step| protocol.interval(step).sample.is_some()).count(), 3);
+        assert_eq!((0..6).filter(|&step| protocol.step(step).sample.is_some()).count(), 3);
     }
 }
