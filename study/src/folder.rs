@@ -116,11 +116,6 @@ impl Folder {
         if_there("read", &path, fs::read_to_string(&path))
     }
 
-    pub(super) fn replace_provenance(&self, text: &str) -> Result<(), StudyError> {
-        let _lock = self.take_lock()?;
-        write(&self.provenance(), text.as_bytes())
-    }
-
     /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
     fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
@@ -185,7 +180,7 @@ impl Folder {
         Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })
     }
 
-    /// Waits for the lock of the whole study, and locks the study in order to write tables.
+    /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let lock = self.take_lock()?;
         remove_temporaries(&self.root)?;

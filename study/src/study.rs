@@ -8,7 +8,7 @@ use granular_edmd::{Fingerprint, RESULTS};
 
 use super::claims::Claims;
 use super::experiment::record::{Maker, Origin};
-use super::folder::Folder;
+use super::folder::{Folder, write};
 use super::parameters::{self, tree};
 use super::store::Store;
 use super::{Difference, Experiment, Plan, PlanError, StudyError};
@@ -99,7 +99,8 @@ impl<E: Experiment> Study<E> {
         let now = Provenance { accepted, ..study.ours() };
         let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
-            study.folder.replace_provenance(&now.text())?;
+            let _lock = study.folder.lock()?;
+            write(&study.folder.provenance(), now.text().as_bytes())?;
         }
         Ok(differences)
     }
@@ -151,7 +152,25 @@ impl<E: Experiment> Study<E> {
 
     /// Returns this program as the maker of the study.
     fn ours(&self) -> Provenance {
-        Provenance::here(&self.plan, &self.maker, &self.hash)
+        let (experiment, maker) = (&self.plan.parts.experiment, &self.maker);
+        let program = std::env::current_exe().ok();
+        let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
+        let rule = experiment.rule().ok().and_then(|rule| rule.fingerprint());
+        let boundary = experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
+        let [rule, boundary] =
+            [rule, boundary].map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
+        Provenance {
+            results: maker.results.to_string(),
+            revision: maker.revision.to_string(),
+            columns: maker.columns.to_string(),
+            rule,
+            boundary,
+            version: maker.version.clone(),
+            program: program.to_string_lossy().into_owned(),
+            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            plan: self.hash.to_hex().to_string(),
+            accepted: String::new(),
+        }
     }
 
     /// Reads the provenance, which must belong to this plan if it is there.
@@ -227,7 +246,8 @@ impl<E: Experiment> Study<E> {
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
             return Err(StudyError::damaged(path, "it is of another value"));
         }
-        if self.is_ours(found) || self.provenance.as_ref().is_some_and(|code| code.takes(&found.maker)) {
+        let is_accepted = |code: &Provenance| code.keys().split(' ').any(|key| key == found.maker.key());
+        if self.is_ours(found) || self.provenance.as_ref().is_some_and(is_accepted) {
             return Ok(());
         }
         Err(StudyError::changed(path, "revision"))
@@ -257,28 +277,6 @@ struct Provenance {
 }
 
 impl Provenance {
-    /// Describes this program as the maker of the study of a plan.
-    fn here<E: Experiment>(plan: &Plan<E>, maker: &Maker, hash: &blake3::Hash) -> Self {
-        let program = std::env::current_exe().ok();
-        let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
-        let rule = plan.parts.experiment.rule().ok().and_then(|rule| rule.fingerprint());
-        let boundary = plan.parts.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
-        let [rule, boundary] =
-            [rule, boundary].map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
-        Self {
-            results: maker.results.to_string(),
-            revision: maker.revision.to_string(),
-            columns: maker.columns.to_string(),
-            rule,
-            boundary,
-            version: maker.version.clone(),
-            program: program.to_string_lossy().into_owned(),
-            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
-            plan: hash.to_hex().to_string(),
-            accepted: String::new(),
-        }
-    }
-
     /// Returns the text of the file.
     fn text(&self) -> String {
         // Texts are always JSON.
@@ -310,11 +308,6 @@ impl Provenance {
     fn keys(&self) -> String {
         let Self { results, revision, columns, accepted, .. } = self;
         format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()
-    }
-
-    /// Returns whether the study accepts records of this maker.
-    fn takes(&self, maker: &Maker) -> bool {
-        self.keys().split(' ').any(|key| key == maker.key())
     }
 }
 
