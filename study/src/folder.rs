@@ -5,7 +5,7 @@
 //! that the writer of a temporary file there is dead.
 
 use std::collections::HashSet;
-use std::fs::{self, DirEntry, File};
+use std::fs::{self, DirEntry, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -177,7 +177,8 @@ impl Folder {
 
     fn take_lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
-        Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })
+        let file = lock_options().open(&path).map_err(StudyError::io("write", &path))?;
+        Locked::wait(file).map_err(|source| StudyError::NoLock { path, source })
     }
 
     /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
@@ -200,15 +201,19 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Opens the file of a lock, and creates it and its folder if necessary.
-pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
+fn lock_options() -> OpenOptions {
     let mut options = File::options();
     options.read(true).write(true).create(true).truncate(false);
-    let opened = options.open(path);
+    options
+}
+
+/// Opens the file of a lock, and creates it and its folder if necessary.
+pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
+    let opened = lock_options().open(path);
     let opened = match (&opened, path.parent()) {
         (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
             create(folder)?;
-            options.open(path)
+            lock_options().open(path)
         }
         _ => opened,
     };

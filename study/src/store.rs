@@ -5,6 +5,7 @@
 
 mod log;
 
+use std::collections::HashSet;
 use std::fs::{DirEntry, File, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -181,11 +182,11 @@ impl Store {
     /// Reads the new entries of all processes, and returns all entries.
     pub(super) fn refreshed(&self) -> Result<Arc<Entries>, StudyError> {
         let state = &mut *self.state();
-        for path in logs(&self.folder)? {
-            if !state.logs.iter().any(|log| log.path == path) {
-                state.logs.push(LogFile { path, end: 0, is_damaged: false, file: None });
-            }
-        }
+        let known: HashSet<&Path> = state.logs.iter().map(|log| log.path.as_path()).collect();
+        let mut found = logs(&self.folder)?;
+        found.retain(|path| !known.contains(&**path));
+        let new = found.into_iter().map(|path| LogFile { path, end: 0, is_damaged: false, file: None });
+        state.logs.extend(new);
         let sorted = state.entries.0.len();
         for (number, log) in state.logs.iter_mut().enumerate() {
             // The file is opened anew each time, since a client of NFS asks for the present length only then.
