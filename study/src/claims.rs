@@ -36,23 +36,24 @@ pub(super) enum Claimed {
     Collision,
 }
 
-/// Returns the blocks into which this number of ramps is divided.
-pub(super) fn blocks(ramps: usize) -> impl Iterator<Item = Range<usize>> {
-    let size = ramps.div_ceil(BLOCKS).max(1);
-    (0..ramps).step_by(size).map(move |first| first..ramps.min(first + size))
-}
-
 /// The folder of the lock files.
 #[derive(Debug, Clone)]
 pub(super) struct Claims {
     folder: PathBuf,
+    /// Number of all ramps.
+    ramps: usize,
     /// Number of ramps in a block.
     size: usize,
 }
 
 impl Claims {
     pub(super) fn new(root: &Path, ramps: usize) -> Self {
-        Self { folder: root.join("locks"), size: ramps.div_ceil(BLOCKS).max(1) }
+        Self { folder: root.join("locks"), ramps, size: ramps.div_ceil(BLOCKS).max(1) }
+    }
+
+    /// Returns the blocks into which the ramps are divided.
+    pub(super) fn blocks(&self) -> impl Iterator<Item = Range<usize>> {
+        (0..self.ramps).step_by(self.size).map(|first| first..self.ramps.min(first + self.size))
     }
 
     fn file(&self, ramp: usize) -> PathBuf {
@@ -129,7 +130,7 @@ mod tests {
     fn a_claim_is_seen_by_others_until_it_ends() {
         let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
         let claims = Claims::new(&root, 10_000);
-        let all: Vec<Range<usize>> = blocks(10_000).collect();
+        let all: Vec<Range<usize>> = claims.blocks().collect();
         assert_eq!((all.len(), &all[1], all.last()), (2000, &(5..10), Some(&(9995..10_000))));
         let Claimed::Ours(claim) = claims.claim(&all[1]).unwrap() else { panic!("it is free") };
         assert!(matches!(claims.claim(&(7..8)).unwrap(), Claimed::Theirs));

@@ -14,7 +14,6 @@ use granular_edmd::ParameterError;
 use granular_edmd::quantity::positive;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-use super::claims::blocks;
 use super::{Experiment, Study, StudyError};
 use session::Session;
 
@@ -197,8 +196,7 @@ impl<E: Experiment> Study<E> {
     /// If the plan or the code of the study has changed, files cannot be read or written, or a value cannot
     /// be started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
-        let ramps = self.plan().ramp_count();
-        self.run_blocks(0..ramps, blocks(ramps), control)
+        self.run_blocks(0..self.plan.ramp_count(), self.claims.blocks(), control)
     }
 
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are

@@ -94,7 +94,7 @@ impl Folder {
         Ok(lock)
     }
 
-    /// Writes a plan and its provenance, unless they are there. The caller holds the lock.
+    /// Writes a plan, its provenance and the README, unless they are there. The caller holds the lock.
     pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
         if !self.plan().exists() {
             write(&self.plan(), plan.as_bytes())?;

@@ -1,4 +1,5 @@
-//! Parameters of any serializable type, by name; their values; and seeds that follow from them.
+//! Parameters of any serializable type, by name; their values; the seeds that follow from them, and numbers
+//! that have no influence on results.
 
 use std::fmt;
 use std::hash::{BuildHasher, Hasher, RandomState};

@@ -143,7 +143,7 @@ impl TryFrom<toml::Value> for Values {
 }
 
 impl Values {
-    /// Returns a list of values.
+    /// Creates a list of values.
     pub(super) fn list(values: impl IntoIterator<Item: Into<Scalar>>) -> Self {
         Self::List(values.into_iter().map(Into::into).collect())
     }
