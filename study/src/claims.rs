@@ -66,8 +66,8 @@ impl Claims {
         let file = open_lock(&path)?;
         match Locked::take(file) {
             Ok(locked) => {
-                let told = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
-                told.map_err(StudyError::io("write", &path))?;
+                let written = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
+                written.map_err(StudyError::io("write", &path))?;
                 Ok(Claimed::Ours(Claim(locked)))
             }
             Err(TryLockError::WouldBlock) => {

@@ -152,12 +152,12 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     }
     say(&format!("{} of {} values have ended in {}", summary.finished, summary.total, out.display()))?;
     let logs = out.join("logs/*.jsonl");
-    for (count, told, of) in [
+    for (count, fate, of) in [
         (summary.failed, "stalled, failed or reached a limit; status lists them,", "why"),
         (summary.warned, "have warnings;", "of what"),
     ] {
         if count > 0 {
-            say(&format!("{count} of them {told} {} say {of}", logs.display()))?;
+            say(&format!("{count} of them {fate} {} say {of}", logs.display()))?;
         }
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {

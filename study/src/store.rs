@@ -26,118 +26,6 @@ const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
 /// Seconds of work that a loss of power may cost.
 const AT_RISK: f32 = 0.1;
 
-/// The header of a record in a log.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Head {
-    pub(super) ramp: usize,
-    pub(super) value: usize,
-    /// If a value has two records, the record of the higher edition counts. Records of equal editions have
-    /// the same contents.
-    edition: u16,
-    /// The marks of the record: a sum of the constants of this type.
-    marks: u16,
-    /// Wall-clock seconds that the value took; NaN if it was taken over.
-    pub(super) seconds: f32,
-}
-
-impl Head {
-    /// The mark of a value that counts as unfinished.
-    const VOID: u16 = 1;
-    /// The mark of the last value of its ramp.
-    pub(super) const LAST: u16 = 2;
-    /// The mark of a value that stalled, failed or reached a limit.
-    pub(super) const FAILED: u16 = 4;
-    /// The mark of a value whose run has warnings.
-    pub(super) const WARNED: u16 = 8;
-
-    pub(super) const fn new(ramp: usize, value: usize, marks: u16, seconds: f32) -> Self {
-        Self { ramp, value, edition: 0, marks, seconds }
-    }
-
-    pub(super) const fn has(&self, mark: u16) -> bool {
-        self.marks & mark != 0
-    }
-
-    fn bytes(&self) -> [u8; HEAD] {
-        let mut bytes = [0; HEAD];
-        // A plan has at most a million values, and a refinement adds some thousands in each ramp.
-        bytes[..4].copy_from_slice(&(self.ramp as u32).to_le_bytes());
-        bytes[4..8].copy_from_slice(&(self.value as u32).to_le_bytes());
-        bytes[8..10].copy_from_slice(&self.edition.to_le_bytes());
-        bytes[10..12].copy_from_slice(&self.marks.to_le_bytes());
-        bytes[12..].copy_from_slice(&self.seconds.to_le_bytes());
-        bytes
-    }
-}
-
-/// The entry of a record, or of a value that counts as unfinished.
-pub(super) type Entry = Piece;
-
-impl Entry {
-    pub(super) fn head(&self) -> Head {
-        let number = |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| self.head[at + byte]));
-        Head {
-            ramp: number(0) as usize,
-            value: number(4) as usize,
-            edition: number(8) as u16,
-            marks: (number(8) >> 16) as u16,
-            seconds: f32::from_bits(number(12)),
-        }
-    }
-
-    fn place(&self) -> (usize, usize) {
-        let Head { ramp, value, .. } = self.head();
-        (ramp, value)
-    }
-}
-
-/// All entries, one for each ramp and value, in order.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Entries(Vec<Entry>);
-
-impl Entries {
-    /// Sorts all entries. The first `sorted` entries are in order already.
-    fn settle(&mut self, sorted: usize) {
-        let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
-        // For partly sorted entries, a stable sort takes only linear time, but additional memory.
-        match sorted {
-            0 => self.0.sort_unstable_by_key(key),
-            _ => self.0.sort_by_key(key),
-        }
-        self.0.dedup_by_key(|entry| entry.place());
-    }
-
-    /// Returns the entry of a value, even if the value counts as unfinished.
-    fn latest(&self, ramp: usize, value: usize) -> Option<&Entry> {
-        let place = self.0.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
-        Some(&self.0[place])
-    }
-
-    /// Returns the record of a value.
-    pub(super) fn find(&self, ramp: usize, value: usize) -> Option<&Entry> {
-        self.latest(ramp, value).filter(|entry| !entry.head().has(Head::VOID))
-    }
-
-    /// Iterates over the records of some ramps.
-    pub(super) fn of(&self, ramps: std::ops::Range<usize>) -> impl Iterator<Item = &Entry> {
-        let [from, to] =
-            [ramps.start, ramps.end].map(|ramp| self.0.partition_point(|entry| entry.place() < (ramp, 0)));
-        self.0[from..to].iter().filter(|entry| !entry.head().has(Head::VOID))
-    }
-
-    /// Iterates over the headers of all records.
-    pub(super) fn heads(&self) -> impl Iterator<Item = Head> {
-        self.0.iter().map(Entry::head).filter(|head| !head.has(Head::VOID))
-    }
-
-    /// Returns whether all values of a ramp have a record.
-    pub(super) fn is_done(&self, ramp: usize) -> bool {
-        let found = self.of(ramp..ramp + 1).map(Entry::head);
-        let mut whole = found.enumerate().take_while(|(index, head)| head.value == *index);
-        whole.any(|(_, head)| head.has(Head::LAST))
-    }
-}
-
 /// The logs in the folder of a study.
 #[derive(Debug, Clone)]
 pub(super) struct Store {
@@ -349,6 +237,118 @@ fn to_last_line_end(mut file: &File) -> io::Result<&File> {
     }
     file.seek(SeekFrom::Start(whole))?;
     Ok(file)
+}
+
+/// All entries, one for each ramp and value, in order.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Entries(Vec<Entry>);
+
+impl Entries {
+    /// Sorts all entries. The first `sorted` entries are in order already.
+    fn settle(&mut self, sorted: usize) {
+        let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
+        // For partly sorted entries, a stable sort takes only linear time, but additional memory.
+        match sorted {
+            0 => self.0.sort_unstable_by_key(key),
+            _ => self.0.sort_by_key(key),
+        }
+        self.0.dedup_by_key(|entry| entry.place());
+    }
+
+    /// Returns the entry of a value, even if the value counts as unfinished.
+    fn latest(&self, ramp: usize, value: usize) -> Option<&Entry> {
+        let place = self.0.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
+        Some(&self.0[place])
+    }
+
+    /// Returns the record of a value.
+    pub(super) fn find(&self, ramp: usize, value: usize) -> Option<&Entry> {
+        self.latest(ramp, value).filter(|entry| !entry.head().has(Head::VOID))
+    }
+
+    /// Iterates over the records of some ramps.
+    pub(super) fn of(&self, ramps: std::ops::Range<usize>) -> impl Iterator<Item = &Entry> {
+        let [from, to] =
+            [ramps.start, ramps.end].map(|ramp| self.0.partition_point(|entry| entry.place() < (ramp, 0)));
+        self.0[from..to].iter().filter(|entry| !entry.head().has(Head::VOID))
+    }
+
+    /// Iterates over the headers of all records.
+    pub(super) fn heads(&self) -> impl Iterator<Item = Head> {
+        self.0.iter().map(Entry::head).filter(|head| !head.has(Head::VOID))
+    }
+
+    /// Returns whether all values of a ramp have a record.
+    pub(super) fn is_done(&self, ramp: usize) -> bool {
+        let found = self.of(ramp..ramp + 1).map(Entry::head);
+        let mut whole = found.enumerate().take_while(|(index, head)| head.value == *index);
+        whole.any(|(_, head)| head.has(Head::LAST))
+    }
+}
+
+/// The entry of a record, or of a value that counts as unfinished.
+pub(super) type Entry = Piece;
+
+impl Entry {
+    pub(super) fn head(&self) -> Head {
+        let number = |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| self.head[at + byte]));
+        Head {
+            ramp: number(0) as usize,
+            value: number(4) as usize,
+            edition: number(8) as u16,
+            marks: (number(8) >> 16) as u16,
+            seconds: f32::from_bits(number(12)),
+        }
+    }
+
+    fn place(&self) -> (usize, usize) {
+        let Head { ramp, value, .. } = self.head();
+        (ramp, value)
+    }
+}
+
+/// The header of a record in a log.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Head {
+    pub(super) ramp: usize,
+    pub(super) value: usize,
+    /// If a value has two records, the record of the higher edition counts. Records of equal editions have
+    /// the same contents.
+    edition: u16,
+    /// The marks of the record: a sum of the constants of this type.
+    marks: u16,
+    /// Wall-clock seconds that the value took; NaN if it was taken over.
+    pub(super) seconds: f32,
+}
+
+impl Head {
+    /// The mark of a value that counts as unfinished.
+    const VOID: u16 = 1;
+    /// The mark of the last value of its ramp.
+    pub(super) const LAST: u16 = 2;
+    /// The mark of a value that stalled, failed or reached a limit.
+    pub(super) const FAILED: u16 = 4;
+    /// The mark of a value whose run has warnings.
+    pub(super) const WARNED: u16 = 8;
+
+    pub(super) const fn new(ramp: usize, value: usize, marks: u16, seconds: f32) -> Self {
+        Self { ramp, value, edition: 0, marks, seconds }
+    }
+
+    pub(super) const fn has(&self, mark: u16) -> bool {
+        self.marks & mark != 0
+    }
+
+    fn bytes(&self) -> [u8; HEAD] {
+        let mut bytes = [0; HEAD];
+        // A plan has at most a million values, and a refinement adds some thousands in each ramp.
+        bytes[..4].copy_from_slice(&(self.ramp as u32).to_le_bytes());
+        bytes[4..8].copy_from_slice(&(self.value as u32).to_le_bytes());
+        bytes[8..10].copy_from_slice(&self.edition.to_le_bytes());
+        bytes[10..12].copy_from_slice(&self.marks.to_le_bytes());
+        bytes[12..].copy_from_slice(&self.seconds.to_le_bytes());
+        bytes
+    }
 }
 
 /// Returns the logs in a folder.

@@ -339,7 +339,7 @@ fn meaning<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>], table: &str, co
     let parameter = |name: &str| whole_name(name).and_then(|(_, whole)| find(E::meanings(), whole));
     let side = |ending| column.strip_suffix(ending).filter(|_| table == "transitions");
     let sides = [("_near", "near side, from which the ramp came"), ("_far", "far side")];
-    if let Some((name, side)) = sides.iter().find_map(|(ending, told)| Some((side(*ending)?, told))) {
+    if let Some((name, side)) = sides.iter().find_map(|(ending, side_of)| Some((side(*ending)?, side_of))) {
         return format!("Value of {name} on the {side}.");
     }
     let own = find(&OF_TABLES, column).or_else(|| parameter(column)).or_else(|| find(E::meanings(), column));

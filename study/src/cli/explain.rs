@@ -129,7 +129,7 @@ fn group<E: Experiment>(key: &str, shape: &Shape) -> Value {
         schema["maxProperties"] = 1.into();
     } else {
         let is_required =
-            |name: &&str| of_key::<E>(&whole(name)).is_some_and(|told| told.ends_with("Required."));
+            |name: &&str| of_key::<E>(&whole(name)).is_some_and(|meaning| meaning.ends_with("Required."));
         schema["required"] = names().filter(is_required).collect();
     }
     schema

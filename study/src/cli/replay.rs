@@ -11,7 +11,7 @@ use granular_edmd::trajectory::State;
 use super::arguments::Replay;
 use super::convert::Ending;
 use super::source::{HEADINGS, Source, row, tell_end};
-use super::terminal::{is_stopped, listen, told};
+use super::terminal::{is_stopped, listen, wrote};
 use super::{End, Failure, PlanError, StudyError};
 use crate::{Experiment, Run};
 
@@ -31,7 +31,7 @@ pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
     };
     let mut write = |bytes: &[u8]| {
         let written = out.write_all(bytes).and_then(|()| out.flush());
-        told(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
+        wrote(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
     };
     listen()?;
     let written = match wishes.before {

@@ -22,7 +22,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// Prints a line.
 pub(super) fn say(line: &str) -> Result<(), Failure> {
     let mut out = io::stdout();
-    told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
+    wrote(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
 }
 
 /// Prints notes for the reader of a result, on standard error.
@@ -32,7 +32,7 @@ pub(super) fn tell(note: &str) {
 
 /// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
 /// the result is then false. A full disk is an error.
-pub(super) fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
+pub(super) fn wrote(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
         written => Ok(written.map(|()| true).map_err(StudyError::io("write", path))?),
@@ -80,7 +80,7 @@ pub(super) fn end_at_once() -> Result<(), ctrlc::Error> {
 pub(super) struct Watch {
     /// The bar, if there is a terminal.
     bar: Option<ProgressBar>,
-    told: Mutex<Instant>,
+    shown: Mutex<Instant>,
 }
 
 impl Watch {
@@ -91,7 +91,7 @@ impl Watch {
         // The template is valid.
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = io::stderr().is_terminal().then(|| ProgressBar::new(0).with_style(style));
-        Self { bar, told: Mutex::new(Instant::now()) }
+        Self { bar, shown: Mutex::new(Instant::now()) }
     }
 
     pub(super) fn show(&self, progress: &Progress) {
@@ -106,11 +106,11 @@ impl Watch {
     }
 
     fn tell(&self, progress: &Progress) {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.elapsed() < BETWEEN_LINES {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        if shown.elapsed() < BETWEEN_LINES {
             return;
         }
-        *told = Instant::now();
+        *shown = Instant::now();
         let percent = 100.0 * progress.done as f64 / progress.total.max(1) as f64;
         let line = format!("{percent:.1} % ({} of {} steps)", progress.done, progress.total);
         let _ = writeln!(io::stderr(), "{line}");

@@ -206,9 +206,9 @@ pub(crate) fn meanings(text: &'static str) -> Vec<(&'static str, &'static str)> 
 /// Returns the meaning of one of the two columns that follow a mean.
 pub(crate) fn of_error<E: Experiment>(columns: &[Column<E>], column: &str) -> Option<String> {
     columns.iter().filter(|mean| mean.has_error()).map(Column::name).find_map(|mean| {
-        let told = ["Standard error of the mean", "Number of independent samples behind the mean"];
-        let of = error_names(mean).into_iter().zip(told).find(|(name, _)| name == column);
-        of.map(|(_, told)| format!("{told} of {mean}."))
+        let numbers = ["Standard error of the mean", "Number of independent samples behind the mean"];
+        let of = error_names(mean).into_iter().zip(numbers).find(|(name, _)| name == column);
+        of.map(|(_, number)| format!("{number} of {mean}."))
     })
 }
 

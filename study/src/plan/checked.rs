@@ -184,8 +184,8 @@ impl<E: Experiment> Plan<E> {
         let before = run.checkpoint();
         next.change(&mut run).map_err(refused)?;
         // Parts without fingerprints may have changed.
-        let told = run.rule().fingerprint().is_some() && run.boundary().fingerprint().is_some();
-        let is_same = told && E::cycle(&first) == E::cycle(&next) && run.checkpoint() == before;
+        let are_known = run.rule().fingerprint().is_some() && run.boundary().fingerprint().is_some();
+        let is_same = are_known && E::cycle(&first) == E::cycle(&next) && run.checkpoint() == before;
         if is_same { Err(not_rampable(ramp)) } else { Ok(()) }
     }
 

@@ -151,8 +151,8 @@ fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
     if expected.starts_with(&start) {
         return Ok(false);
     }
-    let told = "it is of another format, or of another version of it";
-    Err(io::Error::new(io::ErrorKind::InvalidData, told))
+    let reason = "it is of another format, or of another version of it";
+    Err(io::Error::new(io::ErrorKind::InvalidData, reason))
 }
 
 /// Finds the next complete piece at a position or after it, and moves to its end.
