@@ -4,8 +4,8 @@
 use std::fmt;
 use std::hash::{BuildHasher, Hasher, RandomState};
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer, Serialize};
 use toml::{Table, Value};
 
 use super::errors::{Difference, PlanError, shortened};
@@ -18,8 +18,8 @@ use super::errors::{Difference, PlanError, shortened};
 /// assert_eq!(Scalar::from(3_u64), Scalar::Integer(3));
 /// assert_eq!(Scalar::from("periodic").number(), None);
 /// ```
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(untagged, try_from = "toml::Value")]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
 #[non_exhaustive]
 pub enum Scalar {
     /// Yes or no.
@@ -33,6 +33,9 @@ pub enum Scalar {
 }
 
 impl Scalar {
+    /// The words about a value that is no scalar.
+    pub(super) const REFUSED: &str = "a value must be a number, a word or a switch";
+
     /// Returns the number, or `None` for a word or a switch.
     pub const fn number(&self) -> Option<f64> {
         match self {
@@ -70,11 +73,9 @@ impl Scalar {
 
 /// Derived code would try one kind after another and make an error for each kind that does not fit, which
 /// takes a second for a million values.
-impl TryFrom<toml::Value> for Scalar {
-    type Error = &'static str;
-
-    fn try_from(value: toml::Value) -> Result<Self, Self::Error> {
-        Self::of_toml(&value).ok_or("a value must be a number, a word or a switch")
+impl<'de> Deserialize<'de> for Scalar {
+    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+        Self::of_toml(&Value::deserialize(file)?).ok_or_else(|| D::Error::custom(Self::REFUSED))
     }
 }
 

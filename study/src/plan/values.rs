@@ -132,7 +132,8 @@ impl TryFrom<toml::Value> for Values {
     fn try_from(value: toml::Value) -> Result<Self, String> {
         match value {
             toml::Value::Array(list) => {
-                Ok(Self::List(list.into_iter().map(Scalar::try_from).collect::<Result<_, _>>()?))
+                let scalars = list.iter().map(|value| Scalar::of_toml(value).ok_or(Scalar::REFUSED));
+                Ok(Self::List(scalars.collect::<Result<_, _>>()?))
             }
             toml::Value::Table(rule) => rule.try_into().map(Self::Rule).map_err(|error| error.to_string()),
             other => Err(format!(
