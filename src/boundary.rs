@@ -25,7 +25,7 @@
 //! their checks. A rule or a custom motion cannot be written.
 //!
 //! [`Obstacles`] puts fixed round obstacles into any boundary. A custom geometry implements [`Boundary`];
-//! [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
+//! [`roots`](crate::roots) provides the numerical methods that it needs, and [`laws`] checks it.
 
 mod area;
 mod brick;
@@ -80,9 +80,9 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// All times are *offsets* from the absolute time that was last given to
 /// [`set_time_origin`](Self::set_time_origin), 0 at first. Absolute times grow without bound and would lose
 /// digits. A boundary whose walls move reduces the origin by whole periods to a phase of their motion, as
-/// [`WallMotion`](crate::wall::WallMotion) explains; others may ignore it.
+/// [`WallMotion`](crate::wall::WallMotion) explains; other boundaries may ignore the origin.
 ///
-/// # Who asks what, and when
+/// # Calls of the methods
 /// ```text
 /// when                          who asks     asks                                for
 /// ----------------------------  -----------  ----------------------------------  -------------------------
@@ -124,23 +124,24 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    the gap, to $`10^{-8}`$. The velocity is the velocity of the wall's material at the touch, whatever the
 ///    time origin. Its normal component is the speed at which the wall moves according to `overlap`, to
 ///    $`10^{-8}`$ of the speeds. Two disks that touch the same point of a wall find the same velocity there.
-///    The radius is the surface's radius of curvature at the touch: infinite if it is straight, negative if
-///    it is hollow, never zero. At a tip or a corner, it may have any other value. The angular velocity is
-///    the rate $`\Omega`$ at which these velocities turn the surface: the velocity along the normal is larger
-///    by $`-\Omega d`$ at a point at a small distance $`d`$ along `normal.perp()`.
-/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the positive depth to which
-///    the disk reaches into a wall, and the wall in which the disk is deepest, or one of several that are
-///    equally deep. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
+///    The radius is the surface's radius of curvature at the touch: infinite for a straight surface, negative
+///    for a hollow one, never zero. At a tip or a corner, the radius may have any value except zero. The
+///    angular velocity is the rate $`\Omega`$ at which these velocities turn the surface: the velocity along
+///    the normal is larger by $`-\Omega d`$ at a point at a small distance $`d`$ along `normal.perp()`.
+/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the wall into which the
+///    disk reaches deepest, and the depth, which is positive. If several walls are equally deep, it gives any
+///    of them. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
 ///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
-///    overlaps none, up to 16 roundings of the absolute time at the closing speed. On a periodic side or end,
-///    it is the same for both images of the disk: a wall near one side acts on disks at the other side.
+///    overlaps none, up to the distance that the surfaces close in 16 roundings of the absolute time. On a
+///    periodic side or end, the overlap is the same for both images of the disk: a wall at one side acts on
+///    disks at the other.
 /// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
 ///    at the same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
-/// 9. [`react`](Self::react) gives the wall that was hit the impulse and the couple. Its velocity changes by
-///    the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along the surface
-///    over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R with a
-///    tangential mass counts as the impulse C/R along the surface. No wall changes its position
+/// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
+///    wall changes by the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along
+///    the surface over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R
+///    with a tangential mass counts as the impulse C/R along the surface. No wall changes its position
 ///    instantaneously. The result is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
@@ -153,14 +154,14 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// The engine guarantees:
 /// - It sets the origin before any other call except for `state`, and whenever the epoch of the run moves. If
-///   the walls are set during a run and have a state, the first origin is the present. It never passes a
+///   the walls are set during a run and have a state, the first origin is the present time. It never passes a
 ///   time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
-///   when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most. In an
-///   epoch, a typical disk moves tens of diameters.
+///   when the disk leaves its cell or reaches a periodic side or end, at the latest two epochs from now. In
+///   an epoch, a typical disk moves tens of diameters.
 /// - It calls `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
-/// - It calls `surface` for a touch that `first_touch` found, with the position of the disk at its time.
+/// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
@@ -236,14 +237,14 @@ pub trait Boundary {
     /// Returns the rectangle that holds the centers of all disks at all times.
     fn domain(&self) -> Domain;
 
-    /// Returns a rectangle in the domain in which initial states are placed.
+    /// Returns the rectangle, inside the domain, in which initial states are placed.
     ///
     /// It leaves out the reach of moving walls.
     fn interior(&self) -> Domain {
         self.domain()
     }
 
-    /// Returns the number of walls; their indices are less than this.
+    /// Returns the number of walls; their indices are less than this number.
     fn wall_count(&self) -> usize;
 
     /// Returns the name of a wall, for messages.
@@ -309,7 +310,7 @@ pub trait Boundary {
     /// Returns the wall that a disk overlaps most deeply, and the depth, or `None` if the disk overlaps no
     /// wall.
     ///
-    /// A wall that does not concern disks of the probe's kind is not overlapped.
+    /// A wall that lets disks of the probe's kind pass does not count.
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
 
     /// Returns the walls at `time` as lines of points, for pictures.
@@ -334,10 +335,10 @@ pub trait Boundary {
     /// default kind is free at `time`, or `None` if the boundary does not know the area.
     ///
     /// With a radius of 0, the result is the area that matter can fill. Stresses, densities and profiles
-    /// divide by this area. Where walls occupy part of the domain, they refuse to measure if the area is
-    /// unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay where
-    /// they are. The default is `None`. A boundary in which the free area depends on the kind of the matter
-    /// returns `None`, too.
+    /// divide by this area. Where walls occupy part of the domain, these observables refuse to measure if the
+    /// area is unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay
+    /// where they are. The default is `None`. A boundary in which the free area depends on the kind of the
+    /// matter returns `None`, too.
     ///
     /// Containers, vessels and obstacles know the area to 1e-10, even if walls overlap, unless a part with an
     /// inside is [for some kinds only](Part::only_for). The exceptions are obstacles that lie in a curved
@@ -350,7 +351,7 @@ pub trait Boundary {
 
     /// Receives the impact of a disk on a wall, and returns whether the wall's motion changes.
     ///
-    /// The engine calls it after each collision with a wall. A wall that reacts has a finite
+    /// The engine calls this method after each collision with a wall. A wall that reacts has a finite
     /// [mass](Surface::with_mass), and its motion between two impacts is known. If the result is
     /// [`Reaction::Moved`], the engine predicts anew all flights that [`may_meet`](Self::may_meet) names. The
     /// default reacts to nothing, and costs nothing.

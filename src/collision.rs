@@ -23,7 +23,7 @@
 //!
 //! # Custom rules
 //! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
-//! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to the first order, here written as
+//! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to first order, here written as
 //! $`1/(1 + C v^{1/5})`$, which stays positive:
 //!
 //! ```
@@ -93,17 +93,17 @@ use std::sync::Arc;
 use crate::Fingerprint;
 use crate::forward::forward;
 
-/// The law of a collision: from a contact to an impulse.
+/// The law of a collision, which turns a contact into an impulse.
 ///
 /// # Contract
 /// The engine calls [`Self::impulse`] once for each collision that the rule decides, between disks or with a
-/// wall. The engine guarantees about the contact:
+/// wall. The engine guarantees the following about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed and the relative spin are finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one; masses and radii of
 ///   disks are between $`10^{-30}`$ and $`10^{30}`$;
 /// - the radius of a wall is infinite if it is straight, negative if it is hollow, and never zero;
-/// - in a collision with a wall, partner 2 is the wall. Of two disks, either may be partner 1.
+/// - in a collision with a wall, partner 2 is the wall. In a collision of two disks, either may be partner 1.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
@@ -113,12 +113,12 @@ use crate::forward::forward;
 ///    run ends as stalled.
 /// 4. The collision does not increase the energy of the relative motion of the surfaces and of the relative
 ///    spin, unless the rule is meant to drive. Otherwise, the system heats up unnoticed.
-/// 5. An exchange of the partners leaves the physics unchanged: the same normal and tangential impulse, and
-///    the opposite couple, for the contact with kinds and radii in the other order and with the opposite
-///    relative spin and response. Otherwise, a trajectory depends on the order of the disks in a list.
-/// 6. The mirror image of a contact gives the mirror image of the impulse: the same normal impulse, and the
-///    opposite tangential impulse and couple, for the opposite slip and relative spin. A rule for disks that
-///    are not symmetric may differ.
+/// 5. An exchange of the partners leaves the physics unchanged. The contact with kinds and radii in the other
+///    order, and with the opposite relative spin and response, gets the same normal and tangential impulse,
+///    and the opposite couple. Otherwise, a trajectory depends on the order of the disks in a list.
+/// 6. The mirror image of a contact gives the mirror image of the impulse. The contact with the opposite slip
+///    and relative spin gets the same normal impulse, and the opposite tangential impulse and couple. A rule
+///    for disks that are not symmetric may differ.
 ///
 /// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
 /// [`laws::check`] tests it. Its `promises` say which of promises 4 to 6 a rule does not keep, and which

@@ -13,14 +13,14 @@ pub(crate) const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 /// velocities are mostly rounding.
 pub(crate) const LEAST_THERMAL: f64 = 1e-10;
 
-/// Largest overlap that still counts as touching, relative to the distance of the centers at a touch.
+/// Largest overlap that still counts as touching, relative to the distance between the centers at a touch.
 /// Positions are rounded, so disks that touch can overlap by this much.
 pub(crate) const TOUCHING: f64 = 1e-10;
 
 /// Largest number of disks in a simulation.
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 
-/// Largest id that a caller may give. All whole numbers up to it are floating-point numbers.
+/// Largest id that a caller may give. All whole numbers up to it are exact as floating-point numbers.
 pub(crate) const LARGEST_ID: u64 = 1 << 53;
 
 /// Largest magnitude of a component of a position or velocity, and of an angular velocity.
@@ -66,8 +66,8 @@ impl Disk {
     /// Creates a homogeneous disk of mass 1 at rest, of [`Kind::DEFAULT`].
     ///
     /// # Errors
-    /// If a component of the position is not finite, or is above 1e60 in magnitude. If the radius is not in
-    /// `[1e-30, 1e30]`.
+    /// If a component of the position is not finite, or is above 1e60 in magnitude. Also if the radius is not
+    /// in `[1e-30, 1e30]`.
     pub fn new(position: DVec2, radius: f64) -> Result<Self, ParameterError> {
         let position = bounded_vector("position", position)?;
         let disk =

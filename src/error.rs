@@ -62,8 +62,8 @@ impl fmt::Display for RoundedVector {
 impl ParameterError {
     /// Creates an error for the parameter `name`, which should meet `requirement` but has this `value`.
     ///
-    /// The constructor is meant for custom rules, walls and observables, so that all parameters fail alike.
-    /// The checks of [`quantity`](crate::quantity) create the error for the usual ranges.
+    /// The constructor is meant for custom rules, walls and observables, so that all errors of parameters
+    /// read alike. The checks of [`quantity`](crate::quantity) create the error for the usual ranges.
     pub fn new(
         name: impl Into<Cow<'static, str>>,
         requirement: impl Into<Cow<'static, str>>,

@@ -1,11 +1,12 @@
 //! Fingerprints: the identity of a rule, a wall motion or a boundary, as a number that a checkpoint keeps.
 
+use std::any::type_name;
 use std::fmt;
 
 use crate::Violation;
 use crate::violation::require;
 
-/// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
+/// Identity of a part of a simulation: equal for parts made alike, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
 /// others. A custom part makes its fingerprint from its name and from all numbers on which its results
@@ -13,8 +14,8 @@ use crate::violation::require;
 /// cannot be distinguished. The checks of fingerprints, such as
 /// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare the
 /// fingerprints of two parts with their results: parts with different results must have different
-/// fingerprints, and equal parts equal ones. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so
-/// it is the same on every platform.
+/// fingerprints, and parts of one type that are alike in every probe equal ones. The hash is FNV-1a with 64
+/// bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;
@@ -67,7 +68,7 @@ impl Fingerprint {
     }
 }
 
-/// Writes the number in hexadecimal digits, sixteen of them.
+/// Writes the number as sixteen hexadecimal digits.
 impl fmt::Display for Fingerprint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:016x}", self.0)
@@ -75,8 +76,8 @@ impl fmt::Display for Fingerprint {
 }
 
 /// Checks that two parts have different fingerprints if any of their results differ, and the same fingerprint
-/// otherwise.
-pub(crate) fn check_pair(
+/// otherwise, if they are of one type.
+pub(crate) fn check_pair<A: ?Sized, B: ?Sized>(
     part: &'static str,
     fingerprints: [Option<Fingerprint>; 2],
     difference: Option<String>,
@@ -85,8 +86,9 @@ pub(crate) fn check_pair(
     if let Some(difference) = difference {
         require!(part, "fingerprint", one != other;
             "two parts have the fingerprint {one}, but differ {difference}");
-    } else {
-        require!(part, "fingerprint", one == other; "equal parts have the fingerprints {one} and {other}");
+    } else if type_name::<A>() == type_name::<B>() {
+        require!(part, "fingerprint", one == other;
+            "parts of one type that are alike in every probe have the fingerprints {one} and {other}");
     }
     Ok(())
 }

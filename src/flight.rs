@@ -41,7 +41,7 @@ impl Flight {
         Self { kind, ..self }
     }
 
-    /// Returns the disk's kind, on which a boundary may base whether it lets the disk pass.
+    /// Returns the disk's kind, by which a boundary may decide whether to let the disk pass.
     #[inline]
     pub const fn kind(&self) -> Kind {
         self.kind

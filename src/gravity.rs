@@ -8,8 +8,8 @@ use crate::quantity::accept;
 
 /// Gravity: the constant acceleration of all disks in free flight.
 ///
-/// A number is gravity that points down, or up if it is negative; a vector is the acceleration itself.
-/// Functions that take gravity accept both, and convert them.
+/// A number stands for gravity that points down, or up if the number is negative; a vector stands for the
+/// acceleration itself. Functions that take gravity accept both, and convert them.
 ///
 /// ```
 /// use granular_edmd::Gravity;
@@ -41,7 +41,7 @@ impl Gravity {
     ///
     /// # Errors
     /// If the angle is beyond a right angle in magnitude: it was probably meant in degrees, and gravity would
-    /// pull the disks off the floor. A vector may point anywhere.
+    /// pull the disks off the floor. A gravity vector may point in any direction.
     pub fn tilted(strength: f64, angle: f64) -> Result<Self, ParameterError> {
         let is_slope = angle.abs() <= std::f64::consts::FRAC_PI_2;
         accept(is_slope, "angle of a slope", "in radians, at most a right angle", angle)?;

@@ -77,7 +77,6 @@ pub mod physics {}
 pub mod physics_kinetic {}
 
 #[doc(alias("heap", "silo", "jamming"))]
-#[doc = "[validation.md]: crate::guide::validation"]
 #[doc = "[images/rest.png]: data:image/png,#docs/images/rest.png"]
 #[doc = include_str!("../docs/rest.md")]
 pub mod rest {}

@@ -92,10 +92,10 @@ pub enum PlacementError {
     },
 }
 
-/// Smallest distance of neighbors, in diameters.
+/// Smallest distance between neighbors, in diameters.
 const CLOSE: f64 = 1.000_1;
 
-/// Returns the distances of neighbors to try, in diameters, from loose to close.
+/// Returns the distances between neighbors to try, in diameters, from loose to close.
 fn spacings() -> impl Iterator<Item = f64> {
     const LOOSE: f64 = 1.4;
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)

@@ -1,5 +1,5 @@
-//! The names of a run of the paper's system and of the traits for custom parts, in one line:
-//! `use granular_edmd::prelude::*;`.
+//! The names that a run of the paper's system needs, and the traits for custom parts, in one line: `use
+//! granular_edmd::prelude::*;`.
 //!
 //! All other names are imported from their modules.
 

@@ -1,7 +1,7 @@
 //! Checks of parameters: the gate that every constructor and every deserialized value passes.
 //!
 //! Each function returns the value that it was given, or the error that names it. Custom types use the same
-//! functions, so that all parameters of a program fail alike.
+//! functions, so that all errors of parameters in a program read alike.
 //!
 //! ```
 //! use granular_edmd::{ParameterError, quantity};

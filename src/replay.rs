@@ -39,7 +39,7 @@ use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
 
-/// Default of the largest number of states that are kept.
+/// Default limit on the number of states that are kept.
 const MOST_STATES: usize = 64;
 
 /// Largest difference of two times that counts as rounding, relative to the interval between states.
@@ -203,7 +203,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Compares two runs, state by state and collision by collision.
     ///
     /// A bisection finds the last state that is the same in both, and the collisions are compared from there
-    /// on, disk by disk. Two runs that differ in a rounding therefore have the same partners for a while,
+    /// on, disk by disk. Two runs that differ only by rounding therefore have the same partners for a while,
     /// although their times differ. A run that ended with an error is compared up to the error. The result is
     /// `None` if the two runs keep no states at the same times.
     ///

@@ -36,22 +36,22 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
 /// A scheduler: it orders the events of the disks by their times.
 ///
-/// # What a scheduler guarantees
-/// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk with the smallest of the
-///    times that were last given for each disk, and that time.
+/// # Guarantees of a scheduler
+/// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk whose last given time is the
+///    smallest, and that time.
 /// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. If all times are infinite, the
 ///    disk with the smallest index is named, with its infinite time.
 /// 3. **Time may go back.** [`set`](Self::set) takes any time. It may be later than the disk's last time,
 ///    earlier (because a faster partner has appeared), or even earlier than the last result of `earliest`.
 ///    After most events, the disk that was just named gets a later time. In the other cases, a scheduler may
-///    be slow, but its results must be right.
+///    be slow, but its results must be correct.
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
 /// 5. **Without disks**, as before the first `reset`, the result is [`NOTHING_DUE`].
 /// 6. **Queries change nothing.** [`earliest`](Self::earliest) returns the same result until the next `set`
 ///    or `reset`, and a hint of [`upcoming`](Self::upcoming) only appends.
 ///
-/// # What the engine guarantees
+/// # Guarantees of the engine
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
 ///   never comes.
 /// - `reset` is called first, and again whenever many times change at once, as when the epoch moves. After a
@@ -61,18 +61,19 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///   slow.
 ///
 /// # Schedulers that break the contract
-/// The engine compares each result with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. A scheduler that loses a `set` may never name an
-/// event that is due. The engine then ends the run with an error, but only when the epoch ends, or at the end
-/// of a run with at least as many events as disks. Checking all disks more often would cost time, so the
-/// engine does not notice a lost event in shorter runs and in single steps within an epoch, nor swapped
-/// events once both were named. [`laws::check`] finds such faults if they show within its scripts of up to
-/// three million operations; `docs/validation.md` says which planted faults it finds.
+/// The engine compares each result with the event that it keeps: a disk that does not exist, or a time that
+/// differs from the last one set for the disk, ends the run with an error. A scheduler that loses a `set` may
+/// never name an event that is due. The engine then ends the run with an error, but only when the epoch ends,
+/// or at the end of a run with at least as many events as disks. Checking all disks more often would cost
+/// time, so the engine does not notice a lost event in shorter runs and in single steps within an epoch. Nor
+/// does it notice that two events were swapped, once both have been named. [`laws::check`] finds such faults
+/// if they show within its scripts of up to three million operations; `docs/validation.md` says which planted
+/// faults it finds.
 ///
-/// # Why the answer is a pair and not an `Option`
-/// The engine calls the method at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails
-/// the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to each
-/// event, and no information.
+/// # A pair instead of an `Option`
+/// The engine calls [`earliest`](Self::earliest) at every event. A pair comes back in two registers, and
+/// [`NOTHING_DUE`] fails the comparison with the end of the run, which is needed anyway. An `Option` would
+/// add a branch to each event, and no information.
 ///
 /// ```
 /// use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE, TournamentTree};

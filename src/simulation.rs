@@ -11,12 +11,12 @@
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls. Inlets come after all events of disks, in the order in which they were added.
-//! 3. A sample at time $`t`$ has seen all events up to and at $`t`$.
+//! 3. A sample at time $`t`$ includes all events up to and at $`t`$.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
-//!    the caller gives again. If they have fingerprints, it notices when others are given.
+//!    the caller gives again. If they have fingerprints, the checkpoint notices when others are given.
 //! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
 //!    error that names the result. It never makes the engine go back in time, or name a disk or wall that
 //!    does not exist. A collision that is carried out happens at the surface of the partner, up to rounding.
@@ -243,7 +243,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.snapshot_as_of(self.time())
     }
 
-    /// Returns the present state, as of the requested time. [`Self::time`] may differ from that time by
+    /// Returns the present state with the requested time. [`Self::time`] may differ from that time by
     /// rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
         let Self { bodies, boundary, marks, .. } = self;
@@ -279,12 +279,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets gravity from now on.
     ///
-    /// The time origin of the walls becomes the present, so that their
+    /// The time origin of the walls becomes the present time, so that their
     /// [`state`](crate::boundary::Boundary::state) is the present one.
     ///
     /// # Errors
-    /// If gravity is not finite, or a component is above 1e60 in magnitude. If disks would fall so fast that
-    /// times as late as the present are too coarse. The simulation then stays unchanged.
+    /// If gravity is not finite, or a component is above 1e60 in magnitude. Also if disks would fall so fast
+    /// that times as late as the present are too coarse. The simulation then stays unchanged.
     pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
         let gravity = gravity.into().checked()?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
@@ -302,7 +302,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// Moving walls take the positions of their motions at the present time. A wall that thereby jumps causes
-    /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, at its start; in a clone of
+    /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of
     /// the present boundary, it continues.
     ///
     /// # Errors

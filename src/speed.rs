@@ -8,7 +8,7 @@
 //! difference from noise. For benchmarks with criterion, [`stretch`] measures one run alone instead of two
 //! runs alternately.
 //!
-//! Times are those on the processor ([`Stopwatch`]). Measure builds with `--release` only.
+//! All times are processor times ([`Stopwatch`]). Measure builds with `--release` only.
 //!
 //! ```no_run
 //! use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Friction, Impulse};

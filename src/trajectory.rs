@@ -7,13 +7,13 @@
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO, ASE, chemfiles, MDAnalysis |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, MDAnalysis, tools around LAMMPS |
-//! | [`Gsd`], as of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
+//! | [`Gsd`], the format of HOOMD-blue | one binary file with an index | OVITO, freud, `gsd` |
 //! | [`Vtk`], as `PolyData` | `.vtp` for each frame, `.pvd` for times | ParaView, VTK |
 //!
-//! A [`Reader`] reads all of these but VTK, and files of other programs: it recognizes the format by the
-//! contents, and columns by their names. A [`State`] holds the disks of a file or of a snapshot. It can be
-//! written as a table ([`State::write_csv`]), a data file of LAMMPS ([`State::write_lammps_data`]) or a file
-//! of VTK ([`State::write_vtk`]).
+//! A [`Reader`] reads all of these formats except VTK, and files of other programs: it recognizes the format
+//! by the contents, and columns by their names. A [`State`] holds the disks of a file or of a snapshot. It
+//! can be written as a table ([`State::write_csv`]), a data file of LAMMPS ([`State::write_lammps_data`]) or
+//! a file of VTK ([`State::write_vtk`]).
 //!
 //! With the feature `gzip`, a trajectory is compressed if the name of its file ends in `.gz`, and compressed
 //! files of any name are read.

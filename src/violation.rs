@@ -46,7 +46,7 @@ impl Violation {
     }
 }
 
-/// Returns a violation of this law from the function around it, unless the condition holds.
+/// Returns a violation of this law from the surrounding function, unless the condition holds.
 macro_rules! require {
     ($part:expr, $law:expr, $holds:expr; $($found:tt)+) => {
         let holds: bool = $holds;

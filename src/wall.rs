@@ -11,7 +11,7 @@
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!
-//! Motions combine, and bounds on the acceleration follow:
+//! Motions combine, and the bounds on their acceleration follow automatically:
 //!
 //! | of motions | displacement |
 //! |---|---|
@@ -36,7 +36,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Piston`] is not a planned motion: the disks push it, and it moves by its mass, force and spring.
+//! A [`Piston`] is not a planned motion: the disks push it, and it moves according to its mass, force and
+//! spring.
 //!
 //! [`first_touch`] finds the contact for all of these motions and for custom ones. Apart from position,
 //! velocity and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an
@@ -172,13 +173,13 @@ impl AccelerationBounds {
 /// 2. The displacement lies within [`reach`](Self::reach).
 /// 3. A piece ends later than the requested phase, and its bounds hold for the acceleration up to its end.
 /// 4. Inside a piece, displacement and velocity are continuous, the acceleration jumps a few times at most,
-///    and the displacement is the integral of the velocity, to $`10^{-8}`$ of it. At the end of a piece, the
-///    velocity may jump. The displacement may jump there, too, but only away from the disks. The state at
-///    that phase is the state after the jump.
+///    and the displacement is the integral of the velocity, to $`10^{-8}`$ of the distance moved. At the end
+///    of a piece, the velocity may jump. The displacement may jump there, too, but only away from the disks.
+///    The state at that phase is the state after the jump.
 /// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
 /// 6. [`jumps`](Self::jumps) is true if the displacement jumps at the end of any piece.
-/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and equal motions have equal
-///    fingerprints.
+/// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and motions of one type made from
+///    equal numbers have equal fingerprints.
 ///
 /// [`laws::check`] tests the first six between two phases, and [`laws::check_fingerprints`] the last. A
 /// container calls the methods in any order and from any thread.

@@ -117,6 +117,16 @@ fn equal_samples_tell_no_more_than_one() {
     assert_eq!(estimate.to_string(), "0.30000 ± 0.00000 (all samples are equal)");
 }
 
+/// The only scatter is in the last samples, which fill no block of the sizes whose blocks are all equal.
+#[test]
+fn samples_that_fill_no_block_are_not_forgotten() {
+    for (count, last) in [(1000_u32, 1), (1023, 15), (1001, 1)] {
+        let series: Vec<f64> = (0..count).map(|k| f64::from(u8::from(k >= count - last))).collect();
+        let average = block_average(&series).unwrap();
+        assert!(!average.is_converged() && average.standard_error() > 0.0, "{count}, {last}: {average}");
+    }
+}
+
 #[test]
 fn the_printed_error_covers_the_scatter_over_seeds() {
     for correlation in [0.0, 0.5, 0.9, 0.97] {

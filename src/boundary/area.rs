@@ -23,7 +23,7 @@ pub(super) const LOOKS: u32 = 16;
 /// Distance of the first and the last examined point from the ends of their interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
 
-/// Nodes and weights of Gauss and Legendre's rule of ten points on [-1, 1]: the positive half.
+/// Nodes and weights of the ten-point Gauss–Legendre rule on [-1, 1]: the positive half.
 const GAUSS: [(f64, f64); 5] = [
     (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
     (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
@@ -102,7 +102,7 @@ impl Curve {
     }
 }
 
-/// Returns the root of a square; 0 if rounding may have made the square from 0, where curves are tangent.
+/// Returns the root of a square, or 0 if the square is 0 up to rounding, as it is where curves are tangent.
 fn root(square: f64) -> f64 {
     const ROUNDING: f64 = 1e-13;
     if square.abs() < ROUNDING { 0.0 } else { square.sqrt() }
@@ -113,7 +113,7 @@ pub(super) fn meet(one: &Region, other: &Region) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
-/// A region, and whether centers in it are free.
+/// A region, with a test of whether a center in it is free.
 pub(super) struct Field<'a> {
     pub(super) region: Region,
     /// The curves at which freedom may change.
@@ -139,7 +139,7 @@ impl Field<'_> {
         }
         let top = self.curves.iter().map(|curve| curve.bounds().max.y).fold(region.min.y, f64::max);
         if region.max.y.is_infinite() {
-            // Above all curves, a line is free everywhere or nowhere, and so are all lines over it.
+            // Above all curves, a line is free everywhere or nowhere, and so are all lines above it.
             if self.length(top + 1.0, &self.curves) > 0.0 {
                 return f64::INFINITY;
             }
@@ -149,7 +149,7 @@ impl Field<'_> {
         heights.windows(2).map(|ends| self.piece(ends[0], ends[1])).sum()
     }
 
-    /// Returns the heights between which the free length is smooth, in their order.
+    /// Returns the heights between which the free length is smooth, in ascending order.
     fn heights(&self) -> Vec<f64> {
         let Region { min, max, .. } = self.region;
         let mut heights = vec![min.y, max.y];
@@ -191,7 +191,7 @@ impl Field<'_> {
             + self.refined(middle, high, curves, halves[1], halvings - 1)
     }
 
-    /// Integrates the free length by a rule of ten points. Its variable $`s`$ in [0, 1] gives the height
+    /// Integrates the free length by the ten-point rule. Its variable $`s`$ in [0, 1] gives the height
     /// $`3s^2 - 2s^3`$, in which square roots at both ends are smooth.
     fn quadrature(&self, low: f64, high: f64, curves: &[Curve]) -> f64 {
         let mut sum = 0.0;
@@ -222,7 +222,8 @@ impl Field<'_> {
             return 0.0;
         }
         let is_free = |place: f64| (self.is_free)(DVec2::new(place, height));
-        // An unknown curve that crosses a known one cuts off the end of an interval: both ends are examined.
+        // An unknown curve that crosses a known one cuts off the end of an interval, so both ends are
+        // examined.
         let last = self.looks - 1;
         let place = |look: u32| match look {
             0 if last > 0 => low + NEAR_END * (high - low),

@@ -25,7 +25,7 @@ const MARGIN: f64 = 1e-12;
 
 /// A piece of a wall: a segment, an arc, a circle or a point.
 ///
-/// A brick has a direction. Disks are free on its left side; on the other side is the wall. A segment leads
+/// A brick has a direction. Disks are free on its left side; the wall is on the other side. A segment leads
 /// from its first point to its second; arcs and circles lead counterclockwise, so disks are free inside them.
 /// [`reversed`](Self::reversed) turns the direction around, and with it the free side.
 /// [`two_sided`](Self::two_sided) makes a thin wall, with disks on both sides.

@@ -112,8 +112,8 @@ impl Container {
     /// Gravity then keeps driving the disks down, as in a pipe.
     ///
     /// # Errors
-    /// If the container is open above, or floor or lid has a motion, a rule, a temperature or a kind, which
-    /// would be lost.
+    /// If the container is open above, or the floor or the lid has a motion, a rule, a temperature or a kind,
+    /// which would be lost.
     pub fn with_periodic_ends(self) -> Result<Self, WallError> {
         if self.height.is_infinite() {
             return Err(WallError::Missing { wall: Wall::Lid });
@@ -125,8 +125,8 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) examines. If the wall is a piston already, or
-    /// the opposite wall is a piston that could meet this one.
+    /// phases that [`check_finite`](crate::wall::check_finite) examines. Also if the wall is a piston
+    /// already, or the opposite wall is a piston that could meet this one.
     pub fn with_motion(
         mut self,
         wall: Wall,
@@ -147,8 +147,8 @@ impl Container {
     /// Only the stops of a piston keep it away from the opposite wall: walls do not collide with each other.
     ///
     /// # Errors
-    /// If the container has no such wall, or the motion of the piston has numbers that are not finite. If the
-    /// wall moves already by a motion, or the piston's highest stop is beyond the nearest position of the
+    /// If the container has no such wall, or the motion of the piston has numbers that are not finite. Also
+    /// if the wall already has a motion, or the piston's highest stop is beyond the nearest position of the
     /// opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));

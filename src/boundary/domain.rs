@@ -89,8 +89,8 @@ impl Domain {
 
     /// Returns the displacements of another rectangle's periodic images near this rectangle.
     ///
-    /// The engine requires periods of more than four diameters of a disk, so a quarter of a period is more
-    /// than the radius by which a disk inside reaches beyond the domain.
+    /// A disk inside the domain reaches beyond it by at most a radius. A radius is less than a quarter of a
+    /// period, since the engine requires periods of more than four diameters.
     pub(crate) fn images_of(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = DVec2> + use<> {
         let periods = self.periods();
         let columns = numbers(periods.x, self.left - high.x, self.right - low.x);
@@ -132,7 +132,7 @@ impl Domain {
         place
     }
 
-    /// Returns the unwrapped position of a disk: its position without all shifts by periodic sides and ends.
+    /// Returns the unwrapped position of a disk: its position without the shifts at periodic sides and ends.
     ///
     /// Differences of unwrapped positions are displacements.
     ///

@@ -66,7 +66,8 @@ pub enum VesselError {
     },
     /// A part extends over more periods of the container than a vessel can handle.
     #[error(
-        "the part \"{name}\" extends over {} periods of the container, and {most} are possible: let it end earlier",
+        "the part \"{name}\" extends over {} periods of the container, but at most {most} are possible: \
+         let it end earlier",
         Rounded(*.periods)
     )]
     TooManyPeriods {
@@ -90,18 +91,6 @@ pub enum VesselError {
         stroke: f64,
         /// Least distance.
         least: f64,
-    },
-    /// A part that takes out centers turns, or moves by a motion whose acceleration is only known within
-    /// bounds, such as [`Sinusoidal`](crate::wall::Sinusoidal). Since a center has no extent, the search for
-    /// touches would not find it.
-    #[error(
-        "the part \"{name}\" takes out disks when their centers reach it, and turns or moves by a motion whose \
-         acceleration is not known exactly: let it take out disks at their first touch, or take BiParabolic, \
-         Triangular or Tabulated"
-    )]
-    CentersMissed {
-        /// The name.
-        name: String,
     },
 }
 

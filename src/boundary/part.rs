@@ -89,11 +89,8 @@ impl Part {
 
     /// Returns the same part as a sink that takes a disk out of the run when its center arrives at a brick.
     ///
-    /// Disks may overlap such a part: it is a line that their centers must not pass. It may move by
-    /// `BiParabolic`, `Triangular` or `Tabulated`; a vessel refuses it if it moves otherwise or turns.
-    /// Seldom, a center passes the line by rounding, when the events of all disks are predicted anew just as
-    /// it is there (15 of 4150 in one trial); it is taken out when it comes back. An
-    /// [absorbing](Self::absorbing) part misses no disk.
+    /// Disks may overlap such a part: it is a line that their centers must not pass. A center arrives when it
+    /// is within 1e-7 radii of the line.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -177,7 +174,8 @@ impl Part {
 }
 
 impl Part {
-    /// Sets the response of the part. Centers are points, so they need no corners where bricks end.
+    /// Sets the response of the part. A line for centers needs no corners where its bricks end, since a
+    /// center is a point.
     fn with_conduct(mut self, conduct: Conduct) -> Self {
         self.conduct = conduct;
         if self.takes_centers() {
@@ -230,7 +228,7 @@ impl Part {
 
     /// Returns the phase of the motion at a time origin.
     ///
-    /// Both remainders are exact. Their difference has the rounding of a phase, not of a late time.
+    /// Both remainders are exact. Their difference is rounded as a phase is, not as a late time is.
     pub(super) fn phase(&self, origin: f64) -> Phase {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
@@ -283,7 +281,7 @@ pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DV
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sighted {
     nearest: Nearest,
-    /// Largest difference of distances for which two bricks count as equally far.
+    /// Largest difference between two distances for which two bricks count as equally far away.
     rounding: f64,
 }
 
@@ -297,8 +295,8 @@ impl Sighted {
     /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
     /// equally near and seen less edge-on.
     ///
-    /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
-    /// that is seen more broadside decides: the brick whose straight extension is farther from the position.
+    /// Two bricks that meet at the nearest point are equally far away up to rounding. The brick that is seen
+    /// more broadside then decides: the brick whose straight extension is farther from the position.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

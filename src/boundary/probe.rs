@@ -26,7 +26,7 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// Creates a probe of the default kind, with its center at this position at this offset from the
+    /// Creates a probe of the default kind, with its center at this position, at this offset from the
     /// boundary's time origin.
     #[inline]
     pub const fn new(position: DVec2, radius: f64, time: f64) -> Self {

@@ -30,16 +30,16 @@ pub struct Surface<'a> {
     pub response: Response<'a>,
     /// Kind of the wall, which rules find in the contact.
     pub kind: Kind,
-    /// Radius of the surface, for the contact that a rule sees: infinite if it is straight, negative if it is
-    /// hollow.
+    /// Radius of the surface, for the contact that a rule sees: infinite for a straight surface, negative for
+    /// a hollow one.
     pub radius: f64,
     /// Mass that resists along the normal; infinite unless the wall [reacts](super::Boundary::react).
     pub mass: f64,
     /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
     /// radius R with the moment of inertia I.
     pub tangential_mass: f64,
-    /// Angular velocity of the surface, counterclockwise. For a curved wall with a tangential mass, it is
-    /// ignored: that wall's angular velocity follows from its velocity.
+    /// Angular velocity of the surface, counterclockwise. It is ignored for a curved wall with a tangential
+    /// mass, whose angular velocity follows from its velocity.
     pub angular_velocity: f64,
 }
 
@@ -89,9 +89,9 @@ impl<'a> Surface<'a> {
         Self { radius, ..self }
     }
 
-    /// Returns the same surface of a wall with this mass, which is guided along its normal.
+    /// Returns the same surface for a wall of this mass, which is guided along its normal.
     ///
-    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary takes
+    /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary receives
     /// the opposite impulse in [`react`](super::Boundary::react).
     #[must_use]
     #[inline]
@@ -109,7 +109,7 @@ impl<'a> Surface<'a> {
         Self { tangential_mass, ..self }
     }
 
-    /// Returns the same surface of a wall that turns at this angular velocity, counterclockwise.
+    /// Returns the same surface for a wall that turns at this angular velocity, counterclockwise.
     ///
     /// Rolling friction acts on the spin of the disk relative to this angular velocity. The velocity of the
     /// surface is given separately.
@@ -164,7 +164,7 @@ impl fmt::Debug for Response<'_> {
 ///
 /// A wall of mass $`M`$ recoils: the speed relative to it has this density for the reduced mass
 /// $`m M/(m + M)`$, and the momentum along the normal is conserved. Along its surface, a thermal wall must be
-/// guided. The gas behind a wall that turns, turns with it, and so do the disks that the wall emits.
+/// guided. If the wall turns, the gas behind it turns with it, and so do the disks that the wall emits.
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;

@@ -190,10 +190,9 @@ impl Vessel {
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
-    /// walls. If the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. If it takes out centers and
-    /// turns, or moves by a motion whose acceleration is not exactly known. The
-    /// vessel then stays unchanged.
+    /// walls. Also if the part extends over more than 64 periods of the container in one direction, or 256 in
+    /// both, or its motion is lost in the rounding of its coordinates. Also if it takes out centers and
+    /// either turns or has a motion whose acceleration is not exactly known. The vessel then stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
@@ -252,9 +251,6 @@ impl Vessel {
             if periods > most {
                 return Err(VesselError::TooManyPeriods { name, periods, most });
             }
-        }
-        if placed.part.takes_centers() && !placed.part.travel().is_exact() {
-            return Err(VesselError::CentersMissed { name });
         }
         let (stroke, least) = (placed.part.travel().stroke(), LEAST_STROKE * placed.size);
         if stroke > 0.0 && stroke < least {

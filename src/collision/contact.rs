@@ -18,9 +18,9 @@ use crate::Kind;
 /// $`k = R_1/I_1 - R_2/I_2`$; a tangential impulse changes the relative spin by $`-k\Delta_t`$.
 ///
 /// # Order of the partners
-/// In a collision with a wall, partner 2 is the wall. Of two disks, either may be partner 1, so a rule must
-/// give the same physics for the partners in either order, and for the mirror image of the contact:
-/// [`laws::check`](super::laws::check) tests both.
+/// In a collision with a wall, partner 2 is the wall. In a collision of two disks, either may be partner 1,
+/// so a rule must give the same physics for the partners in either order, and for the mirror image of the
+/// contact: [`laws::check`](super::laws::check) tests both.
 ///
 /// A wall is a partner of infinite mass, unless it reacts. A straight wall has an infinite radius, a hollow
 /// one a negative radius.
@@ -102,13 +102,13 @@ impl Contact {
         self.slip_speed
     }
 
-    /// Returns the reduced mass μ of the normal direction.
+    /// Returns the reduced mass μ for the normal direction.
     #[inline]
     pub const fn normal_mass(&self) -> f64 {
         self.normal_mass
     }
 
-    /// Returns the effective mass μ_t of the tangential direction, which includes rotation.
+    /// Returns the effective mass μ_t for the tangential direction, which includes rotation.
     #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass
@@ -173,7 +173,7 @@ impl Contact {
     #[inline]
     pub const fn effective_radius(&self) -> f64 {
         let [first, second] = self.radii;
-        // This form gives the same number for either order of the partners, and its limit for a straight
+        // This form gives the same number for either order of the partners, and the limit for a straight
         // wall.
         if first.abs() < second.abs() {
             first / (1.0 + first / second)

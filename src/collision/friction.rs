@@ -1,4 +1,4 @@
-//! Coulomb friction in a contact, for any behavior of the normal direction.
+//! Coulomb friction in a contact, for any behavior in the normal direction.
 
 use super::{Contact, Impulse, Regime, inelasticity};
 use crate::quantity::{accept, non_negative};

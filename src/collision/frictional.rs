@@ -31,8 +31,8 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 ///
-/// Three numbers in a row are easily exchanged. Their order follows the equations: normal, tangential,
-/// friction. [`Smooth::with_friction`](super::Smooth::with_friction) names them.
+/// Three numbers in a row are easily swapped by mistake. Their order follows the equations: normal,
+/// tangential, friction. [`Smooth::with_friction`](super::Smooth::with_friction) names them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Frictional {

@@ -48,11 +48,11 @@ impl Impulse {
         Self { normal, tangential, couple: 0.0, regime: Regime::Unspecified }
     }
 
-    /// Returns the same impulse with a couple, an angular impulse that acts against the relative spin if it
-    /// has the same sign.
+    /// Returns the same impulse with a couple, an angular impulse that acts against the relative spin if both
+    /// have the same sign.
     ///
-    /// Partner 1 loses this angular momentum about its center, and partner 2 receives it, so the total stays.
-    /// A couple models rolling friction: it needs a contact that is not a point.
+    /// Partner 1 loses this angular momentum about its center, and partner 2 receives it, so the total is
+    /// conserved. A couple models rolling friction: it needs a contact that is not a point.
     #[inline]
     pub const fn with_couple(self, couple: f64) -> Self {
         Self { couple, ..self }
@@ -69,8 +69,8 @@ impl Impulse {
         Self { normal, ..self }
     }
 
-    /// Returns the same impulse, with a normal part large enough that the surfaces part at this speed at
-    /// least.
+    /// Returns the same impulse, with a normal part large enough that the surfaces part at this speed or
+    /// faster.
     #[inline]
     pub(super) fn parting_at_least(self, speed: f64, contact: &Contact) -> Self {
         let least = contact.normal_mass() * (contact.closing_speed() + speed);

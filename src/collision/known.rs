@@ -83,7 +83,7 @@ impl CollisionRule for KnownRule {
     }
 }
 
-/// Deepest nesting of rules that is read from a file. In a format that does not describe itself, a few bytes
+/// Deepest nesting of rules that is read from a file. In a format that is not self-describing, a few bytes
 /// can nest rules until the stack overflows.
 #[cfg(feature = "serde")]
 const DEEPEST: usize = 16;

@@ -19,7 +19,7 @@ use crate::{Fingerprint, ParameterError};
 /// gives no momentum, so disks in translation alone do not feel it.
 ///
 /// The couple acts after the tangential impulse, on the spins that friction has left. Friction is thus the
-/// same with rolling friction and without, and the couple never gains energy, whatever the inner rule does:
+/// same with and without rolling friction, and the couple never gains energy, whatever the inner rule does:
 /// the couple removes the energy $`C(|\omega'| - C/2I)`$. In the other order, it could push surfaces that
 /// have just stuck.
 ///

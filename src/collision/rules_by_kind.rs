@@ -31,7 +31,7 @@ use crate::{Fingerprint, Kind};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RulesByKind<R> {
     otherwise: R,
-    /// Ordered by kinds, each pair once.
+    /// The pairs with their rules, ordered by kinds. Each pair occurs once.
     pairs: Vec<PairRule<R>>,
 }
 

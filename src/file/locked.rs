@@ -26,8 +26,8 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Locks a file, unless another owner holds the lock. Where the system has no locks, and outside Unix,
-    /// where a lock could keep other programs from reading, the file is not locked.
+    /// Locks a file, unless another owner holds the lock. The file is not locked where the system has no
+    /// locks, and outside Unix, where a lock could keep other programs from reading it.
     ///
     /// # Errors
     /// [`WouldBlock`](io::ErrorKind::WouldBlock) if another owner holds the lock.

@@ -14,8 +14,8 @@ const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 /// file of that name stays.
 ///
 /// The bytes go to a temporary file in the same folder, which then takes the name of the file. Any number of
-/// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
-/// last one to rename it wins.
+/// threads, processes and hosts may write the same file at the same time: each has its own temporary file,
+/// and the last one to rename it wins.
 ///
 /// # Errors
 /// If the system cannot write it.
@@ -26,7 +26,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// A file that is written piece by piece, and gets its name when it is complete. A draft that is dropped
-/// leaves nothing.
+/// leaves nothing behind.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,

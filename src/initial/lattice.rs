@@ -14,8 +14,8 @@ const MOST_EMPTY_ROWS: usize = 1000;
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
 ///
-/// Over a floor that moves only vertically, the columns would hop in line forever, and the run would give a
-/// [warning](crate::simulation::Warning::OneDirection). Give the disks small velocities
+/// Over a floor that moves only vertically, each column would bounce in a straight line forever, and the run
+/// would give a [warning](crate::simulation::Warning::OneDirection). Give the disks small velocities
 /// ([`with_maxwellian_velocities`](super::with_maxwellian_velocities)).
 ///
 /// Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for that. Sites
@@ -148,7 +148,8 @@ fn free_disks<B: Boundary + ?Sized>(
     Ok(disks)
 }
 
-/// Returns the number of columns of a square lattice with at least this spacing, and their distance.
+/// Returns the number of columns of a square lattice with at least this spacing, and the distance between two
+/// columns.
 fn columns(room: &Domain, spacing: f64) -> (u64, f64) {
     let intervals = (room.width() / spacing).floor().max(0.0);
     let columns = if room.periodic_sides { intervals } else { intervals + 1.0 };

@@ -25,9 +25,10 @@ const APART: f64 = 1e-9;
 /// is lower).
 ///
 /// The disks start small at random positions, and move and collide without loss. Step by step, each of them
-/// grows into the room that it finds, until it has its full radius. Two sizes reach an area fraction of 0.8
-/// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
-/// grains with boundaries between them. The disks keep their order, radii, masses and velocities.
+/// grows into the room that it finds, until it has its full radius. Disks of two sizes reach an area fraction
+/// of 0.8 and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form
+/// crystal grains with boundaries between them. The returned disks have the order, radii, masses and
+/// velocities of the given ones.
 ///
 /// The disks are packed in the interior of the boundary, in which walls must not move. If a container has a
 /// piston that falls fast, add the piston after the disks are packed. To pack disks around a disk that is
@@ -38,9 +39,9 @@ const APART: f64 = 1e-9;
 ///
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or the
-/// disks do not find room or jam. The error of a jam names the area fraction of the disks in the rectangle of
-/// the interior below the height. If a periodic boundary is too narrow for the engine, or the boundary breaks
-/// its contract, or has a piston that falls among the disks.
+/// disks find no room, or they jam. The error of a jam names the area fraction of the disks in the rectangle
+/// of the interior below the height. Also if a periodic boundary is too narrow for the engine, if the
+/// boundary breaks its contract, or if it has a piston that falls among the disks.
 ///
 /// ```
 /// use std::f64::consts::PI;

@@ -52,7 +52,7 @@ pub fn placed_in_rows<B: Boundary + ?Sized>(
 struct Rows<'a, B: ?Sized> {
     boundary: &'a B,
     interior: Domain,
-    /// Distance of neighbors, in diameters.
+    /// Distance between neighbors, in diameters.
     spacing: f64,
     /// Height of each row.
     height: f64,

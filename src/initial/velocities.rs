@@ -10,10 +10,11 @@ use crate::{Disk, ParameterError};
 
 /// Returns the same disks with Maxwellian velocities of this temperature.
 ///
-/// The center of mass is at rest, and all angular velocities stay unchanged.
+/// The center of mass is at rest, and all angular velocities stay unchanged. A single disk keeps its
+/// velocity.
 ///
-/// Each component is normal with variance $`T/m`$. The total momentum is then removed, in proportion to the
-/// masses.
+/// Each component of a velocity is a normal variable of variance $`T/m`$. The total momentum is then removed,
+/// in proportion to the masses.
 ///
 /// # Errors
 /// If the temperature is negative or not finite.

@@ -1,7 +1,7 @@
 //! Reads of numbers that the compiler neither splits nor merges.
 //!
-//! A processor that reads what it has just written waits, unless a single write covers all that is read. It
-//! therefore matters how many numbers a read takes; in hot code, these functions fix that number.
+//! A processor that reads what it has just written must wait, unless a single write covers all that is read.
+//! It therefore matters how many numbers a read takes; in hot code, these functions fix that number.
 
 use std::arch::x86_64::{__m128d, __m256d, __m512d, _mm_loadu_pd, _mm256_loadu_pd, _mm512_loadu_pd};
 

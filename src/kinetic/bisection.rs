@@ -1,6 +1,7 @@
 //! Bisection for the number at which a condition ceases to hold.
 
-/// Returns the last number from `inside`, where `holds` is true, toward `outside`, where it is false.
+/// Returns the last number at which `holds` is true, on the way from `inside`, where it is true, to
+/// `outside`, where it is false.
 ///
 /// If the condition changes more than once in between, the search finds one of the changes. It halves the
 /// interval until no floating-point number is left inside. About two thousand halvings always suffice.

@@ -31,7 +31,7 @@ use crate::{Disk, ParameterError};
 /// is run in pieces therefore has other collisions than a gas that is run in one piece, with the same
 /// statistics. A [`Simulation`](crate::Simulation) has the same bits in both cases.
 ///
-/// The density with the contact value, $`n\chi`$, sets the unit of time alone. Disks of several radii have
+/// The density with the contact value, $`n\chi`$, sets only the unit of time. Disks of different radii share
 /// one $`\chi`$.
 ///
 /// ```
@@ -88,7 +88,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         &self.disks
     }
 
-    /// Returns the disks, in order to change them. A driving of a simulation can be applied to them.
+    /// Returns the disks so that they can be changed, for example by the driving of a simulation.
     pub fn disks_mut(&mut self) -> &mut [Disk] {
         &mut self.disks
     }
@@ -106,8 +106,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
     /// Runs collisions until this time.
     ///
     /// # Errors
-    /// If the time is not finite or has passed, or the rule makes a disk faster than 1e60 or its velocity
-    /// NaN.
+    /// If the time is not finite or has passed, or the rule gives a disk a speed above 1e60 or a velocity
+    /// that is NaN.
     pub fn run_until(&mut self, end: f64) -> Result<(), ParameterError> {
         finite("time", end)?;
         accept(end >= self.time, "time", "at least the present one", end)?;

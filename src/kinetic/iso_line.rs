@@ -43,7 +43,7 @@ impl IsoLine {
     /// Creates the line of this mean energy change per collision.
     ///
     /// # Errors
-    /// If the mean energy change is not finite, or positive: no collision gains energy.
+    /// If the mean energy change is infinite, NaN or positive, since no collision gains energy.
     pub fn new(mean_energy_change: f64, gas: &Maxwellian) -> Result<Self, ParameterError> {
         let valid = mean_energy_change.is_finite() && mean_energy_change <= 0.0;
         accept(valid, "mean energy change", "finite and not positive", mean_energy_change)?;
@@ -69,9 +69,9 @@ impl IsoLine {
     /// `largest_inelasticity`.
     ///
     /// The result contains the connected pieces of the line. If a piece ends between two of the frictions,
-    /// its exact end is its last point. There, the line leaves the plane, or its lower and its upper
-    /// inelasticity meet, and both pieces have this point. The trace misses a piece that lies entirely
-    /// between two of the frictions.
+    /// its exact end is its last point. At such an end, the line leaves the plane, or its lower and its upper
+    /// inelasticity meet. In the second case, the point belongs to both pieces. The trace misses a piece that
+    /// lies entirely between two of the frictions.
     ///
     /// # Errors
     /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not
@@ -109,8 +109,8 @@ fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     if discriminant < 0.0 {
         return [None; 2];
     }
-    // The root of larger size adds two numbers of the same sign. The other root would be their difference,
-    // with few digits left, so it comes from the product of both roots, c/a, to full precision.
+    // The root of larger magnitude adds two numbers of the same sign. The other root would be their
+    // difference, with few digits left, so it comes from the product of both roots, c/a, to full precision.
     let larger = 0.5 * (b + discriminant.sqrt().copysign(b));
     if larger == 0.0 {
         return [Some(0.0); 2];

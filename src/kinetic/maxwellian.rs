@@ -5,7 +5,7 @@ use crate::disk::{SCALE, scale};
 use crate::quantity::accept;
 use crate::{Disk, Kind, ParameterError};
 
-/// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
+/// A gas of disks with Maxwellian velocities and spins, described by the collisions of two of its disks.
 ///
 /// Velocities have the translational temperature, $`T = m\langle v_x^2\rangle`$, and spins have the
 /// rotational temperature, $`T_r = I\langle\omega^2\rangle`$ (Boltzmann's constant is 1: temperatures are

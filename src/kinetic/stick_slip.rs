@@ -7,7 +7,7 @@
 /// of sticking.
 ///
 /// Formulas use $`s = \sin\alpha`$ and $`k = \cos\alpha`$ side by side. At large friction $`s`$ rounds to 1
-/// and $`1 - s`$ would have no digits left; $`k^2/(1 + s)`$ is the same number with all of them.
+/// and $`1 - s`$ would have no digits left; $`k^2/(1 + s)`$ is the same number with all its digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StickSlip {
     pub(super) sine: f64,

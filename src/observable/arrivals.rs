@@ -45,8 +45,8 @@ pub struct Arrivals {
 impl Arrivals {
     /// Creates an observer of arrivals at these walls, counted over the intervals between these times.
     ///
-    /// A run ends with an error if its boundary lacks one of these walls, or if other walls have their
-    /// indices by now, as after [`set_boundary`](crate::Simulation::set_boundary).
+    /// A run ends with an error if its boundary lacks one of these walls, or if an index now belongs to
+    /// another wall, as after [`set_boundary`](crate::Simulation::set_boundary).
     pub fn at(walls: impl IntoIterator<Item = usize>, times: SampleTimes) -> Self {
         let (walls, stretch) = (walls.into_iter().collect(), Stretch::new(times));
         let (times, counts, names) = (Vec::new(), Vec::new(), WallNames::default());

@@ -14,8 +14,8 @@ use crate::boundary::direction;
 ///
 /// In a periodic direction, the mean of positions depends on where the seam is. There, the value is the
 /// circular mean (Bai and Breen 2008): the direction of $`\sum m_i e^{2\pi i x_i/L}`$, as a position in the
-/// domain. It moves along with the disks, also across the seam, and is the center of mass if they are
-/// symmetric about it. It is NaN if the sum vanishes, as for disks that are spread evenly, and mostly noise
+/// domain. It moves along with the disks, also across the seam. If the disks are symmetric about it, it is
+/// their center of mass. It is NaN if the sum vanishes, as for disks that are spread evenly, and mostly noise
 /// if the sum nearly vanishes. For the path of a center, use displacements of
 /// [unwrapped](crate::boundary::Domain::unwrapped) positions.
 ///
@@ -63,7 +63,7 @@ fn circular_mean(
     period: f64,
     coordinate: impl Fn(DVec2) -> f64,
 ) -> f64 {
-    /// Length of the mean direction below which it is due to rounding.
+    /// Length of the mean direction below which the direction is due to rounding.
     const ROUNDING: f64 = 1e-12;
     let turns = |disk: &Disk| (coordinate(disk.position()) - low) / period;
     let sum: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * direction(TAU * turns(disk))).sum();

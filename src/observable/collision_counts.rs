@@ -72,7 +72,8 @@ impl CollisionCounts {
     /// Returns the rate of disk–disk collisions per disk, if all counted collisions happened within this
     /// duration.
     ///
-    /// Each collision counts for both partners.
+    /// Each collision counts for both partners: among the collisions [of a kind](super::OfKind), those with
+    /// another kind would count twice.
     pub fn rate_per_disk(&self, disks: usize, duration: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * duration)
     }
@@ -138,7 +139,7 @@ crate::gate::from_file! {
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
-        crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
+        crate::quantity::accept(fits, "number of collisions", "at least the sum over all regimes", all as f64)?;
         Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, ..Self::default() })
     }
 }

@@ -48,7 +48,7 @@ pub struct Collision {
     pub normal: DVec2,
     /// Position of the disk's center.
     pub position: DVec2,
-    /// Distance of the centers, or of the center and the wall.
+    /// Distance between the centers, or between the center and the wall.
     pub distance: f64,
     /// The contact in which the surfaces met, before the impulse.
     pub contact: Contact,
@@ -68,10 +68,10 @@ impl Collision {
     ///
     /// The engine fills all fields itself.
     ///
-    /// The other fields have simple values; set the fields that matter. The normal points up, the position is
-    /// the origin, the velocities and the ids are 0, and the disks have radius 1/2 (a `distance` of 1, or of
-    /// 1/2 to a wall). The `energy_change` follows from the impulse, which is right for two disks and for a
-    /// wall at rest.
+    /// The fields without an argument have simple values; set the fields that matter. The normal points up,
+    /// the position is the origin, the velocities and the ids are 0, and the disks have radius 1/2 (a
+    /// `distance` of 1, or of 1/2 to a wall). The `energy_change` follows from the impulse, which is right
+    /// for two disks and for a wall at rest.
     pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
         let distance = match partner {
             Partner::Disk(_) => 1.0,

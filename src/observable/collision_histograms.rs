@@ -11,7 +11,7 @@ use crate::statistics::Histogram;
 ///
 /// The obliqueness is the sine of the angle of impact, $`b = v_t/\sqrt{v_n^2 + v_t^2}`$ in `[-1, 1]`, from
 /// the relative velocity of the *surfaces*: 0 is head-on. For disks that do not rotate, it is the impact
-/// parameter divided by the distance of the centers. In a gas of equal disks that do not rotate, at the
+/// parameter divided by the distance between the centers. In a gas of equal disks that do not rotate, at the
 /// temperature $`T`$,
 ///
 /// ```math

@@ -11,8 +11,8 @@ use crate::{Disk, ParameterError};
 ///
 /// # Contract
 /// `measure` depends on the snapshot alone: measured twice, the same snapshot gives the same value. It must
-/// not panic for a snapshot without disks, or of a domain without a lid, whose height is infinite. A value
-/// that is not defined is NaN.
+/// not panic for a snapshot without disks, or for a snapshot of a domain without a lid, whose height is
+/// infinite. A value that is not defined is NaN.
 ///
 /// The engine measures copies of the disks, so an observable cannot change the run.
 #[diagnostic::on_unimplemented(
@@ -60,18 +60,18 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// All methods have a default, which does nothing. All times are absolute, as in
 /// [`Simulation::time`](crate::Simulation::time).
 ///
-/// # What the engine guarantees
+/// # Guarantees of the engine
 /// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, whether the run reaches its end
-///    time, is stopped, or fails.
-/// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
-///    changed.
+///    time, is stopped, or fails. [`run_driven`](crate::Simulation::run_driven) calls both at each kick, too:
+///    `on_end` before it and `on_start` after it.
+/// 2. `on_collision` is called once for each collision, in the order of time, after the disks have changed.
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
-///    run. The sample has seen all events up to and at its time. A time before the start of the run is
+///    run. The sample includes all events up to and at its time. A time before the start of the run is
 ///    sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
 ///    or fails the run, no further event happens.
-/// 5. `on_insert` and `on_remove` are called for each disk that an inlet lets in, or a sink takes out, at its
-///    time, so an observer knows all disks at all times.
+/// 5. `on_insert` is called when an inlet lets a disk in, and `on_remove` when a sink takes a disk out, so an
+///    observer knows all disks at all times.
 /// 6. Whatever an observer does, the trajectory has the same bits as without the observer, as far as the run
 ///    goes.
 ///
@@ -79,19 +79,19 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// or end. A verdict that fails ends the step with an error. A verdict that stops has no effect, since the
 /// caller takes each step.
 ///
-/// # What an observer guarantees
+/// # Guarantees of an observer
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
 /// 2. After a sample, `next_sample` names a later time than the sample's.
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine calls `next_sample`
 ///    after these calls, and would notice another change too late.
-/// 5. Samples do not depend on how a run is cut: if a run starts at the time at which the last one ended,
-///    `next_sample` is what it was at the end.
+/// 5. Samples do not depend on how a run is cut into pieces: if a run starts at the time at which the
+///    previous one ended, `next_sample` keeps its value.
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
-/// breaks another, it gets samples at times that it did not intend. [`SampleTimes`](super::SampleTimes) keeps
-/// all five, and [`laws::check`](super::laws::check) tests them; `docs/validation.md` says which planted
-/// faults it finds.
+/// breaks another promise, it gets samples at times that it did not intend.
+/// [`SampleTimes`](super::SampleTimes) keeps all five, and [`laws::check`](super::laws::check) tests them;
+/// `docs/validation.md` says which planted faults it finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",
@@ -102,7 +102,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
-    /// Receives the start of a run, which may continue an earlier run.
+    /// Receives the start of a run, which may continue an earlier run, and the disks after each kick of a
+    /// driving.
     fn on_start(&mut self, start: &Snapshot<'_>) {
         let _ = start;
     }
@@ -128,14 +129,14 @@ pub trait Observer {
     }
 
     /// Receives a disk that a sink takes out during the run, after the collision with the sink. The disk has
-    /// the motion with which it came there.
+    /// the motion with which it arrived at the sink.
     ///
     /// The last disk then gets the index of this disk.
     fn on_remove(&mut self, disk: &Disk, time: f64) {
         let _ = (disk, time);
     }
 
-    /// Receives the end of a run, even of a run that fails.
+    /// Receives the end of a run, even of a run that fails, and the disks before each kick of a driving.
     fn on_end(&mut self, end: &Snapshot<'_>) {
         let _ = end;
     }

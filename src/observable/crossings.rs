@@ -19,11 +19,11 @@ use crate::{Disk, ParameterError};
 /// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
 /// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
 /// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count. A run ends with
-/// an error if disks change otherwise than in the collisions that the observer receives, as they do in a
+/// an error if disks change in other ways than by the collisions that the observer receives, as they do in a
 /// [`BetweenKinds`](super::BetweenKinds), or by the driving of a study.
 ///
-/// On the line of a wall that [absorbs centers](crate::boundary::Part::absorbing_centers), rounding decides
-/// whether a disk that is absorbed there counts: use [`Arrivals`](super::Arrivals) there.
+/// A disk that a wall [absorbs](crate::boundary::Part::absorbing_centers) at the segment has not crossed it:
+/// count such disks by [`Arrivals`](super::Arrivals).
 ///
 /// ```
 /// use granular_edmd::observable::{Crossings, SampleTimes};
@@ -213,11 +213,13 @@ impl Free {
         Self { time, position: disk.position(), velocity: disk.velocity() }
     }
 
-    /// Returns whether a disk on this flight has the velocity of the other flight when that begins.
+    /// Returns whether a disk on this flight has the velocity of the other flight when the other flight
+    /// begins.
     fn leads_to(&self, other: &Self, pull: DVec2) -> bool {
         let gained = (other.time - self.time) * pull;
         let speeds = self.velocity.length() + gained.length();
-        // Late times are coarse, and so is the speed that a disk at rest gains between two of them.
+        // Late times are coarse, so the speed that a disk at rest gains between two adjacent times is coarse,
+        // too.
         let late = 16.0 * f64::EPSILON * (self.time.abs() + other.time.abs()) * pull.length();
         (self.velocity + gained).distance(other.velocity) <= ROUNDING * speeds + late
     }

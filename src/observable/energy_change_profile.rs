@@ -1,4 +1,4 @@
-//! The energy change per collision, beside the temperature at the same height.
+//! The energy change per collision, with the temperature at the same height.
 
 use super::grid::check_heights;
 use super::table::{ENERGY, Table, headings, row};

@@ -94,7 +94,7 @@ impl Fields {
 
     /// Returns the fields in a cell, or `None` outside the grid.
     ///
-    /// Columns count from the left and rows from below.
+    /// Columns are counted from the left, and rows from below.
     pub fn cell(&self, column: usize, row: usize) -> Option<FieldCell> {
         let (columns, rows) = self.grid.shape();
         let inside = column < columns && row < rows;
@@ -138,7 +138,10 @@ impl Fields {
 impl Accumulator for Fields {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
-            if let Some(cell) = self.grid.find(disk.position()) {
+            let (place, domain) = (disk.position(), snapshot.domain());
+            // A disk exactly on the right or the upper side of a periodic domain is at the other side, too.
+            let cell = self.grid.find(place).or_else(|| self.grid.find(domain.wrapped(place)));
+            if let Some(cell) = cell {
                 self.sums[cell].add(disk);
             }
         }
@@ -182,7 +185,7 @@ impl Table for Fields {
 crate::gate::from_file! {
     Fields { grid: Grid, sums: Vec<CellSums>, free: Vec<f64>, samples: u64 } => {
         for given in [sums.len(), free.len()] {
-            let requirement = "that of the cells";
+            let requirement = "the number of cells";
             crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
         }
         sums.iter().try_for_each(CellSums::check)?;

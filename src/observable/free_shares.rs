@@ -10,7 +10,7 @@ use crate::quantity::accept;
 
 /// The free shares of several regions. They are kept as long as no wall has moved.
 ///
-/// They are not part of the measurement: no file holds them, and any two of them compare equal.
+/// They are not part of the measurement: no file holds them, and any two values of this type compare equal.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FreeShares {
     walls: Mark,
@@ -20,7 +20,7 @@ pub(super) struct FreeShares {
 
 impl FreeShares {
     /// Returns the share of each region that matter can fill at the time of a snapshot, or NaN where the
-    /// share is not known. The regions must always be the same ones.
+    /// share is not known. All calls must pass the same regions.
     pub(super) fn of(&mut self, snapshot: &Snapshot<'_>, regions: impl Iterator<Item = Region>) -> &[f64] {
         let walls = 0..snapshot.wall_count();
         let points: Option<Vec<DVec2>> = walls.map(|wall| snapshot.wall_point(wall)).collect();

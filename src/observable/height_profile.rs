@@ -125,8 +125,8 @@ impl HeightProfile {
         fractions.enumerate().map(|(bin, fraction)| (self.bins.middle(bin), fraction))
     }
 
-    /// Returns the bin with the largest packing fraction, or `None` before the first sample. Of several
-    /// equally dense bins, it is the lowest.
+    /// Returns the bin with the largest packing fraction, or `None` before the first sample. If several bins
+    /// are equally dense, it is the lowest of them.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }
@@ -139,7 +139,8 @@ impl HeightProfile {
     }
 
     fn add_disk(&mut self, height: f64, radius: f64, domain: &Domain) {
-        // No free area is beyond the domain, so neither is matter, such as the image of a disk.
+        // The free area ends at the edge of the domain, so matter beyond it, such as the image of a disk,
+        // must not count either.
         let edge = |bins: &Bins, edge: usize| bins.edge(edge).clamp(domain.bottom, domain.top);
         // A disk outside the profile counts in the first or the last bin, to which it adds no area.
         let first = self.bins.at_or_above(height - radius);

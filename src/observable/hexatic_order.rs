@@ -52,7 +52,7 @@ pub struct HexaticOrder {
 }
 
 impl HexaticOrder {
-    /// Creates an observable for which disks are neighbors if the distance of their centers is at most
+    /// Creates an observable for which disks are neighbors if the distance between their centers is at most
     /// `range`.
     ///
     /// # Errors

@@ -123,7 +123,7 @@ crate::gate::from_file! {
         let lags = means.len().saturating_sub(1);
         accept((1..=MOST_LAGS).contains(&lags), "number of lags", "in 1..=2^20", lags as f64)?;
         let fits = past.len() <= means.len();
-        accept(fits, "number of samples that are kept", "at most that of the lags", past.len() as f64)?;
+        accept(fits, "number of samples that are kept", "at most the number of lags", past.len() as f64)?;
         Ok(Self { sample_times, latest, past, means, places })
     }
 }

@@ -28,13 +28,13 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
-/// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
-/// samples each, at the times that the observer requests. The first run starts at time 0 and is cut twice:
-/// between two samples, and after a sample; the runs that continue it must ask for the sample that was next.
-/// Further runs start later and between two sampling times, at a late time, and before 0; the last one has
-/// ten thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it has
-/// collected in the check, so make a new one for a measurement. The page "Validation" says which planted
-/// faults the check finds.
+/// The runs have three disks and four walls, collisions with each partner and in all regimes, a fourth disk
+/// that comes in and is taken out before each sample, and up to fifty samples each, at the times that the
+/// observer requests. The first run starts at time 0 and is cut twice: between two samples, and after a
+/// sample; the runs that continue it must ask for the sample that was next. Further runs start later and
+/// between two sampling times, at a late time, and before 0; the last one has ten thousand samples. A run
+/// ends early if the observer stops it or fails. The observer keeps what it has collected in the check, so
+/// make a new one for a measurement. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -123,11 +123,18 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(End { now: self.now, next: self.wanted, goes_on })
     }
 
-    /// Runs collisions until the next sample, or a few collisions if no sample is requested.
+    /// Runs collisions until the next sample, or a few collisions if no sample is requested. Between them, a
+    /// disk comes in and is taken out.
     fn collide(&mut self) -> Result<bool, Violation> {
         let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
-        for _ in 0..3 {
+        let guest = disk(0, self.collisions).and_then(|disk| disk.with_id(1 + self.collisions as u64)).ok();
+        for step in 0..3 {
             self.now += 0.25 * wait;
+            match (step, &guest) {
+                (1, Some(guest)) => self.observer.on_insert(guest, self.now),
+                (2, Some(guest)) => self.observer.on_remove(guest, self.now),
+                _ => {}
+            }
             self.collisions += 1;
             let collision = collision(self.now, self.collisions);
             self.observer.on_collision(&collision);

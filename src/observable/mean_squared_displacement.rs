@@ -67,7 +67,7 @@ impl MeanSquaredDisplacement {
     /// ```
     ///
     /// The longest lag $`t`$ should be many times the mean free time. In two dimensions, the slope keeps
-    /// growing slowly with $`t`$ (Alder and Wainwright 1970), so report both.
+    /// growing slowly with $`t`$ (Alder and Wainwright 1970), so report $`t`$ together with the coefficient.
     pub fn diffusion_coefficient(&self) -> Estimate {
         self.diffusion.estimate()
     }

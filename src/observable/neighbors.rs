@@ -13,7 +13,8 @@ pub struct Neighbors<'a> {
     domain: Domain,
     squares: Squares,
     range: f64,
-    /// Largest components of a vector between two disks that is shorter than the vectors to all images.
+    /// Half of each period; infinite where there is none. A vector with smaller components is shorter than
+    /// the vectors to all images.
     half: DVec2,
 }
 
@@ -51,7 +52,7 @@ impl<'a> Neighbors<'a> {
         self.range
     }
 
-    /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. Without a disk of this
+    /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. If no disk has this
     /// index, there are no neighbors.
     pub fn of(&self, disk: usize) -> impl Iterator<Item = Neighbor> {
         let from = self.disks.get(disk).map(Disk::position);
@@ -72,7 +73,7 @@ impl<'a> Neighbors<'a> {
     }
 }
 
-/// Checks that a range reaches no two images of a disk.
+/// Checks that a range never includes two images of a disk.
 pub(super) fn check_range(name: &'static str, range: f64, domain: &Domain) -> Result<(), ParameterError> {
     let periods = domain.periods();
     for period in [periods.x, periods.y].into_iter().filter(|&period| period > 0.0) {

@@ -30,8 +30,8 @@ impl ConvectionOrder {
 /// ```
 ///
 /// In a gas at rest, each of them fluctuates with the standard deviation $`\sqrt{T_y/2Nm}`$. A roll stands
-/// out if its order parameter is larger than that. Positions count from the left end of the domain. Both
-/// order parameters are 0 without disks.
+/// out if its order parameter is larger than that. Positions are measured from the left end of the domain.
+/// Both order parameters are 0 without disks.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

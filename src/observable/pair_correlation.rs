@@ -29,11 +29,11 @@ const ROUNDING: f64 = 1e-9;
 /// numbers $`M`$ of disks in the whole box.
 ///
 /// $`N_{ij}(r)`$ counts the pairs of a disk $`i`$ in a region and a partner $`j`$ anywhere, by the distance
-/// of their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area is
-/// $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners among
-/// the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
-/// the whole domain. At walls, the region ends at a distance of `range` from the sides and ends of the
-/// domain, so that all shells lie inside. In a vessel with walls inside, give a region by
+/// between their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area
+/// is $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners
+/// among the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the
+/// region is the whole domain. At walls, the region ends at a distance of `range` from the sides and ends of
+/// the domain, so that all shells lie inside. In a vessel with walls inside, give a region by
 /// [`within`](Self::within) that keeps the same distance from all walls. Where the density varies, under
 /// gravity for example, choose a thin layer.
 ///
@@ -78,8 +78,8 @@ pub struct PairCorrelation {
 }
 
 impl PairCorrelation {
-    /// Creates the correlation function of all disks, up to the distance `range` of their centers, in `bins`
-    /// bins.
+    /// Creates the correlation function of all disks, up to the distance `range` between two centers, in
+    /// `bins` bins.
     ///
     /// # Errors
     /// If the range is not finite and positive, or the number of bins is not in `1..=2^20`.
@@ -243,7 +243,7 @@ crate::gate::from_file! {
         accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
         for count in pairs.iter().map(BlockedMean::count).chain([partner_density.count()]).chain(numbers.map(|number| number.count())) {
             let fits = count == centers.count();
-            accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
+            accept(fits, "number of samples of a bin", "the number of samples of the correlation", count as f64)?;
         }
         Ok(Self { bins, kinds, region, pairs, centers, partner_density, numbers })
     }

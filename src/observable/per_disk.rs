@@ -5,8 +5,8 @@ use crate::disk::numbered;
 
 /// A value for each disk of a snapshot.
 ///
-/// The values of two times are matched by the ids of the disks. Only disks with a value at both times count,
-/// so disks may be inserted, removed or sorted in between.
+/// Values at two times are matched by the ids of the disks. Only disks with a value at both times count, so
+/// disks may be inserted, removed or sorted in between.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

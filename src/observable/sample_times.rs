@@ -21,7 +21,7 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 /// first time ([`Self::starting_at`]). They are multiples, not sums, so the thousandth is as exact as the
 /// first.
 ///
-/// # When a run starts
+/// # The start of a run
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
 /// out, and so is a sampling time at the start, within rounding. A run of $`n`$ intervals therefore gives
 /// $`n`$ samples, the first after one interval. This holds for a run from time 0, from another start, from a

@@ -8,9 +8,9 @@ use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
 ///
-/// The times increase. A run that starts before the last sample, or that is of another system, ends
-/// immediately with an error: clear the series before such a run, or use another series. The same happens if
-/// the checkpoint from which a run was resumed is older than the series.
+/// The times increase. A run that starts before the last sample, or that belongs to another system, ends
+/// immediately with an error. Clear the series before such a run, or use another series. A run that was
+/// resumed from a checkpoint older than the series ends with an error, too.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
 /// can. JSON has no NaN, so a series with undefined values can be read back from a
@@ -155,7 +155,7 @@ mod serial {
         fn try_from(raw: Raw<Q, Q::Value>) -> Result<Self, ParameterError> {
             let Raw { observable, sample_times, times, values } = raw;
             let count = values.len() as f64;
-            accept(values.len() == times.len(), "number of values", "that of the times", count)?;
+            accept(values.len() == times.len(), "number of values", "the number of times", count)?;
             times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
             Ok(Self { observable, sample_times, times, values, system: System::NONE, fault: None })
         }

@@ -30,7 +30,7 @@ pub(crate) trait Moving {
     /// Returns the number of disks.
     fn count(&self) -> usize;
 
-    /// Returns copies of all disks at an offset of the time.
+    /// Returns copies of all disks at a time offset.
     fn copies(&self, offset: f64) -> Vec<Disk>;
 }
 
@@ -162,8 +162,8 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the walls that move: the index of each, its displacement from its position at rest, and the
-    /// phase of its motion, as [`WallMotion`](crate::wall::WallMotion) takes it: the time, less whole
-    /// periods.
+    /// phase of its motion. The phase is the time, less whole periods, as
+    /// [`WallMotion`](crate::wall::WallMotion) takes it.
     ///
     /// Walls that move together, as the bricks of a part do, appear once.
     ///

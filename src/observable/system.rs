@@ -24,7 +24,7 @@ impl System {
     /// Notes the start of a run.
     ///
     /// # Errors
-    /// If the run is of another system, or begins before the end of the previous one.
+    /// If the run belongs to another system, or begins before the end of the previous one.
     pub(super) fn begin(&mut self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         self.is_same(start)?;
         let (time, end) = (start.time(), self.end.unwrap_or(f64::NEG_INFINITY));
@@ -33,7 +33,8 @@ impl System {
         accept(goes_on, "start of the run", requirement, time).map(drop)
     }
 
-    /// Notes the system of a run, which may start at any time.
+    /// Notes the system of a run, which may start at any time. Returns an error if it is another system than
+    /// before.
     pub(super) fn is_same(&mut self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         let is_same = !self.mark.is_other(start.system_mark());
         let requirement = "of the same system; clear the observer for another system, or take a new one";

@@ -44,7 +44,7 @@ impl<T: InnerProduct> InnerProduct for PerDisk<T> {
 
 /// The velocity of each disk.
 ///
-/// Their [`TimeCorrelation`] is the velocity autocorrelation function.
+/// The [`TimeCorrelation`] of these velocities is the velocity autocorrelation function.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Velocities;

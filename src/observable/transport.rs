@@ -50,8 +50,8 @@ type Moments = [DVec2; MOMENTS];
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report this lag and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
-/// One observer measures one gas, in one run or in runs that continue each other. The first interval, as long
-/// as the longest lag, only finds the pressure. The errors come from blocks of origins.
+/// One observer measures one gas, in one run or in runs that continue each other. The first interval is as
+/// long as the longest lag, and serves only to find the pressure. The errors come from blocks of origins.
 ///
 /// A run ends with an error if
 /// - it does not continue the previous run;
@@ -201,16 +201,17 @@ impl TransportCoefficients {
 
     /// Returns the bulk viscosity ζ.
     pub fn bulk_viscosity(&self) -> Estimate {
-        // The pressure in the first interval differs slightly from the pressure in the whole run. The
-        // difference makes the mean square of the moment grow by its own square, which is not viscosity.
+        // The pressure in the first interval differs slightly from the pressure in the whole run. The square
+        // of this difference adds to the growth of the moment's mean square, but is not part of the
+        // viscosity.
         let interval = self.stretch.sample_times.interval();
         let (longest, half) = (self.lags[1].longest(), self.lags[1].longest() / 2);
         let excess = self.excess.mean() / (longest as f64 * interval);
         self.coefficient(1, excess * excess * (longest + half) as f64 * interval)
     }
 
-    /// Returns the thermal conductivity λ for disks of equal mass, or NaN for other disks, in which the
-    /// diffusion of the masses also carries energy.
+    /// Returns the thermal conductivity λ for disks of equal mass, or NaN for disks of different masses,
+    /// whose diffusion also carries energy.
     pub fn thermal_conductivity(&self) -> Estimate {
         self.coefficient(2, 0.0).scaled(1.0 / self.temperature())
     }

@@ -53,7 +53,7 @@ pub struct VelocityDistribution {
     excess_kurtosis: [BlockedMean; 2],
 }
 
-/// The velocity that is subtracted from each disk's.
+/// The velocity that is subtracted from the velocity of each disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Frame {
@@ -138,8 +138,8 @@ impl VelocityDistribution {
 }
 
 impl Frame {
-    /// Returns the scaled velocities √m (v − u) of the disks, each with the fraction of its variance that
-    /// remains when the mean is subtracted, and the degrees of freedom of each component.
+    /// Returns the scaled velocities √m (v − u) of the disks, and the degrees of freedom of each component.
+    /// Each velocity comes with the fraction of its variance that remains when the mean is subtracted.
     fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
         match self {
             Self::Container => {

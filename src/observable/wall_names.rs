@@ -4,8 +4,8 @@ use super::Snapshot;
 use super::marks::Mark;
 use crate::ParameterError;
 
-/// The names of all walls in the latest run. Like marks, they go into no file, and measurements that differ
-/// only in them are equal.
+/// The names of all walls in the latest run. Like marks, they are not written to files, and measurements that
+/// differ only in them are equal.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WallNames {
     walls: Mark,
@@ -16,7 +16,7 @@ impl WallNames {
     /// No names yet.
     pub(super) const NONE: Self = Self { walls: Mark::NONE, names: Vec::new() };
 
-    /// Checks that each index of a wall that is measured means the wall that it meant before, since values of
+    /// Checks that the index of each measured wall belongs to the same wall as before, since values of
     /// different walls must not be added.
     ///
     /// # Errors

@@ -6,7 +6,7 @@
 /// The time $`t \ge 0`$ is counted from the time at which value and rate are given. The result is infinite
 /// only if it overflows.
 /// - For an open gap, the result is the first zero at which the gap is falling, if there is one. Rounding
-///   decides whether a gap counts that closes for an instant and opens again, as at a double root.
+///   decides whether a gap counts if it closes only for an instant and opens again, as at a double root.
 /// - A gap that is closed and closes further counts immediately, at time 0.
 /// - A gap that is closed but rises counts when it closes next. If it never rises to zero, it counts when it
 ///   is back at its first value.
@@ -46,9 +46,9 @@ fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
     let discriminant = rate * rate - 2.0 * acceleration * value;
     if discriminant <= 0.0 {
         // The gap is still closed at the top of the parabola. A gap that began exactly at zero would close as
-        // fast as it opened, at twice the time of the top, so this returns that time. At the top itself the
-        // rate is zero: a disk that bounces lower than rounding would stop there, although no rule took its
-        // speed.
+        // fast as it opened, at twice the time of the top, so the function returns that time. At the top
+        // itself the rate is zero: a disk that bounces lower than rounding would stop there, although no rule
+        // took its speed.
         return (-2.0 * rate / acceleration).max(0.0);
     }
     let root = discriminant.sqrt();

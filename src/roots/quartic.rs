@@ -126,7 +126,7 @@ impl Marks {
     }
 
     /// Returns the times at which a polynomial changes its sign. `self` holds the times at which its
-    /// derivative does.
+    /// derivative changes its sign.
     ///
     /// Between two marks the polynomial is monotonic, so it changes its sign at most once. No change can be
     /// missed, however close two of them are.

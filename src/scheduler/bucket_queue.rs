@@ -38,8 +38,8 @@ const SIGHT: usize = 48;
 ///   it is.
 /// - A bucket is opened just before its time comes. Old entries are dropped, and the others are sorted.
 /// - A disk that becomes due within an open bucket waits in a heap.
-/// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
-///   to a new one, whose buckets are as wide as the events of the last page suggest.
+/// - A disk that is due after the end of the page is not written into it. When the page is used up, all disks
+///   are distributed over a new page, whose buckets are as wide as the events of the last page suggest.
 ///
 /// An event thus writes only to locations that are in the caches, however many disks there are. The one
 /// exception is the time of its disk.
@@ -79,7 +79,7 @@ impl Page {
     #[inline]
     fn bucket(self, due: f64) -> usize {
         // The cast saturates: times before the page belong to its first bucket, and infinite times to the
-        // bucket of the largest number.
+        // bucket with the largest number.
         ((due - self.start) * self.rate) as usize
     }
 }
@@ -113,7 +113,7 @@ impl BucketQueue {
     }
 
     /// Adds a disk to the bucket of its time, or to the heap if the bucket is open already. A disk that is
-    /// due after the page is added nowhere.
+    /// due after the end of the page is not added.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
         let bucket = self.page.bucket(due);
@@ -168,7 +168,7 @@ impl BucketQueue {
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
             // The times of these disks are scattered in memory. Requests for all of them at once take hardly
-            // longer than for a few.
+            // longer than requests for a few.
             for &disk in disks {
                 prefetch(due, disk as usize);
             }

@@ -2,12 +2,12 @@
 
 use super::{BucketQueue, EventScheduler, TournamentTree};
 
-/// Number of disks beyond which the system no longer fits the caches.
+/// Number of disks beyond which the system no longer fits into the caches.
 ///
-/// Above it, an event waits for the memory, and work that saves accesses to memory pays off: an order that is
-/// written page by page ([`BucketQueue`]), and early requests for the data of the next events. Below it, the
-/// same work is a loss. The number comes from the program `scaling` in `tools`. The optimum is flat, so one
-/// number serves both kinds of work.
+/// Above this number, events wait for memory, and work that saves memory accesses pays off: a calendar that
+/// is turned page by page ([`BucketQueue`]), and early requests for the data of the next events. Below this
+/// number, the same work is a loss. The number comes from the program `scaling` in `tools`. The optimum is
+/// flat, so one number serves both kinds of work.
 pub(crate) const LARGE_SYSTEM: usize = 30_000;
 
 /// A [`TournamentTree`] for fewer than 30 000 disks, and a [`BucketQueue`] from there on.

@@ -63,7 +63,7 @@ impl EventScheduler for TournamentTree {
         }
     }
 
-    // Inlined, so that each event makes only one call: to the code for this processor.
+    // The method is inlined, so that each event makes only one call: to the code for this processor.
     #[inline(always)]
     fn set(&mut self, disk: usize, due: f64) {
         match &mut self.form {

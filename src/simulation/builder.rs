@@ -80,8 +80,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
     /// Sets gravity; 0 unless given.
     ///
-    /// A number points down, or up if it is negative. A vector is the acceleration, and [`Gravity::tilted`]
-    /// gives the gravity on a slope.
+    /// A number stands for gravity that points down, or up if the number is negative. A vector stands for the
+    /// acceleration itself, and [`Gravity::tilted`] gives the gravity on a slope.
     pub fn gravity(mut self, gravity: impl Into<Gravity>) -> Self {
         self.gravity = gravity.into();
         self
@@ -89,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
     /// Sets the seed of the stochastic walls; 0 unless given.
     ///
-    /// Without stochastic walls, it has no effect.
+    /// The seed has no effect without stochastic walls.
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
@@ -113,10 +113,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     ///
     /// # Errors
     /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude, or a disk moves at
-    /// a speed below 1e-100. If there are too many disks or walls, or times at the start are too coarse for
-    /// such fast disks. If the domain is not finite (only its top may be infinite) or is too small for the
-    /// disks, or a disk is outside, overlaps a wall or another disk, or just fills a hollow of a wall; the
-    /// error names the disk.
+    /// a speed below 1e-100. Also if there are too many disks or walls, or times at the start are too coarse
+    /// for such fast disks. Also if the domain is not finite (only its top may be infinite) or is too small
+    /// for the disks, or a disk is outside, overlaps a wall or another disk, or just fills a hollow of a
+    /// wall; the error names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         let gravity = self.gravity.checked()?;
         finite("start time", self.start_time)?;

@@ -51,7 +51,7 @@ pub(super) struct Cells {
     /// Column and row of each disk, in the grid of its class.
     pub(super) places: Vec<Place>,
     layers: Option<Box<Layers>>,
-    /// The classes of disks for which the cells were made, and their numbers at that time.
+    /// The classes of disks for which the cells were made, with their numbers of disks at that time.
     classes: Vec<SizeClass>,
 }
 
@@ -87,8 +87,8 @@ impl Cells {
         Some(cells)
     }
 
-    /// Creates cells of these layouts, of at least one class. The disks of these diameters are yet to be
-    /// filled in.
+    /// Creates cells with these layouts, one for each class; there is at least one class. The disks of these
+    /// diameters are yet to be filled in.
     pub(super) fn empty<B: Boundary + ?Sized>(
         boundary: &B,
         layouts: &Layouts,
@@ -132,7 +132,7 @@ impl Cells {
         Layouts { smallest: self.grid.layout, larger, classes: self.classes.clone() }
     }
 
-    /// Returns whether a disk of this diameter is of one of the classes for which the cells were made.
+    /// Returns whether a disk of this diameter belongs to one of the classes for which the cells were made.
     pub(super) fn suit(&self, diameter: f64) -> bool {
         let class = self.classes.get(usize::from(class_of(&self.classes, diameter)));
         class.is_some_and(|class| self.layers.is_none() || diameter >= class.smallest)
@@ -184,7 +184,7 @@ impl Cells {
         }
     }
 
-    /// Returns whether a disk is of a larger class than the smallest.
+    /// Returns whether a disk belongs to a larger class than the smallest.
     #[inline]
     pub(super) fn is_large(&self, disk: usize) -> bool {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
@@ -341,8 +341,8 @@ impl Cells {
         }
     }
 
-    /// Returns the first of the three cells ahead of a place that a disk enters by `exit`, and their distance
-    /// in memory.
+    /// Returns the first of the three cells ahead of a place that a disk enters by `exit`, and the distance
+    /// between them in memory.
     #[inline(always)]
     fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();

@@ -60,7 +60,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
     ///
     /// A larger overlap is not kept, so that the next overlap of this size is noticed, too. The error names
-    /// the partner that the disk overlaps. This may be another wall than the touched one.
+    /// the partner that the disk overlaps. This may be a wall other than the touched one.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(
@@ -85,7 +85,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Checks that a gap before a wall is rounding.
+    /// Checks that a gap before a wall is only rounding.
     #[cold]
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
         let (now, radius) = (self.clock.now, probe.radius());
@@ -137,7 +137,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Checks that no event before this time offset was lost, and that all disks are in the domain then.
+    /// Checks that no event before this time offset was lost, and that all disks are in the domain at that
+    /// time.
     pub(super) fn check_all(&self, offset: f64) -> Outcome<()> {
         let domain = self.boundary.domain();
         let rounding = self.clock.rounding() * self.fastest();

@@ -29,8 +29,8 @@ use crate::{Disk, Fingerprint};
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANEDMD", 9);
 
-/// A saved run: everything on which its future depends, except its rule and its boundary. The numbers of
-/// walls that [react](Boundary::react) are kept.
+/// A saved run: everything on which its future depends, except its rule and its boundary. The state of walls
+/// that [react](Boundary::react) is kept.
 ///
 /// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
@@ -82,7 +82,7 @@ struct Saved {
     typical_diameter: f64,
     fresh_count: u32,
     inlets: Vec<Inlet>,
-    /// Numbers of the walls that react.
+    /// The state of the walls that react, as numbers.
     walls: Vec<f64>,
     forecasts: Vec<Forecast>,
     layouts: Layouts,
@@ -93,7 +93,7 @@ struct Saved {
     ledger: Ledger,
 }
 
-/// An error: a checkpoint cannot be written, read or resumed.
+/// The error of a checkpoint that cannot be written, read or resumed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckpointError {

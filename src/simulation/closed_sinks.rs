@@ -55,7 +55,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Returns positions on all walls and on the edges of the domain, a diameter apart at most, each with a
-    /// unit vector across.
+    /// unit vector across the wall or edge.
     fn places_at_walls(&self, radius: f64) -> impl Iterator<Item = (DVec2, DVec2)> {
         let inside = self.boundary.interior();
         let top = inside.top.min(inside.bottom + inside.width());

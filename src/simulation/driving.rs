@@ -33,17 +33,19 @@ use crate::{Disk, ParameterError};
 /// A driving guarantees:
 /// 1. A kick changes velocities and angular velocities, and nothing else: it neither moves, turns, renames,
 ///    reorders nor resizes disks, nor changes their masses, kinds or images. A driving that also moves disks
-///    must leave them inside and apart, and must declare this to the check.
-/// 2. A kick treats disks alike wherever they are in the list, and works without disks, too. What a driving
-///    remembers of a disk, it remembers by the [id](crate::Disk::id): sinks and inlets change the order.
+///    must leave them inside the walls and without overlaps, and must declare this to the check.
+/// 2. A kick treats disks alike wherever they are in the list, and works without disks, too. If a driving
+///    remembers something about a disk, it identifies the disk by its [id](crate::Disk::id), since sinks and
+///    inlets change the order.
 /// 3. The same driving gives the same kicks to the same disks, to the bit: its random numbers are its own.
 /// 4. The clock advances: after a kick, it returns a later time, and returns the same time at each call until
 ///    the next kick. A run that is cut into pieces has the same kicks.
 /// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
-/// [`laws::check`] tests all of this, except for what a driving remembers; `docs/validation.md` says which
-/// planted faults it finds. The engine refuses disks that overlap, a change of their number, and a clock that
-/// stands still.
+/// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults it finds. If a driving
+/// draws random numbers in the order of the list, the check finds a memory by the position in the list only
+/// if each kick there resembles the previous one. The engine refuses disks that overlap, a change of their
+/// number, and a clock that stands still.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -88,6 +90,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// A kick comes after all events and samples of its time, also at the end of the run. The bits do not
     /// depend on how a run is cut into pieces.
+    ///
+    /// The observer watches a run from each kick to the next, with `on_start` and `on_end`, and thus sees the
+    /// velocities on both sides of a kick. Its samples are those of one run.
     ///
     /// # Errors
     /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].

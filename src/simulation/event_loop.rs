@@ -54,8 +54,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.look_ahead();
         if forecast.is_collision() {
             let partner = forecast.partner as usize;
-            // An equal count means that the partner is still on the flight of the prediction. It may also be
-            // gone.
+            // An equal count means that the partner is still on the flight for which the collision was
+            // predicted. The partner may also have been removed.
             let collisions = self.bodies.forecast(partner).map(|partner| partner.collisions);
             if collisions == Some(forecast.partner_collisions) {
                 return self.collide(disk, partner, observer).map(Some);
@@ -135,8 +135,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let (normal, velocity) = (surface.normal, surface.velocity);
             return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }
-        // By rounding, the disk may already leave the wall in the engine's arithmetic. The rule then gets no
-        // closing speed and may change nothing, and the boundary would find the same touch again.
+        // Because of rounding, the disk may already be leaving the wall in the engine's arithmetic. The rule
+        // then gets no closing speed and may change nothing, and the boundary would find the same touch
+        // again.
         let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (mut collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);

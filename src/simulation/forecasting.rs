@@ -31,7 +31,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Finds another partner for a disk whose partner has collided since. The end of the disk's own flight in
-    /// its cell stays.
+    /// its cell stays the same.
     #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);

@@ -16,10 +16,10 @@ use crate::{Disk, Kind, ParameterError};
 /// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
 /// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it
 /// finds no room waits until the inlet opens again, and the other disks wait behind it. A disk that enters
-/// has a new [id](Disk::id) and the largest index, and has collided with nothing yet. This takes the same
-/// time however many disks there are.
+/// has a new [id](Disk::id) and the largest index, and has collided with nothing yet. An insertion takes the
+/// same time however many disks there are.
 ///
-/// An inlet is a part of the state of a run, and so of its checkpoints, with the disks that wait.
+/// An inlet and its waiting disks are part of the state of a run, and therefore of its checkpoints.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

@@ -5,18 +5,18 @@ use super::state::Bodies;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Number of disks that come into sight between two steps of a request: first the disk is requested, then the
-/// cells that its event needs, then its neighbors in these cells.
+/// Number of disks that are named as upcoming between two steps of a request: first the disk is requested,
+/// then the cells that its event needs, then its neighbors in these cells.
 const LATER: usize = 12;
 
-/// The disks that last came into sight. For each, the disk itself is requested from memory first, then the
-/// cells that its event needs, and then its neighbors there.
+/// The disks that were last named as upcoming. For each, the disk itself is requested from memory first, then
+/// the cells that its event needs, and then its neighbors there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookahead {
     /// Index at which the next disk is written.
     next: usize,
     disks: [u32; 2 * LATER],
-    /// Memory for the disks that come into sight.
+    /// Buffer for the disks that are newly named as upcoming.
     fresh: Vec<usize>,
 }
 

@@ -41,7 +41,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn replace_disks(&mut self, disks: &[Disk]) -> Result<(), BuildError> {
         check_speeds(disks.iter().map(Disk::velocity))?;
         let stay = |(index, disk): (usize, &Disk)| {
-            // Some walls are there for some kinds only.
+            // Some walls exist only for some kinds of disks.
             disk.position() == self.bodies.position(index, self.clock.now)
                 && disk.radius() == self.bodies.radius(index)
                 && disk.kind() == self.bodies.material(index).kind

@@ -1,4 +1,4 @@
-//! The parting of partners that rounding leaves approaching after a collision.
+//! The parting of partners that still approach each other after a collision, because of rounding.
 
 use glam::DVec2;
 
@@ -19,7 +19,7 @@ const MOST_NUDGES: u32 = 24;
 const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Makes two disks part whose relative speed after a collision is zero, or is rounding that lets them
+    /// Makes two disks part if their relative speed after a collision is zero, or if rounding lets them
     /// approach.
     ///
     /// Velocities are rounded relative to themselves, not to their difference. A rule that takes all of the

@@ -24,8 +24,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk, or has the id of another; the error
-    /// names its index. If there would be too many disks, the domain is too small for a disk, or a disk is so
-    /// fast that times as late as the present are too coarse. The simulation then stays unchanged.
+    /// names its index. Also if there would be too many disks, the domain is too small for a disk, or a disk
+    /// is so fast that times as late as the present are too coarse. The simulation then stays unchanged.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;

@@ -37,9 +37,9 @@ impl Pairs {
     /// With the separation r, the relative velocity v and the contact distance σ, the pair touches at the
     /// smaller root of v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two
     /// numbers that are nearly equal when the disks nearly touch, and divides by zero when they move alike.
-    /// Multiplied above and below by √d - r·v, the root is (r² - σ²)/(√d - r·v). Both terms of the
-    /// denominator are positive while the pair approaches, so nothing cancels, and the gap in the numerator
-    /// is as exact as the positions are.
+    /// With numerator and denominator multiplied by √d - r·v, the root is (r² - σ²)/(√d - r·v). Both terms of
+    /// the denominator are positive while the pair approaches, so nothing cancels, and the gap in the
+    /// numerator is as exact as the positions are.
     ///
     /// The method is stable event detection (Bannerman et al. 2014). A pair that touches or overlaps by
     /// rounding collides immediately while it approaches, and never while it recedes. If an overlap of 1e-16

@@ -13,7 +13,7 @@ use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
-/// Largest difference of the length of a surface's normal from 1.
+/// Largest difference between the length of a surface's normal and 1.
 const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
@@ -232,12 +232,12 @@ fn emitted(
     generator: &mut Xoshiro256PlusPlus,
 ) -> Body {
     let speed = (thermal.temperature() / mass).sqrt();
-    // Weighted by the flux, since fast disks cross a plane more often. With half a Gaussian, an elastic gas
-    // would settle below the wall's temperature.
+    // The speed is weighted by the flux, since fast disks cross a plane more often. With half a Gaussian, an
+    // elastic gas would settle below the wall's temperature.
     let outward = surface.normal * (speed * rayleigh(generator));
     let base = if surface.mass.is_finite() {
-        // A piston recoils, so the relative speed is the one of the reduced mass, and the center of mass
-        // keeps its velocity. Otherwise, the gas and the piston would be hotter than the wall.
+        // A piston recoils, so the relative speed is drawn for the reduced mass, and the center of mass keeps
+        // its velocity. Otherwise, the gas and the piston would be hotter than the wall.
         let share = surface.mass / (mass + surface.mass);
         let closing = surface.normal * (arriving.velocity - surface.velocity).dot(surface.normal);
         surface.velocity + (1.0 - share) * closing + outward * share.sqrt()
@@ -255,7 +255,7 @@ fn emitted(
     };
     match surface.angular_velocity {
         0.0 => emitted,
-        // The gas behind a wall that turns, turns with it: this is its velocity at the center of the disk.
+        // The gas behind a turning wall turns with the wall: this is its velocity at the center of the disk.
         turning => Body {
             velocity: emitted.velocity + turning * radius * along,
             angular_velocity: emitted.angular_velocity + turning,

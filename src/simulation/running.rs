@@ -46,9 +46,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// from there with the same bits.
     ///
     /// # Errors
-    /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
-    /// scheduler or observer returns an impossible result, times become too coarse, or an observer fails. The
-    /// simulation then keeps the state of that time.
+    /// If the end is not finite or is before the present, if the run hardly progresses, if a rule, boundary,
+    /// scheduler or observer returns an impossible result, if times become too coarse, or if an observer
+    /// fails. The simulation then keeps the state of that time.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
         limits: &Limits<'_>,

@@ -2,7 +2,7 @@
 //! decides when a run hardly progresses, and has the defaults.
 
 use super::resolution::{resolve_pair, resolve_wall};
-use super::state::{Clock, Exit, Forecast, Standstill};
+use super::state::{Clock, Exit, Forecast, Standstill, least_progress};
 use super::{Remedy, RunError, Simulation};
 use crate::boundary::{Boundary, Response};
 use crate::collision::{CollisionRule, Contact, Impulse, Regime};
@@ -44,13 +44,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             remedy => remedy.unwrap_or(Remedy::OtherParts),
         };
         let Standstill { events, elapsed } = *standstill;
+        let is_default_met = elapsed >= least_progress(self.clock.epoch_length, self.len()) * events as f64;
+        let remedy = if is_default_met { Remedy::LessProgress } else { remedy };
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
     }
 
     /// Returns whether a run in which time hardly advances before this event is stuck.
     ///
     /// Many lossless collisions in a short time may end by themselves, as for a light disk between a wall and
-    /// a heavy disk that comes near. Such a run has more time, as long as its windows differ. If the windows
+    /// a heavy disk that comes near. Such a run gets more time, as long as its windows differ. If the windows
     /// are alike, a disk is squeezed.
     #[cold]
     pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
@@ -108,7 +110,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns whether a wall's geometry approaches a disk at another speed than the wall's surface reports.
     ///
-    /// The depth of a larger disk that stays where it is grows at the speed of the wall.
+    /// The depth of a larger disk at rest grows at the speed of the wall.
     fn moves_otherwise(&self, disk: usize, wall: usize, due: f64) -> bool {
         let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
         let probe = self.probe(disk).with_position(self.bodies.position(disk, due));

@@ -65,7 +65,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(next)
     }
 
-    /// Opens all inlets whose absolute time this is.
+    /// Opens all inlets that are due at this absolute time.
     pub(super) fn open_inlets<O: Observer + ?Sized>(&mut self, time: f64, observer: &mut O) -> Outcome<()> {
         for number in 0..self.inlets.len() {
             if self.inlets[number].times.upcoming() > time {
@@ -111,7 +111,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             && self.boundary.overlap(&Probe::of(disk, now)).is_none()
     }
 
-    /// Passes a disk that a sink removed to the inlet that puts such disks back.
+    /// Passes a disk, which a sink has removed, to the inlet that puts such disks back.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         let inlets = self.inlets.iter_mut().filter(|inlet| inlet.takes_back());
         if let Some(inlet) = inlets.min_by_key(|inlet| inlet.waiting()) {

@@ -77,8 +77,8 @@ pub enum Warning {
         energy: f64,
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
-    /// them aside. Rows of a lattice over a floor that moves vertically hop like this forever. Any small
-    /// velocities at the start prevent it, for example by
+    /// them aside. Rows of a lattice over a floor that moves vertically bounce like this forever. Small
+    /// velocities at the start prevent it, for example from
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.
@@ -98,8 +98,9 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk can reach a sink, and none has been removed: walls block the sink, for example because they
-    /// are closer than a radius to a line for centers. A gate that opens later is a harmless cause.
+    /// No disk can reach a sink, and none has been removed in a thousand collisions or more: walls block the
+    /// sink, for example because they are closer than a radius to a line for centers. A gate that opens later
+    /// is a harmless cause.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
@@ -128,13 +129,13 @@ impl fmt::Display for Warning {
             Self::LongContactDuration { share_of_time, elastic, collisions } => write!(
                 formatter,
                 "the contact duration is {} of the time between two collisions of a disk ({elastic} of {collisions} \
-                 collisions lost nothing), so it takes about {} % of the dissipation away; a shorter one is needed",
+                 collisions lost nothing), so it removes about {} % of the dissipation; a shorter one is needed",
                 Rounded(*share_of_time),
                 Rounded((225.0 * share_of_time).min(100.0))
             ),
             Self::MostlyLeastRebound { raised, collisions, energy } => write!(
                 formatter,
-                "{raised} of {collisions} collisions parted at the least speed of LeastRebound, which put in the \
+                "{raised} of {collisions} collisions parted at the least speed of LeastRebound, which added the \
                  energy {}: right for matter at rest, but in a flow the speed is too high",
                 Rounded(*energy)
             ),
@@ -145,7 +146,7 @@ impl fmt::Display for Warning {
             ),
             Self::EndlessFall { upwards } => write!(
                 formatter,
-                "gravity points upwards by {} where there is no lid: disks fall for ever, and each step of the clock takes \
+                "gravity points upwards by {} where there is no lid: disks fall forever, and each step of the clock takes \
                  more events; a lid or another gravity is needed",
                 Rounded(*upwards)
             ),
@@ -162,7 +163,7 @@ impl fmt::Display for Warning {
             ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,
-                "{waiting} disks wait at inlet {inlet}: disks or walls take its room, or it opens too often"
+                "{waiting} disks wait at inlet {inlet}: disks or walls fill its room, or it opens too often"
             ),
         }
     }
@@ -223,8 +224,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
         let collisions = self.counters.collisions();
         let disk_time = self.ledger.disk_time_at(self.time(), self.len());
-        // Both disks take part in a collision of two.
-        let rate = |count: u64| 2.0 * count as f64 / disk_time;
+        // Both disks take part in a collision of two, but only one in a collision with a wall.
+        let partners = 1.0 + self.counters.disk_collisions as f64 / collisions.max(1) as f64;
+        let rate = |count: u64| partners * count as f64 / disk_time;
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let way = way / self.bodies.typical_diameter;
@@ -241,7 +243,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let collisions = self.counters.disk_collisions;
         let speeds = (0..self.len()).map(|disk| self.bodies.velocity(disk, self.clock.now).abs());
         let DVec2 { x, y } = speeds.fold(DVec2::ZERO, DVec2::max);
-        // A single disk, and disks that were brought to rest, have no direction to lose.
+        // For a single disk, and for disks that were brought to rest, motion along one axis is no reason for
+        // a warning.
         let may_be = collisions >= FEWEST && self.len() > 1 && x.max(y) > 0.0;
         let is_one = may_be && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })

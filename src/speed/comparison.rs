@@ -13,8 +13,8 @@ use crate::simulation::{Limits, RunError};
 /// Number of pairs of measured intervals.
 const ROUNDS: usize = 201;
 
-/// Number of ratios on either side of the interval. Of 201 tosses of a coin, fewer than 79 or more than 122
-/// are heads with a probability of 0.0018.
+/// Number of ratios on either side of the interval. In 201 tosses of a coin, fewer than 79 or more than 122
+/// heads have a probability of 0.0018.
 const OUTSIDE: usize = 78;
 
 /// Runs a copy of the simulation for `collisions` collisions, with disks or walls, and returns the report.
@@ -94,7 +94,7 @@ pub enum Finding {
     Noise,
     /// The other run is slower.
     Slower,
-    /// No two disks collided in one of the runs, so there is no time of a collision.
+    /// No two disks collided in one of the runs, so the time of a collision is not defined.
     Unknown,
 }
 
@@ -143,7 +143,7 @@ impl Comparison {
     /// The interval holds for this pair of trajectories only. A rule with other physics leads to another
     /// trajectory, which alone makes a difference of up to 2 % in a dilute gas: compare from several states,
     /// with `run_until` between them, and take the spread. The compiler places equal code at different
-    /// addresses, which makes another 1 or 2 %.
+    /// addresses, which makes a further difference of 1 or 2 %.
     pub const fn interval(&self) -> [f64; 2] {
         self.interval
     }

@@ -29,9 +29,9 @@ pub type PaperBox = Simulation<ContactDuration<Frictional>>;
 
 /// Number of disks in each standard state.
 const DISKS: usize = 1000;
-/// Oscillations of the paper's box until it has forgotten its lattice.
+/// Number of oscillations after which the paper's box has forgotten its lattice.
 const OSCILLATIONS: f64 = 500.0;
-/// Collisions of each disk until a gas has forgotten its lattice.
+/// Number of collisions of each disk after which a gas has forgotten its lattice.
 const COLLISIONS: u64 = 100;
 
 /// Returns the paper's box as a gas that fills it: $`g = 1/64`$, $`q = 0`$, $`\kappa = 0.03`$.
@@ -74,8 +74,8 @@ pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
     settled_gas(container, disks)
 }
 
-/// Returns an elastic gas of two sizes, 1 to 10, each with half of the disks' area, at the area fraction 0.4,
-/// periodic on all sides.
+/// Returns an elastic gas of disks of two sizes, in the ratio 1 to 10, each with half of the disks' area, at
+/// the area fraction 0.4, periodic on all sides.
 ///
 /// # Errors
 /// The errors of the builder, which do not occur for these fixed numbers.

@@ -1,9 +1,9 @@
-//! A stopwatch for the time on processors. Other work on the machine does not count.
+//! A stopwatch for processor time. Other work on the machine does not count.
 
 use std::fs;
 use std::time::{Duration, Instant};
 
-/// A stopwatch for the time on processors, which starts when it is made.
+/// A stopwatch for processor time, which starts when it is created.
 ///
 /// On Linux, time in which other programs have the processor does not count, and readings are accurate to a
 /// few microseconds. Elsewhere, the wall clock counts the seconds.

@@ -42,7 +42,7 @@ impl Bins {
     /// Checks that there is one entry for each bin.
     #[cfg(feature = "serde")]
     pub(crate) fn check_count(&self, count: usize) -> Result<(), ParameterError> {
-        accept(count == self.count, "number of values", "that of the bins", count as f64).map(|_| ())
+        accept(count == self.count, "number of values", "the number of bins", count as f64).map(|_| ())
     }
 
     pub(crate) const fn count(&self) -> usize {

@@ -21,7 +21,8 @@ const LARGEST: f64 = 1e100;
 ///    $`\epsilon_B`$ itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
 /// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
 ///    error from blocks of a quarter of the size by at most one and a half times its uncertainty;
-/// 3. for all larger blocks, the error exceeds $`\epsilon_B`$ by at most twice its own uncertainty.
+/// 3. for all larger blocks, the error exceeds $`\epsilon_B`$ by at most twice its own uncertainty;
+/// 4. the samples at the end that fill no block change the mean by at most $`2\epsilon_B`$.
 ///
 /// The first condition suffices for a series with one correlation time. The other conditions detect a second,
 /// longer correlation time with a small share of the variance, such as heat that slowly comes and goes in a

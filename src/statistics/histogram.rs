@@ -151,9 +151,9 @@ crate::gate::from_file! {
         let fits = all == u128::from(count) && count <= u64::MAX / 2;
         accept(fits, "count of a histogram", "the sum of its bins, and at most 2^63", count as f64)?;
         for ((share, before), count_of_bin) in shares.iter().zip(&before).zip(&counts) {
-            accept(before <= count_of_bin, "count of the blocks of a bin", "at most that of the bin", *before as f64)?;
+            accept(before <= count_of_bin, "count of the blocks of a bin", "at most the count of the bin", *before as f64)?;
             let blocks = share.count();
-            accept(blocks == count / block(&bins), "number of blocks", "that of the numbers", blocks as f64)?;
+            accept(blocks == count / block(&bins), "number of blocks", "the number of complete blocks in the count", blocks as f64)?;
         }
         Ok(Self { bins, counts, below, above, count, before, shares })
     }

@@ -14,16 +14,25 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Excess of a trusted error over its blocks' error, times the number of independent samples.
 ///
-/// A series is called converged if its error is small, and some errors are small by chance: the errors that
-/// are trusted are too small on average, the more so the fewer samples they have. With this excess, the true
-/// mean lies within two errors in nine cases of ten or more, at any length. The table of
+/// A series is called converged if its error is small, and some errors are small by chance. Trusted errors
+/// are therefore too small on average, especially those of few samples. With this excess, the true mean lies
+/// within two errors in nine cases of ten or more, at any length. The table of
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
+
+/// Largest effect on the mean of samples that fill no block, in errors of the blocks. In a long series this
+/// effect is less than half an error; if it exceeds this limit, the blocks do not show the scatter of the
+/// whole series.
+const LARGEST_REST: f64 = 2.0;
+
+/// Rounding of means, relative to the error of independent samples.
+const ROUNDING: f64 = 1e-6;
 
 /// The apparent standard error from blocks of one size.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlockError {
     pub(super) error: f64,
+    mean: f64,
     /// Relative uncertainty of the error itself.
     uncertainty: f64,
     blocks: u64,
@@ -35,17 +44,18 @@ impl BlockError {
         let count = blocks.count();
         // The uncertainty of a standard deviation of normal numbers.
         let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();
-        Self { error: blocks.standard_error(), uncertainty, blocks: count }
+        Self { error: blocks.standard_error(), mean: blocks.mean(), uncertainty, blocks: count }
     }
 }
 
-/// Returns the error of the smallest blocks for which it no longer grows, and that error raised by the share
-/// that [`EXCESS`] gives, or `None` if the error cannot be trusted. The levels are for sizes 1, 2, 4, ….
+/// Returns the error of the smallest blocks from which on the error no longer grows, and the same error
+/// raised by the share that [`EXCESS`] gives. Returns `None` if the error cannot be trusted. The levels are
+/// for sizes 1, 2, 4, ….
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];
-    // The error is compared with blocks of half and of a quarter of the size. Of two correlation times, the
-    // longer one shows as a slow rise.
+    // The error is compared with blocks of half and of a quarter of the size. The longer of two correlation
+    // times shows as a slow rise.
     let is_flat = |at: usize| {
         let here = levels[at];
         let tolerances = [1.0, 1.5].map(|factor| 1.0 + factor * here.uncertainty);
@@ -57,12 +67,18 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)>
         levels[at + 1..].iter().all(|larger| least(larger) <= levels[at].error)
     };
     let growth = |error: f64| error / levels[0].error;
+    let rest = |at: usize| (levels[at].mean - levels[0].mean).abs();
     let is_plateau = |&at: &usize| {
         let size = (1_u64 << at) as f64;
-        is_long_enough(size, samples, growth(levels[at].error)) && is_flat(at) && is_the_last_rise(at)
+        let shows_all = rest(at) <= LARGEST_REST * levels[at].error + ROUNDING * levels[0].error;
+        is_long_enough(size, samples, growth(levels[at].error))
+            && is_flat(at)
+            && is_the_last_rise(at)
+            && shows_all
     };
     let error = (1..known).find(is_plateau).map(|at| levels[at].error)?;
-    // The largest error, not the plateau's: here it matters how long the correlation may be.
+    // The largest error counts here, not the error of the plateau, since it matters how long the correlation
+    // may be.
     let largest = levels.iter().map(|level| level.error).fold(levels[0].error, f64::max);
     let growth = growth(largest);
     let independent = samples as f64 / (growth * growth);

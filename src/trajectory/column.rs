@@ -33,7 +33,7 @@ pub(super) enum Quantity {
 /// Number of the components of all quantities.
 pub(super) const SLOTS: usize = 38;
 
-/// Names in lower case, without spaces, `_` and `-`.
+/// The names of each quantity, in lower case and without spaces, `_` and `-`.
 const NAMES: [(Quantity, &str); 17] = {
     use Quantity as Q;
     [

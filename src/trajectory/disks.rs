@@ -295,7 +295,7 @@ impl Row<'_> {
     }
 }
 
-/// Returns the mass of a sphere, with the operations in the order of LAMMPS.
+/// Returns the mass of a sphere, with the operations in the same order as in LAMMPS.
 pub(super) fn sphere_mass(density: f64, radius: f64) -> f64 {
     4.0 * PI / 3.0 * radius * radius * radius * density
 }

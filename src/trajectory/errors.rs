@@ -169,7 +169,7 @@ pub enum ReadError {
         /// The name of the missing item.
         what: String,
     },
-    /// The numbers of a line do not make a disk.
+    /// The numbers of a line do not describe a disk.
     #[error("line {line} does not describe a disk")]
     Disk {
         /// Number of the line.
@@ -200,7 +200,7 @@ pub enum ReadError {
     /// A GSD file is damaged, or one of its frames does not describe disks.
     #[error("{reason}")]
     Gsd {
-        /// The frame and the chunk, and the condition that it should have met.
+        /// The frame and the chunk, and the condition that the chunk should have met.
         reason: String,
     },
     /// Disks overlap by more than rounding, or by more than the reader's tolerance.

@@ -33,11 +33,11 @@ use crate::{Disk, Gravity};
 /// ASE, chemfiles, MDAnalysis and OVITO agree on the meaning of the columns that they know. Symbols of
 /// elements are written because ASE accepts nothing else.
 ///
-/// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
-/// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the
-/// two components of the acceleration. The lattice of an open box ends above the highest disk. `Walls` has
-/// four numbers for each wall that moves, as [`Snapshot::moving_walls`] gives them: index, displacement to
-/// the right and up, and phase.
+/// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain` (left,
+/// right, bottom and top, where an open top is `inf`). Gravity is one number if it points down, and otherwise
+/// the two components of the acceleration. The lattice of an open box ends above the highest disk. `Walls`
+/// has four numbers for each wall that moves, as [`Snapshot::moving_walls`] gives them: index, displacement
+/// to the right and up, and phase.
 ///
 /// [`Snapshot::moving_walls`]: crate::observable::Snapshot::moving_walls
 ///
@@ -142,8 +142,8 @@ fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io:
     write!(out, "{right} {up} {:?} {:?}", unwrapped.x, unwrapped.y)
 }
 
-/// Returns the orientation as the first and the last component of a quaternion: cosine and sine of half of
-/// the angle.
+/// Returns the orientation as the first and the last component of a quaternion: cosine and sine of half the
+/// angle.
 pub(super) fn half_turn(disk: &Disk) -> [f64; 2] {
     let half = 0.5 * disk.angle();
     [libm::cos(half), libm::sin(half)]

@@ -41,13 +41,13 @@ enum Form {
 /// | `particles/orientation`, `angmom`, `moment_inertia` | rotation about the third axis |
 /// | `configuration/step`, `box` | number of the frame; width, height and depth |
 /// | `log/particles/id` | id of the disk in the run |
-/// | `log/time`, `gravity` (x, y), `center` (x, y) | in double precision; positions count from the center |
+/// | `log/time`, `gravity` (x, y), `center` (x, y) | double precision; positions relative to the center |
 /// | `log/domain` | left, right, bottom and top, which may be infinite |
 /// | `log/periodic` | 1 for each direction that is periodic, else 0 |
 /// | `log/walls/index`, `x`, `y`, `phase` | [moving walls](crate::observable::Snapshot::moving_walls) |
 ///
-/// The format knows only boxes that are periodic in both directions, and so do its readers. Take walls into
-/// account by `log/periodic`; [`recipes`](crate::guide::recipes) has the lines for freud.
+/// The format knows only boxes that are periodic in both directions, and so do its readers. Use
+/// `log/periodic` to take walls into account; [`recipes`](crate::guide::recipes) has the lines for freud.
 ///
 /// `gsd.hoomd.read_log` reads all of `log` if the number of disks is constant, and with `scalar_only=True`
 /// in any case.
@@ -101,7 +101,7 @@ pub struct Gsd;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Vtk;
 
-/// The format for the ending of the file's name, in letters of any case.
+/// The format that the ending of the file's name determines, in upper or lower case.
 ///
 /// | ending | format |
 /// |---|---|

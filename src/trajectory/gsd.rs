@@ -35,7 +35,7 @@ const I32: u8 = 7;
 const F32: u8 = 9;
 const F64: u8 = 10;
 
-/// Bytes of the name of a kind: its number and a zero.
+/// Number of bytes of the name of a kind: its number and a zero.
 const NAME: usize = 6;
 
 /// The chunks of each frame in their order: name, type, numbers in a row, rows.
@@ -146,10 +146,10 @@ fn write_log(snapshot: &Snapshot<'_>, [x, y]: [f64; 2], out: &mut Vec<u8>) {
     out.extend(walls.iter().flat_map(|wall| wall.2.to_le_bytes()));
 }
 
-/// Returns the center and the size of the box in a file. In the file, positions count from the center.
+/// Returns the center and the size of the box in a file. In the file, positions are measured from the center.
 ///
-/// The center of an open box is on its bottom, since the center of a box that ends above the highest disk
-/// would move, and with it the positions of all disks.
+/// The center of an open box is on its bottom. The middle of such a box moves with the highest disk, and all
+/// positions relative to the middle would move, too.
 fn seen_box(snapshot: &Snapshot<'_>) -> ([f64; 2], [f64; 2]) {
     let domain = snapshot.domain();
     let (x, width) = (0.5 * (domain.left + domain.right), domain.width());

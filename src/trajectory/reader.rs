@@ -16,7 +16,7 @@ use crate::quantity::non_negative;
 /// Reads disks from files of this crate and of other programs.
 ///
 /// The contents determine the format: extended XYZ, a dump of LAMMPS or LIGGGHTS, a data file of LAMMPS, GSD,
-/// or a table whose first line names its columns, divided by commas, semicolons, tabs or spaces. With the
+/// or a table whose first line names its columns, separated by commas, semicolons, tabs or spaces. With the
 /// feature `gzip`, the file may be compressed.
 ///
 /// Columns are recognized by their names, in any order and case. A position and a radius are needed; without
@@ -172,10 +172,10 @@ impl Reader {
     /// Reads a frame of an input.
     ///
     /// # Errors
-    /// If the input fails, is compressed and the feature is missing, is of no known format, or does not
-    /// have the frame. If a needed part is missing, a number cannot be read or is out of range, columns
-    /// contradict each other, or an id appears twice. If disks overlap, are outside the box, or do not lie
-    /// in a plane. The error names the line.
+    /// If the input fails, is compressed and the feature is missing, is of no known format, or does not have
+    /// the frame. Also if a needed part is missing, a number cannot be read or is out of range, columns
+    /// contradict each other, or an id appears twice. Also if disks overlap, are outside the box, or do not
+    /// lie in a plane. The error names the line.
     pub fn read_from(&self, input: impl BufRead) -> Result<State, ReadError> {
         self.state(source::frames(input)?)
     }

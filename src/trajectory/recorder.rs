@@ -23,9 +23,10 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 /// the frames in the file and does not write them twice. If they differ, the file is of another run, and the
 /// error says so. If the process died in the middle of a frame, the next frame overwrites the incomplete one.
 ///
-/// The recorder continues with the first sampling time after the last frame of the file. If the run is later
-/// than that, as from a checkpoint that is newer than the file, the run ends with an error, since frames
-/// would be missing. To accept the gap, give `times` a first time after it ([`SampleTimes::starting_at`]).
+/// The recorder continues with the first sampling time after the last frame of the file. If the run begins
+/// later than that, for example because its checkpoint is newer than the file, the run ends with an error,
+/// since frames would be missing. To accept the gap, give `times` a first time after the gap
+/// ([`SampleTimes::starting_at`]).
 ///
 /// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///
@@ -54,7 +55,7 @@ pub struct Recorder {
     clock: SampleTimes,
     sink: Sink,
     failure: Option<RecordError>,
-    /// Clock to restore so that the next run retries the failed frame.
+    /// The clock that the next run restores in order to retry the failed frame.
     before_failure: Option<SampleTimes>,
     /// True for a recorder that continues a file, until a run has followed the last frame of the file without
     /// a gap.
@@ -83,8 +84,8 @@ impl Recorder {
     /// The whole file is read once. For [`Gsd`](super::Gsd) and [`Vtk`](super::Vtk), only the index is read.
     ///
     /// # Errors
-    /// If the file cannot be opened, another recorder writes to it, it is not of this format, an older
-    /// version wrote it with other columns, or it has no whole frame. The file then stays unchanged.
+    /// If the file cannot be opened, if another recorder writes to it, if it is not of this format, if an
+    /// older version wrote it with other columns, or if it has no whole frame. The file then stays unchanged.
     pub fn append(
         path: impl AsRef<Path>,
         format: impl Into<FileFormat>,
@@ -95,7 +96,7 @@ impl Recorder {
 
     /// Creates a recorder that continues a file, or begins one that is absent or empty.
     ///
-    /// It suits a run that starts itself again after a kill, which may have come before the first frame.
+    /// It suits a run that is restarted automatically after it was killed, perhaps before the first frame.
     ///
     /// # Errors
     /// The errors of [`create`](Self::create) and [`append`](Self::append).

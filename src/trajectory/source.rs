@@ -8,7 +8,7 @@ use super::found::{Found, Frames};
 use super::lines::Input;
 use super::{csv, extended_xyz, gsd, lammps_data, lammps_dump};
 
-/// Bytes by which the format is recognized.
+/// Number of bytes by which the format is recognized.
 const HEAD: u64 = 1 << 14;
 
 /// Returns the frames of a file. A GSD file is not read completely.

@@ -3,7 +3,7 @@
 use super::WallMotion;
 use crate::roots::first_descent;
 
-/// Rounding of a gap, relative to the lengths whose difference it is.
+/// Rounding of a gap, relative to the two lengths whose difference is the gap.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Least room for a step, in units of the rounding. It makes sure that a search ends.
@@ -200,8 +200,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         Self { motion, approach, reach }
     }
 
-    /// Returns the first time, not before `time`, at which the wall could reach the surface if it were at its
-    /// highest position.
+    /// Returns the first time, not before `time`, at which the wall could reach the surface if the wall were
+    /// at its highest position.
     fn enters_reach(&self, time: f64) -> Option<f64> {
         let Approach { acceleration, .. } = *self.approach;
         let above = self.approach.height(time) - self.reach.1;
@@ -252,7 +252,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         }
     }
 
-    /// Returns the end of a bounce that begins at `start`, or `None` if it rises above rounding.
+    /// Returns the end of a bounce that begins at `start`, or `None` if the bounce rises above rounding.
     ///
     /// The gap itself does not show when such a bounce is over. However, the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and

@@ -4,10 +4,13 @@
 //! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
 //! compares two motions.
 
+mod pair;
+
+pub use pair::check_fingerprints;
+
 use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
 use crate::Violation;
-use crate::fingerprint::check_pair;
 use crate::violation::require;
 
 /// Number of samples in a piece.
@@ -30,15 +33,10 @@ const SHORT: f64 = 1e-9;
 const EXACT: f64 = 1e-8;
 const JUMPS: u32 = 8;
 
-/// Fraction of a piece over which the acceleration at its ends is measured.
+/// Fraction of a piece over which the acceleration at its ends is first measured, and number of these
+/// measurements, each over half of the previous fraction.
 const SLOPE: f64 = 3e-4;
-
-/// Number of phases at which two motions are compared, and the length of the interval in which they lie.
-const PHASES: u32 = 4000;
-const INTERVAL: f64 = 400.0;
-
-/// Number of later phases, each a fifth later than the previous one.
-const LATE: i32 = 40;
+const STEPS: u32 = 12;
 
 /// Checks that a motion keeps its contract between two phases.
 ///
@@ -93,34 +91,6 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     }
     let sentence = format!("{MOST_PIECES} pieces of its motion lead only from phase {from:?} to {phase:?}");
     Err(Violation::new(PART, "pieces", sentence))
-}
-
-/// Checks that two motions with different values have different fingerprints, and that two motions with equal
-/// values have the same fingerprint. Motions without a fingerprint are not compared.
-///
-/// The motions are compared at four thousand phases from −1 to 399, and at forty later phases.
-///
-/// # Errors
-/// If the fingerprints contradict the values.
-///
-/// ```
-/// use granular_edmd::wall::{Sinusoidal, laws};
-/// laws::check_fingerprints(&Sinusoidal::new(0.1, 10.0)?, &Sinusoidal::new(0.1, 11.0)?)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn check_fingerprints<M, N>(first: &M, second: &N) -> Result<(), Violation>
-where
-    M: WallMotion + ?Sized,
-    N: WallMotion + ?Sized,
-{
-    let differ = |&phase: &f64| first.state(phase) != second.state(phase);
-    let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
-    let late = (0..LATE).map(|k| INTERVAL * libm::pow(1.2, f64::from(k)));
-    let mut difference = phases.chain(late).find(differ).map(|phase| format!("at phase {phase:?}"));
-    if (first.reach(), first.period()) != (second.reach(), second.period()) {
-        difference = Some("in reach or period".to_owned());
-    }
-    check_pair(PART, [first.fingerprint(), second.fingerprint()], difference)
 }
 
 /// The checked motion, and its reach.
@@ -246,26 +216,43 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     }
 
     /// Checks that the bounds hold for the acceleration at both ends of a piece, from the velocity there.
+    ///
+    /// The slope of the velocity is measured over ever shorter steps. Where the acceleration is smooth, half
+    /// of a step leaves an error a quarter as large, so three slopes in a row show the error of the last: it
+    /// is a fifteenth of the sum of their differences. If a step is not short enough for this, or the
+    /// acceleration jumps within it, these differences are large. Twice their sum is allowed, and the
+    /// rounding.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
         if length < SHORT * (1.0 + start.abs()) {
             return Ok(());
         }
+        let AccelerationBounds { min, max, .. } = *bounds;
         let end = start + (1.0 - LAST) * length;
         for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
-            let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
-            let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
-            let step = next.phase - now.phase;
-            let [here, there, far] = [now, next, last].map(|sample| sample.state.velocity);
-            let found = (4.0 * there - 3.0 * here - far) / (2.0 * step);
-            let scale = bounds.min.abs().max(bounds.max.abs());
-            let slack = 4.0 * self.speed_rounding(now, bounds) / step.abs() + EXACT * scale;
-            let AccelerationBounds { min, max, .. } = *bounds;
-            let is_within = found >= min - slack && found <= max + slack;
-            require!(PART, "bounds", is_within;
-                "at phase {place:?} its velocity has the slope {found:?}, beyond its bounds {min:?} and \
-                 {max:?}");
+            let mut step = step;
+            let [mut first, mut second] = [f64::NAN; 2];
+            for _ in 0..STEPS {
+                let (slope, rounding) = self.slope(place, step, bounds)?;
+                let slack = 2.0 * ((first - second).abs() + (second - slope).abs()) + rounding;
+                let is_beyond = slope < min - slack || slope > max + slack;
+                require!(PART, "bounds", !is_beyond;
+                    "at phase {place:?} its velocity has the slope {slope:?} ± {slack:?}, beyond its bounds \
+                     {min:?} and {max:?}");
+                (first, second, step) = (second, slope, 0.5 * step);
+            }
         }
         Ok(())
+    }
+
+    /// Returns the slope of the velocity at the start of two steps, exact if the acceleration is linear
+    /// there, and its rounding.
+    fn slope(&self, place: f64, step: f64, bounds: &AccelerationBounds) -> Result<(f64, f64), Violation> {
+        let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
+        let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
+        let step = next.phase - now.phase;
+        let [here, there, far] = [now, next, last].map(|sample| sample.state.velocity);
+        let rounding = 4.0 * self.speed_rounding(now, bounds) / step.abs();
+        Ok(((4.0 * there - 3.0 * here - far) / (2.0 * step), rounding))
     }
 
     /// Checks that the wall does not jump toward the disks where a piece ends, and that the motion declares

@@ -40,8 +40,8 @@ impl Oscillation {
 #[inline]
 pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
     let mut number = (phase / length).floor();
-    // The end of a piece belongs to the next one. The quotient may be rounded down to the piece before. That
-    // piece would end at the requested phase, and a search would make no step.
+    // The end of a piece belongs to the next one. The quotient may be rounded down to the previous piece.
+    // That piece would end at the requested phase, and a search would make no step.
     if phase >= (number + 1.0) * length {
         number += 1.0;
     }
@@ -65,8 +65,8 @@ macro_rules! periodic {
             /// Creates a motion of this amplitude A and angular frequency ω.
             ///
             /// # Errors
-            /// If a number is not finite and positive, or the period or the peak acceleration would not be.
-            /// For a wall at rest, use [`Fixed`](super::Fixed).
+            /// If a number, the period or the peak acceleration is not finite and positive. For a wall at
+            /// rest, use [`Fixed`](super::Fixed).
             pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, crate::ParameterError> {
                 Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
             }

@@ -16,11 +16,11 @@ use crate::{Fingerprint, ParameterError};
 /// M\ddot z = F - k(z - z_0)
 /// ```
 ///
-/// between two impacts: a parabola or a sine, without a time step. Each disk that hits the wall changes its
-/// velocity by $`\Delta_n/M`$, as the collision rule says for partners of the masses $`m`$ and $`M`$. The
-/// wall is guided, so it takes any momentum along itself. A stop takes all of the wall's velocity: the wall
-/// rests there as long as the force presses it against the stop. A wall that turns around at a stop, up to
-/// 1e-7 of its speed, does not touch the stop.
+/// between two impacts: a parabola or a sine, without a time step. Each disk that hits the wall changes the
+/// wall's velocity by $`\Delta_n/M`$, as the collision rule says for partners of the masses $`m`$ and $`M`$.
+/// The wall is guided, so an impulse along its surface does not move it. A stop takes all of the wall's
+/// velocity: the wall rests there as long as the force presses it against the stop. A wall that turns around
+/// at a stop, up to 1e-7 of its speed, does not touch the stop.
 ///
 /// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall from a piston. A
 /// checkpoint keeps the present state of the wall; a file of the container keeps only its state at the start.
@@ -56,8 +56,8 @@ pub struct Piston {
 }
 
 impl Piston {
-    /// Creates a wall of this mass between a lower and an upper stop, given as displacements along its
-    /// normal, at rest at displacement 0 or at the stop nearest to 0, without forces.
+    /// Creates a wall of this mass between a lower and an upper stop, without forces. The stops are given as
+    /// displacements along the normal. The wall is at rest at displacement 0, or at the stop nearest to 0.
     ///
     /// # Errors
     /// If the mass is not finite and positive, or the stops are not finite and in order.

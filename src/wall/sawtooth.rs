@@ -6,8 +6,8 @@ use super::{AccelerationBounds, WallMotion, WallState};
 
 /// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
 ///
-/// The speed is $`A\omega/\pi`$. At phase 0 the wall is in its middle, and half a period later it jumps. A
-/// disk always meets the rising wall, as in the theory of gases on fast vibrating walls.
+/// The speed is $`A\omega/\pi`$. At phase 0 the wall is in its middle position, and half a period later it
+/// jumps. A disk always meets the rising wall, as in the theory of gases on fast vibrating walls.
 ///
 /// ```
 /// use granular_edmd::wall::{Sawtooth, WallMotion};

@@ -26,7 +26,7 @@ impl Scaled {
     /// Creates the motion times this factor.
     ///
     /// # Errors
-    /// If the factor or the largest displacement is not finite. If the factor is negative and the motion
+    /// If the factor or the largest displacement is not finite. Also if the factor is negative and the motion
     /// jumps, as a [`Sawtooth`](super::Sawtooth) does, since it would jump into disks.
     pub fn new(motion: impl WallMotion + Send + Sync + 'static, factor: f64) -> Result<Self, ParameterError> {
         Self::of(Motion::of(motion), factor)

@@ -5,7 +5,7 @@ use super::{AccelerationBounds, WallState};
 
 /// Returns the number of the stroke of this length in which `phase` lies, and the phase at which it ends.
 ///
-/// All oscillations begin in their middle, so the middle of stroke 0 is at phase 0.
+/// All oscillations begin in their middle position, so the middle of stroke 0 is at phase 0.
 fn centered(phase: f64, length: f64) -> (f64, f64) {
     let half = 0.5 * length;
     // The first half of a stroke has an odd number, and the second half an even one.

@@ -57,7 +57,7 @@ impl Tabulated {
     ///
     /// # Errors
     /// If there are fewer than two rows, a number is not finite, or a time is not later than the previous
-    /// time by more than rounding. If an acceleration would not be finite. Rows count from 0.
+    /// time by more than rounding. Also if an acceleration would not be finite. Rows are counted from 0.
     pub fn new(rows: impl IntoIterator<Item = (f64, f64)>) -> Result<Self, ParameterError> {
         let rows: Vec<(f64, f64)> = rows.into_iter().collect();
         accept(rows.len() > 1, "number of rows", "at least 2", rows.len() as f64)?;
@@ -146,8 +146,8 @@ fn arcs_to(row: usize, rows: &[(f64, f64)], velocities: &[f64]) -> Result<[Arc; 
     accept(from < middle && middle < to, format!("time of row {row}"), later(), to)?;
     let (first, second) = (middle - from, to - middle);
     let (start, end) = (velocities[row - 1], velocities[row]);
-    // The middle time is rounded. With the durations of both halves after rounding, the arcs meet at the same
-    // position and velocity.
+    // The middle time is rounded. The arcs take the durations of both halves after this rounding, so they
+    // meet at the same position and velocity.
     let share = first / (to - from);
     let velocity = 2.0 * slope(row, rows) - share * start - (1.0 - share) * end;
     let acceleration = |gain: f64, wait: f64| finite(format!("acceleration before row {row}"), gain / wait);

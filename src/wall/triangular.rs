@@ -6,7 +6,8 @@ use super::{AccelerationBounds, WallMotion, WallState};
 
 /// Triangular motion: from −A to A in half a period at constant speed, and back at the same speed.
 ///
-/// The speed is $`2A\omega/\pi`$. At phase 0 the wall is in its middle and rises, as in all oscillations.
+/// The speed is $`2A\omega/\pi`$. At phase 0 the wall is in its middle position and rises, as in all
+/// oscillations.
 ///
 /// ```
 /// use granular_edmd::wall::{Triangular, WallMotion};

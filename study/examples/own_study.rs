@@ -10,7 +10,9 @@
 //!
 //! It takes two seconds. You learn what an experiment is; the tables of the study are in `out/own_study`.
 
-use granular_edmd::boundary::{Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch};
+use granular_edmd::boundary::{
+    Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch, laws,
+};
 use granular_edmd::observable::CollisionCounts;
 use granular_edmd::prelude::*;
 use granular_edmd::quantity::{finite, non_negative};
@@ -71,6 +73,8 @@ impl Boundary for Drum {
     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
         let normal = self.rim.normal(position);
         let surface = Surface::new(normal, -self.spin * self.radius * normal.perp());
+        // The rim is hollow, so its radius is negative, and it turns at the same rate everywhere.
+        let surface = surface.with_radius(-self.radius).with_angular_velocity(self.spin);
         surface.with_response(Response::Thermal(self.heat))
     }
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
@@ -132,15 +136,18 @@ impl Experiment for Turning {
     }
 }
 
-fn plan() -> Result<Plan<Turning>, PlanError> {
-    Plan::new(Turning { disks: 60, loss: 0.1, spin: 0.1 }, Protocol::new(50, 1000, 1)?, 1)?
+fn plan(base: Turning) -> Result<Plan<Turning>, PlanError> {
+    Plan::new(base, Protocol::new(50, 1000, 1)?, 1)?
         .with_axis(Axis::new("loss", [0.0, 0.1, 0.3])?)?
         .with_axis(Axis::new("spin", [0.05, 0.1, 0.2])?)?
         .with_repeats(3)
 }
 
 fn main() -> anyhow::Result<()> {
-    let study = Study::open_or_create("out/own_study", &plan()?)?;
+    let base = Turning { disks: 60, loss: 0.1, spin: 0.1 };
+    // A drum that breaks the contract of boundaries would give wrong numbers in silence.
+    laws::check(&mut base.boundary()?, 0.5, 1.0, 1)?;
+    let study = Study::open_or_create("out/own_study", &plan(base)?)?;
     study.run(&Control::default())?;
     println!("loss  spin  angular momentum");
     for point in study.points() {

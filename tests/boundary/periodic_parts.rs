@@ -76,7 +76,7 @@ fn a_part_across_too_many_periods_is_refused() {
     let arm = Part::polyline([point(0.0, 1.0), point(100.0, 1.0)]).unwrap();
     let arm = arm.with_rotation(DVec2::ZERO, 0.1).unwrap();
     let error = Vessel::new(both).with("arm", arm).unwrap_err().to_string();
-    assert!(error.contains("and 256 are possible"), "{error}");
+    assert!(error.contains("at most 256 are possible"), "{error}");
     let upward = Part::polyline([point(3.0, 1.0), point(3.0, 1e6)]).unwrap();
     assert!(periodic().with("upward", upward).is_ok());
 }

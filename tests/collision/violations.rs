@@ -1,8 +1,10 @@
 //! The check for rules of users, which names each broken law, and passes everything that breaks none.
 
 use granular_edmd::Violation;
-use granular_edmd::collision::laws::{check_friction_cone, check_friction_opposes_slip, check_impulse};
-use granular_edmd::collision::{Contact, Impulse};
+use granular_edmd::collision::laws::{
+    Promises, check, check_friction_cone, check_friction_opposes_slip, check_impulse,
+};
+use granular_edmd::collision::{Contact, Impulse, from_fn};
 use granular_edmd::strategies::{contact, decades};
 use proptest::prelude::*;
 
@@ -115,6 +117,29 @@ fn messages_carry_the_numbers() {
         violation.found(),
         format!("the impulse (0.5, -0.25) makes the slip faster: 4.0 {}", of_contact("2.0"))
     );
+}
+
+/// The message has the impulse that the law expects and the one that the rule gives, and they differ.
+#[test]
+fn images_that_differ_are_shown() {
+    let chiral = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(0.5), -0.0625));
+    let violation = check(&chiral, &Promises::new().with_energy_gain()).unwrap_err();
+    assert_eq!(violation.law(), "mirror image");
+    let expected = "should be (0.75, 0.0625) in the mirror image, where tangential impulse and couple change \
+                    sign, but is (0.75, -0.0625) there";
+    let found = violation.found();
+    assert!(
+        found.starts_with(&format!("the impulse (0.75, -0.0625) {expected} (closing speed 1.0")),
+        "{found}"
+    );
+
+    let first = from_fn(|contact: &Contact| {
+        let turn = contact.spin_inertia() * contact.radii()[0];
+        Impulse::new(contact.normal_impulse(0.5), 0.0).with_couple(turn)
+    });
+    let promises = Promises::new().with_energy_gain().with_handedness();
+    let found = check(&first, &promises).unwrap_err().found().to_owned();
+    assert!(found.contains("in the exchange of partners, where the couple changes sign, but is "), "{found}");
 }
 
 /// Equality breaks no law: nothing happens to surfaces at rest.

@@ -81,7 +81,7 @@ fn check_pair(_: usize, pair: &mut Pair) -> Verdict {
         }
     };
     if let Err(violation) = &verdict {
-        assert_eq!(violation.found().starts_with("equal"), pair.act_alike, "{violation}");
+        assert_eq!(violation.found().contains("alike"), pair.act_alike, "{violation}");
     }
     verdict
 }
@@ -169,12 +169,15 @@ fn honest_parts_pass() {
     let all = [
         judged(blind::rules::honest(), check_rule),
         judged(blind::motions::honest(), check_motion),
+        judged(informed::motions::honest(), check_motion),
         judged(blind::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
         judged_drivings(blind::drivings::honest),
+        judged_drivings(informed::drivings::honest),
         judged(blind::observers::honest(), |_, observer| observable::laws::check(&mut **observer)),
         judged(blind::formats::honest(), |_, format| trajectory::laws::check(&**format)),
         judged(blind::fingerprints::honest(), check_pair),
+        judged(informed::fingerprints::honest(), check_pair),
     ];
     for (name, verdict) in all.into_iter().flatten() {
         assert_eq!(verdict, Ok(()), "{name}");

@@ -215,6 +215,21 @@ fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::er
     Ok(())
 }
 
+/// A disk exactly on the right side of a periodic box is in the first column, too.
+#[test]
+fn a_disk_on_a_seam_is_in_one_cell() -> Result<(), Box<dyn std::error::Error>> {
+    let container = Container::periodic(10.0, 10.0)?;
+    let disks = [2.0, 4.0, 6.0, 8.0, 10.0].map(|place| disk(place, place));
+    let disks = disks.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+    let region = Region::new(DVec2::ZERO, DVec2::splat(10.0));
+    let mut fields = Sampled::new(Fields::new(Grid::new(region, 5, 5)?), times()?);
+    run.run_until(5.0, &mut fields)?;
+    let counts: Vec<u64> = (0..5).filter_map(|index| Some(fields.cell(index, index)?.count)).collect();
+    assert!(counts[0] > 0 && counts.iter().all(|&count| count == counts[0]), "{counts:?}");
+    Ok(())
+}
+
 #[test]
 fn grids_without_extent_are_refused() {
     let region = |x: f64, y: f64| Region::new(DVec2::ZERO, DVec2::new(x, y));

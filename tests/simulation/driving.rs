@@ -3,7 +3,9 @@
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Elastic, Frictional};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{SampleTimes, Series, Temperatures};
+use granular_edmd::observable::{
+    Energies, Observable, Observer, SampleTimes, Series, Snapshot, Temperatures,
+};
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BuildError, Driving, Limits, Rescaling, RunEnd, RunError, WhiteNoise};
 use granular_edmd::{Disk, ParameterError, Simulation, initial};
@@ -60,6 +62,35 @@ fn a_driven_run_has_the_same_bits_in_pieces_and_under_any_scheduler() -> Outcome
     rescaled.run_driven(&Limits::until(10.0), &mut by, &mut ())?;
     in_pieces(&mut again, &mut also.clone(), 10.0)?;
     assert_eq!(rescaled.disks(), again.disks());
+    Ok(())
+}
+
+/// Notes the time and the energy at each start and end.
+#[derive(Default)]
+struct Ends {
+    starts: Vec<(f64, f64)>,
+    ends: Vec<(f64, f64)>,
+}
+
+impl Observer for Ends {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.starts.push((start.time(), Energies.measure(start).total()));
+    }
+    fn on_end(&mut self, end: &Snapshot<'_>) {
+        self.ends.push((end.time(), Energies.measure(end).total()));
+    }
+}
+
+#[test]
+fn an_observer_sees_the_disks_on_both_sides_of_a_kick() -> Outcome {
+    let (mut run, mut kicks, mut observer) = (gas()?, noise()?, Ends::default());
+    run.run_driven(&Limits::until(1.6), &mut kicks, &mut observer)?;
+    let times = |all: &[(f64, f64)]| all.iter().map(|(time, _)| (10.0 * time).round()).collect::<Vec<_>>();
+    assert_eq!(times(&observer.starts), [0.0, 4.0, 8.0, 12.0, 16.0]);
+    assert_eq!(times(&observer.ends), [4.0, 8.0, 12.0, 16.0, 16.0]);
+    let kicked = observer.ends.iter().zip(&observer.starts[1..]);
+    let gained: f64 = kicked.map(|(before, after)| after.1 - before.1).sum();
+    assert!((60.0 * gained - kicks.energy()).abs() < 1e-9, "{gained}, {}", kicks.energy());
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Frictional, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision, stop_when};
-use granular_edmd::simulation::{Limits, RunEnd, RunError};
+use granular_edmd::simulation::{Limits, Remedy, RunEnd, RunError};
 use granular_edmd::{Disk, Simulation};
 
 use crate::setups::{Log, elastic_gas, shaken_and_heated};
@@ -136,8 +136,8 @@ fn the_least_progress_is_the_callers() {
     let mut gas = elastic_gas(30, 20.0, 20.0, 0.0);
     let impatient = Limits::until(1e9).with_least_progress(1.0).unwrap();
     let error = gas.run(&impatient, &mut ()).unwrap_err();
-    let RunError::Stalled { events, elapsed, .. } = error else { panic!("{error}") };
-    assert_eq!(events, 200_600);
+    let RunError::Stalled { events, elapsed, remedy, .. } = error else { panic!("{error}") };
+    assert_eq!((events, remedy), (200_600, Remedy::LessProgress));
     assert!(elapsed > 0.0 && elapsed < 200_600.0, "{elapsed}");
     gas.run_until(gas.time() + 10.0, &mut ()).unwrap();
 }

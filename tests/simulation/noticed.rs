@@ -311,6 +311,32 @@ fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
     assert!(long[0].to_string().contains("of the time between two collisions"), "{}", long[0]);
 }
 
+/// Only one disk takes part in a collision with a wall.
+#[test]
+fn collisions_with_walls_count_once_for_a_contact_duration() {
+    let share = |duration: f64| {
+        let rule = ContactDuration::new(Smooth::from_restitution(0.99999).unwrap(), duration).unwrap();
+        let disk = Disk::new(DVec2::splat(2.0), 0.5).unwrap().with_velocity(DVec2::new(1.0, 0.7)).unwrap();
+        let container = Container::closed(4.0, 4.0).unwrap();
+        let mut run = Simulation::builder(rule, container).disks([disk]).build().unwrap();
+        run.run_until(1e4, &mut ()).unwrap();
+        let rate = run.counters().wall_collisions as f64 / 1e4;
+        let warnings = run.warnings();
+        let reported = warnings.iter().find_map(|warning| match warning {
+            Warning::LongContactDuration { share_of_time, .. } => Some(*share_of_time),
+            _ => None,
+        });
+        (reported, duration * rate)
+    };
+    let (reported, expected) = share(0.15);
+    assert!(
+        reported.is_some_and(|share| (0.7..1.0).contains(&(share / expected))),
+        "{reported:?} {expected}"
+    );
+    let (reported, expected) = share(0.08);
+    assert!(reported.is_none() && expected < 0.05, "{reported:?} {expected}");
+}
+
 /// A gravity of −0 is a gravity of 0, however it is set.
 #[test]
 fn gravity_has_no_sign_where_there_is_none() {

@@ -36,7 +36,7 @@ impl Brick {
     /// Disks are free inside. Angles are in radians from the $`x`$ axis.
     ///
     /// # Errors
-    /// If a number is not finite, the radius is not positive, or `to - from` is not above 0 and below a whole
+    /// If a number is not finite, the radius is not positive, or `to - from` is not between 0 and a whole
     /// turn.
     ///
     /// ```
@@ -111,7 +111,7 @@ impl Brick {
     /// Returns the same brick, rotated about a point, counterclockwise by this angle in radians.
     ///
     /// # Errors
-    /// If an argument is not finite, or a coordinate would not be.
+    /// If an argument or a resulting coordinate is not finite.
     pub fn rotated(self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
         let turn = direction(finite("angle", angle)?);
         self.moved(turn, finite_point(about)? - turn.rotate(about))

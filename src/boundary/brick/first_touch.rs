@@ -13,7 +13,7 @@ impl Brick {
     /// closes further; `None` if there is no such time.
     ///
     /// A custom [`Boundary`](crate::boundary::Boundary) can find its first touch with this method, which is
-    /// exact for constant acceleration. Only touches beside the brick count, not those at its ends: close
+    /// exact for constant acceleration. Only touches beside the brick count, not touches at its ends: close
     /// open ends with a [`point`](Self::point).
     ///
     /// ```
@@ -61,8 +61,8 @@ impl Brick {
         let side = self.side(path.place);
         if self.free.has(side) {
             // In most cases, the disk is beside the brick when it reaches the line or the circle, and this
-            // one root is enough. A disk beyond the end may be across the line already, and never reach it
-            // from the front.
+            // one root is enough. A disk beyond the end may be behind the line already, and then it never
+            // reaches the line from the front.
             let gap = self.gap(path, side);
             if gap[0] > 0.0 || beside.holds(0.0) {
                 match first_descent_of_quartic(&gap, wait) {
@@ -97,8 +97,8 @@ impl Brick {
         }
         let front = if side == Side::Left { Side::Right } else { Side::Left };
         if path.spread > 0.0 {
-            // The true disk comes out in front no earlier than the shrinking disk. The search looks again
-            // from that time.
+            // The true disk appears in front of the brick no earlier than the shrinking disk. The search
+            // looks again from that time.
             let shrinking = here.shrinking(path.radius);
             let opens = first_descent_of_quartic(&self.gap(&shrinking, front).map(|c| -c), wait)?;
             return Some(from + opens);

@@ -1,4 +1,4 @@
-//! The strip that a moving brick sweeps, and when a disk enters it.
+//! The strip that a moving brick sweeps, and the time at which a disk enters it.
 
 use glam::DVec2;
 
@@ -14,8 +14,8 @@ impl Brick {
     ///
     /// The strip is the band along the brick that is as wide as the stroke across it, and longer than the
     /// brick by the stroke at both ends. A rectangle around the brick in all its positions would be too
-    /// large. For a side at 45 degrees, disks would always be in it, and the search would follow them from
-    /// piece to piece of a motion that can never touch them.
+    /// large. For a side at 45 degrees, disks would always be in the rectangle, and the search would follow
+    /// them through every piece of a motion that never brings the brick to them.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         path: &Path,
@@ -49,9 +49,9 @@ impl Brick {
         first_descent_of_quartic(&self.gap(path, self.side(path.place)), wait)
     }
 
-    /// Returns the first time, not later than `wait`, at which a disk is in the ring of a brick that turns
-    /// about a point: its distance from that point then equals, up to the disk's radius, the distance of some
-    /// point of the brick.
+    /// Returns the first time, not later than `wait`, at which a disk is in the ring that a brick sweeps when
+    /// it turns about a point: the distance of the disk's center from that point then equals, up to the
+    /// disk's radius, the distance of some point of the brick.
     pub(in crate::boundary) fn wait_to_enter_ring(
         &self,
         path: &Path,

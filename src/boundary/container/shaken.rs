@@ -55,7 +55,8 @@ impl Container {
     ///
     /// # Errors
     /// If the motion gives numbers that are not finite, as for [`with_motion`](Self::with_motion), or jumps,
-    /// as a [`Sawtooth`](crate::wall::Sawtooth) does. If a side moves already, or floor or lid slides.
+    /// as a [`Sawtooth`](crate::wall::Sawtooth) does. Also if a side moves already, or the floor or the lid
+    /// slides.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Container, Wall};

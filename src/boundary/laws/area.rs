@@ -12,7 +12,7 @@ use glam::DVec2;
 use super::Random;
 use super::trial::{PART, Trial};
 use crate::Violation;
-use crate::boundary::{Boundary, Probe, Region};
+use crate::boundary::{Boundary, Domain, Probe, Region};
 use crate::violation::require;
 
 /// Least and largest number of times that a region is halved where a wall goes through.
@@ -33,16 +33,37 @@ const BEND: f64 = 0.01;
 /// in about a hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
 const SLACK: f64 = 2e-5;
 
-/// Checks the free areas of the domain and of a random region, for centers of disks and for matter.
+/// Checks the free areas of the domain, of a random region and of a narrow one, for centers of disks and for
+/// matter. Beyond its walls, the domain has no free area.
 pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> Result<(), Violation> {
     let (low, high) = trial.rectangle();
     let any = |random: &mut Random| DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));
     let (one, other) = (any(random), any(random));
-    for region in [Region::new(low, high), Region::new(one.min(other), one.max(other))] {
-        check_area(trial, &region, trial.radius, time)?;
-        check_area(trial, &region, 0.0, time)?;
+    let mut thin = || libm::exp10(random.between(-2.0, 0.0));
+    let narrow = DVec2::new(thin(), thin());
+    let narrow = Region::new(one, (one + narrow * (high - low)).min(high));
+    let Domain { periodic_sides, periodic_ends, top, .. } = trial.domain;
+    let beyond = trial.radius * DVec2::new(is(!periodic_sides), is(!periodic_ends));
+    let above = beyond * DVec2::new(1.0, is(top == high.y));
+    for radius in [trial.radius, 0.0] {
+        let whole = Region::new(low, high);
+        for region in [whole, Region::new(one.min(other), one.max(other)), narrow] {
+            check_area(trial, &region, radius, time)?;
+        }
+        let area = |region| trial.boundary.area(&region, radius, time);
+        let (inside, all) = (area(whole), area(Region::new(low - beyond, high + above)));
+        let is_same =
+            inside.zip(all).is_none_or(|(inside, all)| (inside - all).abs() <= SLACK * whole.area());
+        require!(PART, "area", is_same;
+            "the area for centers of disks of radius {radius:?} in the domain at {time:?} is {inside:?}, but with \
+             a strip beyond the walls {all:?}");
     }
     Ok(())
+}
+
+/// Returns 1 for true and 0 for false.
+fn is(condition: bool) -> f64 {
+    f64::from(u8::from(condition))
 }
 
 fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Result<(), Violation> {

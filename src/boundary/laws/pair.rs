@@ -16,9 +16,14 @@ const FLIGHTS: usize = 1000;
 /// Number of contacts in which the rules of two walls are compared.
 const CONTACTS: usize = 300;
 
-/// Checks that two boundaries with different results have different fingerprints, and that two boundaries
-/// with equal results on a thousand flights have the same fingerprint. Boundaries without a fingerprint are
-/// not compared.
+/// Checks that two boundaries with different results have different fingerprints, and that two boundaries of
+/// one type with equal results on a thousand flights have the same fingerprint. Boundaries without a
+/// fingerprint are not compared.
+///
+/// The flights are as in [`check`](super::check), also in their times and kinds. Boundaries that differ only
+/// elsewhere, for example in walls that begin to move later, are alike to the check, and if both are of one
+/// type, it refuses different fingerprints. Boundaries of two types may act alike and have different
+/// fingerprints.
 ///
 /// The check sets the time origins of both boundaries, and gives the second the state of the first.
 ///
@@ -43,8 +48,9 @@ where
 {
     let (domain, other) = (first.domain(), second.domain());
     let fingerprints = [first.fingerprint(), second.fingerprint()];
+    let judge = |difference| check_pair::<A, B>(PART, fingerprints, difference);
     if (domain, first.interior()) != (other, second.interior()) {
-        return check_pair(PART, fingerprints, Some(format!("in their domains {domain} and {other}")));
+        return judge(Some(format!("in their domains {domain} and {other}")));
     }
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(7));
     let (mut first, mut second) = (first, second);
@@ -61,16 +67,16 @@ where
         one.begin(origin)?;
         other.set_origin(origin);
         if other.take_state(&one.state).is_err() {
-            return check_pair(PART, fingerprints, Some("in their states".to_owned()));
+            return judge(Some("in their states".to_owned()));
         }
         let until = flight.time() + one.length() / speed;
         let answers = [answer(&one, &flight, until), answer(&other, &flight, until)];
         if answers[0] != answers[1] {
-            return check_pair(PART, fingerprints, Some(format!("on {flight:?}: {answers:?}")));
+            return judge(Some(format!("on {flight:?}: {answers:?}")));
         }
     }
     // Walls that begin otherwise, and then are the same, may or may not have the same fingerprint.
-    if are_alike { check_pair(PART, fingerprints, None) } else { Ok(()) }
+    if are_alike { judge(None) } else { Ok(()) }
 }
 
 /// Returns the results of a boundary for a flight, as text.

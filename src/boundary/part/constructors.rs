@@ -12,8 +12,8 @@ use crate::quantity::accept;
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.
     ///
-    /// The wall is behind a one-sided brick. A brick with a free end should therefore be
-    /// [two-sided](Brick::two_sided), because disks come around the end.
+    /// A one-sided brick has the wall behind it. A brick with a free end should therefore be
+    /// [two-sided](Brick::two_sided), because disks can come around the end.
     ///
     /// # Errors
     /// If there are no bricks.

@@ -18,9 +18,9 @@ impl Part {
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`check_finite`](crate::wall::check_finite) examines. If the motion jumps, as a
+    /// that [`check_finite`](crate::wall::check_finite) examines. Also if the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
-    /// would jump. A part that turns has no such side, so no motion of it may jump.
+    /// would jump. For a part that turns, this side changes with time, so its motion may not jump at all.
     pub fn with_motion(
         self,
         direction: DVec2,
@@ -34,21 +34,22 @@ impl Part {
     /// Returns the same part, turning about a point, counterclockwise at this angular velocity, in place of
     /// an earlier rotation.
     ///
-    /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
-    /// and the displacement $`z`$, the point that was built at $`r`$ is, at the time $`t`$, at
+    /// With a [motion](Self::with_motion), the center of rotation moves with the part. With the center $`c`$,
+    /// the direction $`e`$ and the displacement $`z`$, a point of the part that was built at $`r`$ is at the
+    /// following position at the time $`t`$:
     ///
     /// ```math
     /// c + z(t)\,e + R(\omega t)\,(r - c),\qquad\text{at the velocity}\quad
     /// \dot z(t)\,e + \omega\,R(\omega t)\,(r - c)_\perp .
     /// ```
     ///
-    /// A circle about that point stays in place; only its surface moves. Any other part has the position in
-    /// which it was built at time 0 and after each whole turn.
+    /// A circle about that center stays in place; only its surface moves. At time 0 and after each whole
+    /// turn, any other part is in the position in which it was built.
     ///
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
-    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn.
-    /// If the part has a motion that jumps.
+    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn. Also
+    /// if the part has a motion that jumps.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};
@@ -127,7 +128,7 @@ impl Part {
     /// The direction of its motion and the point about which it turns rotate with it.
     ///
     /// # Errors
-    /// If an argument is not finite, or a coordinate would not be.
+    /// If an argument or a resulting coordinate is not finite.
     pub fn rotated(mut self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
         for brick in self.bricks.iter_mut().chain(&mut self.corners) {
             *brick = brick.rotated(about, angle)?;

@@ -10,9 +10,6 @@ use crate::boundary::vector::direction;
 use crate::wall::Motion;
 use crate::{Fingerprint, Flight};
 
-/// Largest number of pieces of a motion that are looked at.
-const MOST_PIECES: u32 = 1000;
-
 /// Number of pieces into which a turn is divided. On each piece, a flight in the turning frame counts as a
 /// parabola with an error.
 const PIECES: f64 = 16.0;
@@ -238,15 +235,6 @@ impl Travel {
         self.reach().1 - self.reach().0
     }
 
-    /// Returns whether the path of each point is known exactly, in pieces of constant acceleration.
-    ///
-    /// The pieces are followed over a period, or as far as a motion without a period has them, so that a
-    /// motion that begins late shows, too.
-    pub(in crate::boundary) fn is_exact(&self) -> bool {
-        let along = self.along.as_ref().map(|along| &along.motion);
-        self.frame().is_none() && along.is_none_or(has_constant_pieces)
-    }
-
     /// Returns the time, at most `wait`, until a disk on this path in the frame at rest enters the strip that
     /// a brick of the part sweeps: all positions at which the disk touches the brick at some phase.
     pub(in crate::boundary) fn wait_to_enter_strip(
@@ -309,23 +297,6 @@ impl Travel {
         let along = along.part(motion.fingerprint()?);
         Some(turning.map_or(along, |turning| along.part(turning)))
     }
-}
-
-/// Returns whether the acceleration is constant in each piece of a motion.
-fn has_constant_pieces(motion: &Motion) -> bool {
-    let end = motion.period().unwrap_or(f64::INFINITY);
-    let mut phase = 0.0;
-    for _ in 0..MOST_PIECES {
-        let bounds = motion.acceleration(phase);
-        if bounds.min != bounds.max {
-            return false;
-        }
-        if bounds.until >= end || bounds.until <= phase {
-            break;
-        }
-        phase = bounds.until;
-    }
-    true
 }
 
 /// Returns a path in the frame that turns about the origin, with the error that it can have in this time. The

@@ -90,7 +90,7 @@ impl Index {
     /// Returns the bricks that may enter a rectangle, some of them several times.
     pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = Entry> {
         let (columns, rows) = self.span(min, max);
-        // In a row, the entries of a cell follow the entries of the cell before.
+        // In a row, the entries of a cell follow the entries of the previous cell.
         rows.flat_map(move |row| {
             let before = row * self.columns;
             self.entries_of(before + columns.start..before + columns.end)

@@ -10,30 +10,40 @@ use crate::boundary::part::{Travel, Turning};
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
-/// one round more. The engine reads the clock every 256 events, so it still keeps a limit of wall-clock time.
+/// one more round. The engine reads the clock every 256 events, so it still respects a limit of wall-clock
+/// time.
 const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the search continues with the next brick.
 ///
-/// A brick that moves fast near the disk may take many steps, and never touch the disk because another brick
-/// touches it first. A turning arm has such a brick on its trailing side. The rounds keep it from taking all
-/// the steps.
+/// A brick that moves fast near the disk may take many steps without ever touching the disk, because another
+/// brick touches the disk first. A turning arm has such a brick on its trailing side. The rounds keep such a
+/// brick from taking all the steps.
 const STEPS_IN_A_ROUND: u32 = 16;
 
-/// Gap below which surfaces count as touching, relative to the lengths whose difference the gap is.
+/// Gap below which surfaces count as touching, relative to the two lengths whose difference is the gap.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Gap, relative to the radius, and deviation of the normal, up to which a patch lies in a wall.
+/// Largest gap, relative to the radius, and largest deviation of the normal, for which a patch counts as
+/// lying in a wall.
 const IN_WALL: f64 = 1e-9;
 
 /// Margin of the strip that a brick sweeps, relative to the lengths in the search.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
+/// Radius of the point that stands for the center of a disk at a line for centers, relative to the radius of
+/// the disk. It is far above rounding and far below any length that is measured.
+///
+/// A point without a radius could get through the line, because rounding can put it behind the line as it
+/// arrives. If all events are predicted anew just then, the new search finds a point that flies away from the
+/// line.
+const CENTER: f64 = 1e-7;
+
 /// Longest flight for which entries into the strip are computed. Squares of longer times would overflow.
 const LONGEST: f64 = 1e150;
 
-/// Least period of a part, in units of the distance between two floating-point times. The position of a part
-/// that is faster is not defined.
+/// Least period of a part, in units of the distance between two floating-point times. Floating-point times do
+/// not determine the position of a faster part.
 const LEAST_PERIOD: f64 = 64.0;
 
 impl Vessel {
@@ -77,14 +87,14 @@ impl Vessel {
         if moving.is_empty() { first } else { self.search(&moving, flight, until, first) }
     }
 
-    /// Returns the flight as seen from a periodic image of a brick. For a brick that takes centers, it is the
-    /// flight of a point.
+    /// Returns the flight as seen from a periodic image of a brick. For a brick that takes out centers, the
+    /// disk shrinks to its center.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
         let is_line = self.parts[self.walls[entry.wall as usize].part].part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
             return *flight;
         }
-        let (time, radius) = (flight.time(), if is_line { 0.0 } else { flight.radius() });
+        let (time, radius) = (flight.time(), if is_line { CENTER } else { 1.0 } * flight.radius());
         let (place, velocity) = (flight.position(time), flight.velocity(time));
         Flight::new(time, place - entry.image, velocity, flight.acceleration(), radius)
             .with_kind(flight.kind())
@@ -192,7 +202,7 @@ impl Vessel {
 ///
 /// A fast part has many pieces of motion during a flight. A disk, however, can touch the part only in the
 /// strip that the part sweeps, and the part sweeps all of the strip within a period. The search therefore
-/// goes straight to the time at which the disk enters the strip, and is over a few pieces later.
+/// goes straight to the time at which the disk enters the strip, and ends a few pieces later.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,

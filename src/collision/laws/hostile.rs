@@ -82,12 +82,16 @@ fn mild_contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
-/// Returns an ordinary contact of each kind with the same kind, with the default kind, and with a wall.
+/// Returns an ordinary contact of each kind with the same kind, with the default kind, with a wall, and, if
+/// it is below 256, with all smaller kinds.
 pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
     let contact = Contact::new(1.0, 0.5, 0.5, 0.25);
-    (0..u16::MAX).map(Kind::new).flat_map(move |kind| {
+    (0..u16::MAX).flat_map(move |number| {
+        let kind = Kind::new(number);
         let partners = [(kind, 0.5), (Kind::DEFAULT, 0.5), (Kind::WALL, f64::INFINITY)];
-        partners.map(|(partner, radius)| between(contact, ([kind, partner], [0.5, radius])))
+        let smaller = 1..if number < 256 { number } else { 1 };
+        let partners = partners.into_iter().chain(smaller.map(|number| (Kind::new(number), 0.5)));
+        partners.map(move |(partner, radius)| between(contact, ([kind, partner], [0.5, radius])))
     })
 }
 

@@ -31,11 +31,12 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
         Ok(Self { boundary, room: cut(boundary.interior(), below)? })
     }
 
-    /// Checks that no wall that reacts moves before it is hit, and that no wall takes disks out that the
-    /// reason of a failed run names.
+    /// Checks that each wall that reacts stands still until it is hit, and that the reason of a failed run
+    /// names no sink.
     ///
-    /// The interior ends where a wall that reacts is at the start. If it moves far, it comes among the disks.
-    /// A line that takes out centers is in the middle of disks that it should hold here.
+    /// The interior ends at the initial position of a wall that reacts. If that wall moves far, it comes
+    /// among the disks. A line that takes out centers lies among the disks, which it would have to hold back
+    /// here.
     pub(super) fn check_walls(&self, reason: &str) -> Result<(), ParameterError> {
         (0..self.boundary.wall_count()).try_for_each(|wall| stands(self.boundary, wall, &self.room, reason))
     }

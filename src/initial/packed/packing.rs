@@ -131,8 +131,8 @@ impl<'a> Packing<'a> {
     }
 }
 
-/// Returns the disks in motion at random positions, with this scale of their radii. The largest disks are
-/// placed first.
+/// Returns the disks in motion at random positions, with their radii multiplied by this factor. The largest
+/// disks are placed first.
 fn placed<B: Boundary + ?Sized>(
     room: &Enclosure<B>,
     full: &[Disk],

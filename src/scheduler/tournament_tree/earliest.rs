@@ -114,7 +114,7 @@ mod tests {
             |times, one, other| avx512::earliest_without(times, one, other)
     }
 
-    /// A time anywhere, or one of few: ties, both zeros and both infinities.
+    /// Returns a random time, or one of a few values, so that ties, both zeros and both infinities occur.
     fn time(generator: &mut Xoshiro256PlusPlus) -> f64 {
         const FEW: [f64; 7] = [f64::NEG_INFINITY, -1.0, -0.0, 0.0, 1.0, f64::MAX, f64::INFINITY];
         if generator.random() { FEW[generator.random_range(0..FEW.len())] } else { generator.random() }

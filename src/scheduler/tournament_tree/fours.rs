@@ -28,7 +28,7 @@ impl Entry {
     #[inline]
     fn earlier(self, other: Self) -> Self {
         // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow,
-        // since no time has the largest order; for this reason, `EMPTY` has the order before it.
+        // since no time has the largest order; for this reason, `EMPTY` has the order just below it.
         let wins = other.order < self.order + u64::from(other.disk < self.disk);
         Self {
             order: select_unpredictable(wins, other.order, self.order),

@@ -29,7 +29,7 @@ struct Player {
 impl Player {
     const NOBODY: Self = Self { disk: NOTHING_DUE.0, due: NOTHING_DUE.1 };
 
-    /// Returns whether this player comes first. At equal times, the smaller disk does.
+    /// Returns whether this player comes first. At equal times, the smaller disk comes first.
     #[inline(always)]
     fn is_before(self, other: Self) -> bool {
         select_unpredictable(self.disk < other.disk, self.due <= other.due, self.due < other.due)
@@ -179,10 +179,11 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
                 self.runner_up = if round == 0 { beside } else { self.runner_up.or(beside) };
                 continue;
             }
-            // Both play in the last match. The climber is compared last of all, since its time is known last.
+            // Both play in the last match. The `climber` is compared last of all, since its time is known
+            // last.
             let others = matches[0].earliest_without(winners_seat, seat, earliest);
             matches[0].seat(seat, climber);
-            // If both came from the same match of the round before, the climber was compared there, in
+            // If both came from the same match of the round before, the `climber` was compared there, in
             // `beside`.
             let is_beside = seat == winners_seat;
             let late = Player { due: if is_beside { f64::INFINITY } else { climber.due }, ..climber };
@@ -191,7 +192,8 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
         self.winner = winner;
     }
 
-    /// Sets the time of a player who is not the winner. Returns whether that changes winner or runner-up.
+    /// Sets the time of a player who is not the winner. Returns whether that changes the winner or the
+    /// runner-up.
     #[inline(always)]
     fn replace_other(&mut self, player: Player, earliest: impl Earliest) -> bool {
         let (mut index, mut winner) = (player.disk, self.winner.disk);

@@ -43,7 +43,7 @@ impl Block {
     }
 
     /// Returns the crowd that holds the cell's other disks, or `None` if all disks of the cell fit into the
-    /// block. Its number is in the last slot.
+    /// block. The number of the crowd is in the last slot.
     pub(super) fn crowd(&self) -> Option<u32> {
         (self.count() == CROWDED).then_some(self.0[SLOTS - 1])
     }

@@ -7,7 +7,7 @@
 use super::cell_size::{CellSize, FREE_PATHS, SPARE_SMALL_CELLS};
 use super::size_class::SizeClass;
 
-/// Assumed area fraction. Since it is fixed, the classes depend on the disks alone.
+/// Assumed area fraction. It is fixed, so that the classes depend on the disks alone.
 const AREA_FRACTION: f64 = 0.4;
 
 /// Assumed largest number of cells per disk.

@@ -99,7 +99,7 @@ impl Crowds {
         SEATS * self.parts.capacity()
     }
 
-    /// Returns the number of all parts, of crowds or free.
+    /// Returns the number of all parts, in crowds and free.
     #[cfg(test)]
     pub(super) fn parts(&self) -> usize {
         self.parts.len()

@@ -3,11 +3,11 @@
 use super::layout::Layout;
 use crate::boundary::Domain;
 
-/// Moves the outermost edges out by a margin.
+/// Moves the outermost edges outward by a margin, or inward if it is negative.
 pub(super) fn widen(edges: &mut [f64], margin: f64) {
     // Cells keep their disks up to a margin beyond their edges (`Grid::region`). At periodic sides, the
-    // margin would take disks out of the domain. The outermost edges are therefore moved inward by the
-    // margin, so that edge and margin together end at the side.
+    // margin would take disks out of the domain. `Grid::new` therefore moves the outermost edges inward by
+    // the margin, so that edge and margin together end at the side, and `Grid::edges` moves them back.
     if let [first, .., last] = edges {
         *first -= margin;
         *last += margin;
@@ -24,8 +24,9 @@ pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64>
     edges
 }
 
-/// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
-/// height, so a disk that flies high does not share its cell with all other disks at great heights.
+/// Returns the edges of the rows. In an open container, the rows in the upper half become higher in
+/// proportion to their height above the floor, so a disk that flies high does not share its cell with all
+/// other disks at great heights.
 pub(super) fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
     /// Ratio of heights from row to row. A few more rows then reach exponentially higher.
     const GROWTH: f64 = 1.1;

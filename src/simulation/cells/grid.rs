@@ -21,8 +21,8 @@ pub(in crate::simulation) struct Grid {
     /// at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
-    /// Distance beyond its edges up to which a cell keeps its disks, so that fewer disks pass from one cell
-    /// to another.
+    /// Distance beyond the edges of a cell up to which the cell keeps its disks, so that fewer disks pass
+    /// from one cell to another.
     pub(super) margin: DVec2,
     /// Horizontal and vertical period of the domain; 0 where it is not periodic.
     periods: DVec2,

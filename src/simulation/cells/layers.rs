@@ -23,10 +23,10 @@
 //! many to search.
 //!
 //! The two disks of a pair must find each other, whichever of them searches. The large disk searches the
-//! homes within its reach. The small disk cannot look up: the cells above it that reach its home are too
-//! many. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it lies. When the
-//! large disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought
-//! up to date there, and only the small disks there are new partners.
+//! homes within its reach. The small disk cannot search for large ones, since too many cells of the larger
+//! classes reach its home. Each home therefore keeps a list of *visitors*, the larger disks in whose reach it
+//! lies. When the large disk enters the next cell, only the rims of the reach and of the hole change. The
+//! lists are brought up to date there, and only the small disks there are new partners.
 
 use glam::DVec2;
 

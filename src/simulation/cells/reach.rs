@@ -46,9 +46,9 @@ pub(super) struct Homes<'a> {
 /// The range of distances between the centers of two disks that touch, one of each of two classes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Distances {
-    /// The distance of the centers when the largest disks touch.
+    /// The distance between the centers when the largest disks touch.
     pub(super) most: f64,
-    /// The distance of the centers when the smallest disks touch.
+    /// The distance between the centers when the smallest disks touch.
     pub(super) least: f64,
 }
 
@@ -243,7 +243,7 @@ mod tests {
     use crate::simulation::cells::grid::{Grid, Place};
     use crate::simulation::cells::layout::Layout;
 
-    /// Returns a grid of cells of this size on a square of 60.
+    /// Returns a grid of cells of this size on a square of side 60.
     fn grid(container: &Container, pitch: f64) -> Grid {
         let count = (60.0 / pitch).round() as u32;
         let pitch = glam::DVec2::splat(60.0 / f64::from(count));

@@ -1,8 +1,8 @@
 //! Checks that the contents of a checkpoint are a state from which the engine can continue.
 //!
-//! A checksum shows accidents, not intent: anyone can compute it anew over any numbers. Therefore, all
+//! A checksum reveals accidents but not intent: anyone can compute it anew over any numbers. Therefore, all
 //! numbers must pass the bounds of the constructors, and all events must be at possible places and times. A
-//! run from here may be unphysical, but it does not panic and does not hang.
+//! run that continues from such contents may be unphysical, but it neither panics nor hangs.
 
 use std::collections::HashMap;
 

@@ -1,26 +1,39 @@
 //! Checks of a driving's contract, for custom drivings.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::Driving;
+use crate::random::uniform;
 use crate::violation::require;
 use crate::{Disk, Kind, ParameterError, Violation};
 
 const PART: &str = "driving";
 
 /// Number of kicks of a check, and number of disks.
-const KICKS: usize = 200;
+const KICKS: usize = 1600;
 const DISKS: usize = 16;
 
-/// Number of kicks after which the check interrupts a run.
+/// Number of kicks after which the check interrupts a run, and after which the disks are again as at first,
+/// so that they become neither too fast nor too slow.
 const CUT: usize = 7;
+const AGAIN: usize = 200;
 
 /// Allowed rounding of a momentum, relative to the sum of all magnitudes.
 const ROUNDING: f64 = 1e-13;
 
 /// Smallest and largest mean square of the kicks at a position in the list, relative to the mean of all
-/// positions. Two hundred random kicks scatter by a tenth.
-const FAIR: [f64; 2] = [0.4, 1.8];
+/// positions. If each kick changes one disk at random, they scatter by a tenth.
+const FAIR: [f64; 2] = [0.5, 1.6];
+
+/// Largest correlation of two kicks in a row at a position in the list, beyond the correlation at any other
+/// two positions. Random kicks have a correlation of a hundredth.
+const CORRELATED: f64 = 0.2;
+
+/// Largest change of a velocity that counts as rounding, and smallest one that counts as another kick.
+const SAME: f64 = 1e-9;
+const OTHER: f64 = 1e-6;
 
 /// The promises of a driving. Every driving also promises kicks that only change velocities and spins, that
 /// are alike for all disks in the list, and that repeat to the bit.
@@ -64,22 +77,26 @@ impl Promises {
     }
 }
 
-/// Checks that drivings keep their contract and these promises, in two hundred kicks of sixteen disks.
+/// Checks that drivings keep their contract and these promises, in 1600 kicks of sixteen disks.
 ///
 /// The closure `make` returns a fresh driving each time. Two drivings kick the same disks: one in a run, and
-/// one in a run that is cut into two. The page "Validation" says which planted faults the check finds.
+/// one in a run that is cut into two. The order of the disks changes from kick to kick.
+///
+/// Three more drivings show a memory by the position in the list. If the kicks are the same in two orders
+/// that never change, they must also be the same in an order that changes. Otherwise, since random numbers
+/// may be drawn in the order of the list, a kick must only not resemble the previous one at its position. The
+/// page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first promise that is broken.
 pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result<(), Violation> {
     let mut make = make;
-    let failed = |error: ParameterError| Violation::new(PART, "no failure", error.to_string());
-    let disks = disks().map_err(failed)?;
+    let disks = disks().map_err(|error| failed(&error))?;
     let (mut whole, mut cut) = (make(), make());
-    let (mut first, mut second) = (disks.clone(), disks);
-    let (mut squares, mut counted) = ([0.0; DISKS], 0);
-    whole.kick(&mut []).and_then(|()| cut.kick(&mut [])).map_err(failed)?;
-    let mut last = 0.0;
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    let (mut sums, mut latest) = (Sums::default(), None);
+    whole.kick(&mut []).and_then(|()| cut.kick(&mut [])).map_err(|error| failed(&error))?;
+    let (mut last, mut random) = (0.0, Xoshiro256PlusPlus::seed_from_u64(1));
     for driving in [&mut whole, &mut cut] {
         driving.times().start_at(last);
     }
@@ -87,40 +104,140 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
         if number == CUT {
             cut.times().start_at(last);
         }
+        if number % AGAIN == 0 {
+            (first, second) = (disks.clone(), disks.clone());
+        }
         let again = number % 4;
         let (time, other) = (upcoming(&mut whole, last, again)?, upcoming(&mut cut, last, again)?);
         require!(PART, "clock", time == other;
             "kick {number} is at {time:?}, and at {other:?} if the run is cut");
         let before = first.clone();
-        whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(failed)?;
+        whole.kick(&mut first).and_then(|()| cut.kick(&mut second)).map_err(|error| failed(&error))?;
         check_kick(&before, &first, *promises, number)?;
         require!(PART, "repeatable", first == second; "kick {number} of two equal drivings differs");
-        let kicks = squares_of(&before, &first);
-        let energy: f64 = before.iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
-        let all: f64 = kicks.iter().sum();
-        // A kick that is zero up to rounding shows nothing about shares.
-        if all > ROUNDING * energy {
-            counted += 1;
-            squares.iter_mut().zip(&kicks).for_each(|(square, kick)| *square += kick / all);
-        }
+        let kicks = shares_of(&before, &first);
+        sums.add(kicks.as_ref(), latest.as_ref());
+        latest = kicks;
         for driving in [&mut whole, &mut cut] {
             driving.times().advance_past(time);
         }
         last = time;
-        // Each disk comes to each position in the list.
-        first.rotate_left(1);
-        second.rotate_left(1);
+        // Each disk comes to each position in the list, whatever the period of the driving.
+        let turn = (uniform(&mut random) * DISKS as f64) as usize;
+        first.rotate_left(turn);
+        second.rotate_left(turn);
     }
-    if counted < KICKS / 2 || promises.is_ordered { Ok(()) } else { check_shares(&squares) }
+    if promises.is_ordered {
+        return Ok(());
+    }
+    sums.check()?;
+    check_memory(make, &disks)
 }
 
-/// Returns the squares of the kicks of all disks, times their masses.
-fn squares_of(before: &[Disk], after: &[Disk]) -> [f64; DISKS] {
-    std::array::from_fn(|place| {
+/// Returns the kicks of all disks, times the roots of their masses, relative to the mean square. The last
+/// component is the spin. A kick that is zero up to rounding shows nothing, and is `None`.
+fn shares_of(before: &[Disk], after: &[Disk]) -> Option<[DVec3; DISKS]> {
+    let kicks: [DVec3; DISKS] = std::array::from_fn(|place| {
         let (old, new) = (&before[place], &after[place]);
         let turned = old.radius() * (new.angular_velocity() - old.angular_velocity());
-        old.mass() * ((new.velocity() - old.velocity()).length_squared() + turned * turned)
-    })
+        old.mass().sqrt() * (new.velocity() - old.velocity()).extend(turned)
+    });
+    let energy: f64 = before.iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
+    let all: f64 = kicks.iter().map(|kick| kick.length_squared()).sum();
+    (all > ROUNDING * energy).then(|| kicks.map(|kick| kick / all.sqrt()))
+}
+
+/// Sums over kicks, by their position in the list.
+#[derive(Default)]
+struct Sums {
+    /// Number of kicks that are not zero.
+    counted: usize,
+    squares: [f64; DISKS],
+    /// Sums of the products of two kicks in a row, by the distance between their positions.
+    products: [f64; DISKS],
+}
+
+impl Sums {
+    fn add(&mut self, kicks: Option<&[DVec3; DISKS]>, latest: Option<&[DVec3; DISKS]>) {
+        let Some(kicks) = kicks else { return };
+        self.counted += 1;
+        self.squares.iter_mut().zip(kicks).for_each(|(square, kick)| *square += kick.length_squared());
+        let Some(latest) = latest else { return };
+        for (distance, product) in self.products.iter_mut().enumerate() {
+            let shifted = kicks.iter().cycle().skip(distance);
+            *product += latest.iter().zip(shifted).map(|(old, new)| old.dot(*new)).sum::<f64>();
+        }
+    }
+
+    /// Checks that no position in the list receives much stronger or weaker kicks than others, or kicks that
+    /// resemble the previous ones at this position.
+    fn check(&self) -> Result<(), Violation> {
+        if self.counted < KICKS / 2 {
+            return Ok(());
+        }
+        for (place, square) in self.squares.iter().enumerate() {
+            let share = square * DISKS as f64 / self.counted as f64;
+            let is_fair = (FAIR[0]..=FAIR[1]).contains(&share);
+            require!(PART, "alike", is_fair;
+                "disks at place {place} of the list get {share:?} of the mean square kick");
+        }
+        let [here, elsewhere @ ..] = self.products.map(|product| product / KICKS as f64);
+        let usual = elsewhere.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        require!(PART, "memory", here - usual <= CORRELATED;
+            "two kicks in a row at a place of the list, where the disks change, have a correlation of {here:?}; \
+             at two other places, it is {usual:?} at most");
+        Ok(())
+    }
+}
+
+/// Checks that kicks do not depend on changes of the order of disks, if they do not depend on the order.
+fn check_memory<D: Driving>(mut make: impl FnMut() -> D, disks: &[Disk]) -> Result<(), Violation> {
+    let orders: [fn(usize) -> usize; 3] = [|_| 0, |_| 5, |number| number * (number + 1) / 2];
+    let [kept, turned, changing] = orders.map(|order| kicked(make(), disks, order));
+    let (kept, turned, changing) = (kept?, turned?, changing?);
+    let differ = |other: &[Disk], least: f64| {
+        kept.iter().zip(other).position(|(one, other)| {
+            let turn = one.radius() * (one.angular_velocity() - other.angular_velocity());
+            let scale = 1.0 + one.velocity().length() + other.velocity().length();
+            (one.velocity() - other.velocity()).extend(turn).length() > least * scale
+        })
+    };
+    if differ(&turned, SAME).is_some() {
+        return Ok(());
+    }
+    let Some(index) = differ(&changing, OTHER) else { return Ok(()) };
+    let (number, id) = (index / DISKS, kept[index].id());
+    let [one, other] =
+        [&kept[index], &changing[index]].map(|disk| (disk.velocity(), disk.angular_velocity()));
+    let sentence = format!(
+        "after kick {number}, disk {id} has the velocity and spin {one:?}, and {other:?} if the order changes"
+    );
+    Err(Violation::new(PART, "memory", sentence))
+}
+
+/// Returns the disks after each kick of a driving that gets them in this order: the index of the first of
+/// them in the list, by the number of the kick.
+fn kicked<D: Driving>(
+    mut driving: D,
+    disks: &[Disk],
+    order: fn(usize) -> usize,
+) -> Result<Vec<Disk>, Violation> {
+    let (mut disks, mut all, mut last) = (disks.to_vec(), Vec::new(), 0.0);
+    driving.times().start_at(last);
+    for number in 0..AGAIN {
+        let first = order(number) % DISKS;
+        disks.rotate_left(first);
+        driving.kick(&mut disks).map_err(|error| failed(&error))?;
+        disks.rotate_right(first);
+        last = upcoming(&mut driving, last, 0)?;
+        driving.times().advance_past(last);
+        all.extend_from_slice(&disks);
+    }
+    Ok(all)
+}
+
+fn failed(error: &ParameterError) -> Violation {
+    Violation::new(PART, "no failure", error.to_string())
 }
 
 /// Returns the time of the next kick. Checks that this time is later than the last kick, and the same in a
@@ -151,18 +268,6 @@ fn check_kick(before: &[Disk], after: &[Disk], promises: Promises, number: usize
         let gained = (momentum(after) - momentum(before)).length();
         let size: f64 = before.iter().chain(after).map(|disk| disk.mass() * disk.velocity().length()).sum();
         require!(PART, "momentum", gained <= ROUNDING * size; "kick {number} adds the momentum {gained:?}");
-    }
-    Ok(())
-}
-
-/// Checks that no position in the list receives much stronger or weaker kicks than others.
-fn check_shares(squares: &[f64; DISKS]) -> Result<(), Violation> {
-    let mean = squares.iter().sum::<f64>() / DISKS as f64;
-    for (place, square) in squares.iter().enumerate() {
-        let share = square / mean;
-        let is_fair = (FAIR[0]..=FAIR[1]).contains(&share);
-        require!(PART, "alike", is_fair;
-            "disks at place {place} of the list get {share:?} of the mean square kick");
     }
     Ok(())
 }

@@ -12,9 +12,9 @@ use crate::{Disk, ParameterError};
 
 /// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is kept.
 ///
-/// Each component of each velocity gains, in a time $`t`$, a normal variable of variance $`\xi_0^2 t`$, and
-/// the mean of all kicks, in proportion to the masses, is subtracted. Thus $`N`$ equal disks of mass $`m`$
-/// gain the temperature
+/// Each component of each velocity gains a normal variable of variance $`\xi_0^2 t`$ in a time $`t`$. The
+/// mean of all kicks, weighted by mass, is then subtracted. Thus $`N`$ equal disks of mass $`m`$ gain the
+/// temperature
 ///
 /// ```math
 /// \dot T = m\,\xi_0^2\left(1-\tfrac1N\right),

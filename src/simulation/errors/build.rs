@@ -7,7 +7,7 @@ use crate::ParameterError;
 use crate::boundary::Domain;
 use crate::error::{Readable, Rounded};
 
-/// An error: the disks, the boundary and the parameters do not fit together.
+/// The error of a simulation whose disks, boundary and parameters do not fit together.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BuildError {

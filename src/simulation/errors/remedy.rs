@@ -9,13 +9,14 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
-    /// repeated collisions elastic, or set a least speed at which surfaces part.
+    /// Slow collisions lose energy, so disks that come to rest collide ever more often. The remedy is to make
+    /// collisions elastic that are slow or follow each other quickly, or to set a least speed at which
+    /// surfaces part.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
     /// Slow collisions are lossless already, but the disks are too slow: a disk is at rest or squeezed, or
-    /// walls drive it without end.
+    /// walls drive it forever.
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
@@ -26,6 +27,9 @@ pub enum Remedy {
     EnergyGain,
     /// Matter comes to rest, and walls keep it from a sink: no disk can touch the sink.
     ClosedSink,
+    /// The run advances, but more slowly than
+    /// [`Limits::with_least_progress`](crate::simulation::Limits::with_least_progress) asks.
+    LessProgress,
     /// No collision is predicted: the boundary or the scheduler names events that do not advance the run.
     OtherParts,
 }
@@ -41,19 +45,20 @@ impl fmt::Display for Remedy {
                 "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"
             }
             Self::FasterDisks => {
-                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or the rule LeastRebound with a higher speed; a disk that walls drive needs a rule that loses \
+                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start, more room, or \
+                 the rule LeastRebound with a higher speed helps; a disk that walls drive needs a rule that loses \
                  energy; for custom walls see boundary::laws::check"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
             Self::WallVelocity => {
-                "the wall moves otherwise than the velocity of its surface says; boundary::laws::check compares both"
+                "the wall does not move at the velocity of its surface; boundary::laws::check compares the two"
             }
             Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
             Self::ClosedSink => {
                 "matter comes to rest, and no disk can get to a sink, since walls are in its way; \
                  Simulation::warnings names it"
             }
+            Self::LessProgress => "time advances, but the least progress that was asked for is larger",
             Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
         })
     }

@@ -40,7 +40,7 @@ pub enum RunError {
     Stalled {
         /// The present.
         time: f64,
-        /// The disk that is the next to collide.
+        /// The disk that is next to collide.
         disk: usize,
         /// The partner of the disk; `None` if no collision is predicted.
         partner: Option<Partner>,

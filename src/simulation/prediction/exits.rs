@@ -46,7 +46,7 @@ pub(in crate::simulation) fn leave_cell(bodies: &mut Bodies, cells: &Cells, disk
     at_wall
 }
 
-/// Returns the offset at which a disk leaves its cell, and the edge.
+/// Returns the offset at which a disk leaves its cell, and the edge through which it leaves.
 #[inline(always)]
 fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
@@ -71,7 +71,7 @@ fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, E
 }
 
 /// Returns the time until a disk leaves its column, and whether it leaves to the right, for gravity to the
-/// right. It is not inlined, since gravity is vertical in most runs.
+/// right. The function is not inlined, since gravity is vertical in most runs.
 #[inline(never)]
 fn exit_sideways(left: f64, right: f64, velocity: f64, gravity: f64) -> (f64, bool) {
     let (wait, leftward) = exit_under_pull(left, right, -velocity, gravity);

@@ -3,13 +3,14 @@
 //!
 //! Three differences make this code faster than the plain code:
 //! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read
-//!    only if the write covers all of the read. Otherwise the read waits until the writes have left for the
-//!    cache, about 15 cycles, and the whole search waits with it. From the plain code, the compiler makes
+//!    only if the write covers all of the read. Otherwise, the read waits about 15 cycles, until the writes
+//!    have reached the cache, and the whole search waits with it. From the plain code, the compiler makes
 //!    such reads: it merges four numbers that lie side by side into one vector. The functions of
 //!    [`load`](crate::instructions::load) read exactly as many numbers as their names say, and arguments come
 //!    in registers or from tables, never as an array or a rectangle that was just built.
-//! 2. **Two searches in one loop.** After a collision, neither of the two depends on the other, and the root
-//!    and the quotient of a search take most of its time, so one is computed while the other waits.
+//! 2. **Two searches in one loop.** After a collision, neither of the two searches depends on the other. The
+//!    root and the quotient of a search take most of its time, so one search is computed while the other
+//!    waits.
 //! 3. **Two exits in one vector**, with one root and two quotients for both.
 
 pub(super) mod exits;

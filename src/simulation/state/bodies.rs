@@ -86,8 +86,8 @@ pub(in crate::simulation) struct Bodies {
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
     pub(in crate::simulation) identities: Identities,
-    /// The count of collisions with which the next new disk begins, larger than the count of any disk whose
-    /// index it may get.
+    /// Initial count of collisions of the next new disk. It is larger than the count of any disk whose index
+    /// the new disk may get.
     pub(in crate::simulation) fresh_count: u32,
     /// True if disks were added or removed since the typical diameter was measured.
     pub(super) has_changed: bool,
@@ -285,7 +285,7 @@ impl Bodies {
         (0..self.len()).map(|disk| of(self.disk(disk, offset))).sum()
     }
 
-    /// Moves the epoch on by this time.
+    /// Moves the epoch forward by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         let (fallen, gained) = self.fall(by);
         for Particle { trajectory, forecast } in &mut self.particles {
@@ -299,8 +299,8 @@ impl Bodies {
         }
     }
 
-    /// Replaces the present disks by these disks in their states at this time offset. Their ids and the times
-    /// of their last collisions stay.
+    /// Replaces the present disks by the given ones, with their states at this time offset. Their ids and the
+    /// times of their last collisions stay.
     pub(in crate::simulation) fn replace(&mut self, disks: &[Disk], offset: f64) {
         self.properties = Properties::of(disks);
         self.typical_diameter = self.properties.typical_diameter();

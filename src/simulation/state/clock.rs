@@ -114,7 +114,7 @@ impl Clock {
         self.events_to_look = self.events_to_look.saturating_sub(EVENTS_PER_HORIZON).max(1);
     }
 
-    /// Moves the epoch on by this time.
+    /// Moves the epoch forward by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.origin += by;
         self.now -= by;

@@ -57,7 +57,8 @@ pub(in crate::simulation) struct Forecast {
     /// The offset at which the flight of the disk in its cell ends.
     pub(in crate::simulation) exit_due: f64,
     pub(in crate::simulation) partner: u32,
-    /// The partner's count when this was predicted. If the count differs now, the prediction is out of date.
+    /// The partner's count of collisions when this collision was predicted. If the count differs now, the
+    /// prediction is out of date.
     pub(in crate::simulation) partner_collisions: u32,
     /// The disk's own count of collisions with anything.
     pub(in crate::simulation) collisions: u32,

@@ -4,13 +4,13 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Ledger {
-    /// Absolute time of the latest change of the number of disks, or at which the run was built.
+    /// Absolute time at which the number of disks last changed, or at which the run was built.
     since: f64,
-    /// Sum of the times that all disks have spent in the run before.
+    /// Sum of the times that all disks had spent in the run before that time.
     disk_time: f64,
-    /// Kinetic and potential energy at that time.
+    /// Kinetic and potential energy when the run was built.
     pub(in crate::simulation) energy: f64,
-    /// True once a disk hit a moving or thermal wall, or disks were changed, added or removed.
+    /// True once a disk has hit a moving or thermal wall, or disks have been changed, added or removed.
     pub(in crate::simulation) has_source: bool,
     /// True while a run is under way. If it is true before a run, a panic interrupted the last run.
     pub(in crate::simulation) is_running: bool,
@@ -21,7 +21,7 @@ impl Ledger {
         Self { since: start, disk_time: 0.0, energy, has_source, is_running: false }
     }
 
-    /// Returns the sum of the times that all disks have spent in the run, whose number is now `disks`.
+    /// Returns the sum of the times that all disks have spent in the run, which now has `disks` disks.
     pub(in crate::simulation) fn disk_time_at(&self, now: f64, disks: usize) -> f64 {
         self.disk_time + disks as f64 * (now - self.since)
     }

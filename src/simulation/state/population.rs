@@ -8,7 +8,7 @@ use crate::Disk;
 impl Bodies {
     /// Adds a disk in its state at this time offset. The cost does not grow with the number of disks.
     ///
-    /// The typical diameter, a median, stays until [`Self::settle`].
+    /// The typical diameter, a median, stays the same until [`Self::settle`].
     pub(in crate::simulation) fn push_disk(&mut self, disk: &Disk, offset: f64) {
         let count = self.len();
         self.identities.push(count, disk.id());

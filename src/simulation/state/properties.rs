@@ -94,7 +94,7 @@ impl Properties {
     ///
     /// If there is a disk more than [`LARGEST_RATIO`] times as large, the result is the diameter of the
     /// largest disk over that ratio. A domain with room for such a disk is so large that positions have few
-    /// digits after the point, so fine dust would gain nothing from shorter epochs.
+    /// digits after the decimal point, so fine dust would gain nothing from shorter epochs.
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same { model, .. } => 2.0 * model.radius(),

@@ -15,7 +15,7 @@ use crate::trajectory::table::Table;
 /// of columns.
 const MOST_COLUMNS: usize = 1000;
 
-/// The keys with a meaning.
+/// The keys that the reader understands.
 const KNOWN: [&str; 8] = ["Properties", "Time", "t", "Gravity", "Domain", "Lattice", "Origin", "pbc"];
 
 /// The keys of a frame with their values, without quotes.
@@ -42,7 +42,7 @@ impl<'a> Keys<'a> {
         Ok(Self { pairs, line })
     }
 
-    /// Returns the names of keys without a meaning, each of them once.
+    /// Returns the names of the keys that the reader does not understand, each of them once.
     pub(super) fn ignored(&self) -> impl Iterator<Item = String> {
         let names: BTreeSet<&str> = self.pairs.iter().map(|(name, _)| *name).collect();
         names.into_iter().filter(|name| !is_one_of(name, &KNOWN)).map(str::to_owned)
@@ -151,7 +151,7 @@ impl<'a> Keys<'a> {
         Ok(if ends { domain.with_periodic_ends() } else { domain })
     }
 
-    /// Reads numbers, divided by white space, commas or brackets.
+    /// Reads numbers that are separated by white space, commas or brackets.
     fn numbers(&self, what: &str, text: &str, requirement: &str) -> Result<Vec<f64>, ReadError> {
         let numbers: Vec<f64> =
             value_words(text).map(|text| number(what, text, self.line)).collect::<Result<_, _>>()?;
@@ -160,8 +160,8 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// Returns whether a name is one of these, in any case. The case of a single letter counts, since `T` is a
-/// temperature.
+/// Returns whether a name is one of these, in upper or lower case. The case of a single letter matters, since
+/// `T` is a temperature.
 fn is_one_of(name: &str, known: &[&str]) -> bool {
     known.iter().any(|known| *known == name || known.len() > 1 && known.eq_ignore_ascii_case(name))
 }

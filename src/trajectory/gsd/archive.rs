@@ -6,7 +6,8 @@ use std::io::{self, Read, Seek, SeekFrom};
 use super::{F32, F64};
 use crate::trajectory::ReadError;
 
-/// Bytes of the header, of an entry of the index, and of a name in the first version of the format.
+/// Numbers of bytes of the header, of an entry of the index, and of a name in the first version of the
+/// format.
 pub(super) const HEADER: usize = 256;
 pub(super) const ENTRY: usize = 32;
 const NAME: usize = 64;
@@ -19,7 +20,7 @@ pub(super) struct Archive<R> {
     entries: Vec<[u8; ENTRY]>,
     /// True if this crate wrote the file.
     pub(super) is_own: bool,
-    /// Numbers of the names that were asked for.
+    /// Numbers of the names that were requested.
     asked: BTreeSet<usize>,
 }
 
@@ -56,7 +57,8 @@ impl<R: Read + Seek> Archive<R> {
             asked: BTreeSet::new(),
             is_own: head[48..].starts_with(b"granular-edmd\0"),
         };
-        // Each frame but the first has an entry, so a damaged number cannot ask for any number of frames.
+        // Each frame but the first has an entry, so a damaged number cannot claim an arbitrary number of
+        // frames.
         let is_bounded = archive.frames() <= archive.entries.len() as u64 + 1;
         if is_bounded && archive.entries.is_sorted_by_key(|entry| number(entry, 0)) {
             return Ok(archive);

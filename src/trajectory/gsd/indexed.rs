@@ -13,7 +13,8 @@ use crate::trajectory::media::{self, is_gzip};
 use crate::trajectory::sink::{Layout, Sink};
 use crate::trajectory::{Frame, RecordError};
 
-/// Entries for which the first index has room. A full index is followed by an index of twice its size.
+/// Number of entries for which the first index has room. A full index is followed by an index of twice its
+/// size.
 const ROOM: usize = 1024;
 
 /// Number of the chunk with the time of a frame.

@@ -17,6 +17,9 @@ use crate::trajectory::lines::{as_whole, checked_box, is_upright};
 use crate::trajectory::settings::Settings;
 use crate::trajectory::table::Table;
 
+/// Rounding of an inertia factor that follows from three numbers of single precision, relative to the factor.
+const ROUNDING: f64 = 1e-6;
+
 /// Returns whether a file that begins with these bytes is a GSD file.
 pub(in crate::trajectory) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
@@ -138,7 +141,7 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(table)
     }
 
-    /// Returns the columns that the frame has beside the positions.
+    /// Returns the columns that the frame has besides the positions.
     fn columns(&mut self, count: usize) -> Result<Vec<Values>, ReadError> {
         let mut columns = Vec::new();
         for (chunk, name, order) in [
@@ -164,10 +167,13 @@ impl<R: Read + Seek> View<'_, R> {
                 let square = 0.25 * sizes[row] * sizes[row];
                 let by_density = || density.map_or(1.0, |density| density * PI * square);
                 let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
-                // Rounding must not change the inertia factor of a homogeneous disk.
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
-                let is_other = moment > 0.0 && moment as f32 != (homogeneous * unit) as f32;
-                if is_other { moment / unit } else { homogeneous }
+                let factor = if moment > 0.0 { moment / unit } else { homogeneous };
+                // Rounding must not change the inertia factor of a homogeneous disk, and must not take a ring
+                // or a heavy point beyond the limits.
+                let exact = [homogeneous, 1.0, 1e-6].into_iter();
+                let mut near = exact.filter(|exact| (factor - exact).abs() <= ROUNDING * exact);
+                near.next().unwrap_or(factor)
             };
             let moments: Vec<f64> = (0..count).map(|row| inertia.number(row, 2)).collect();
             let turned = self.rows("particles/orientation", count, 4)?;
@@ -193,7 +199,7 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(columns)
     }
 
-    /// Returns the point from which positions count.
+    /// Returns the point from which positions are measured.
     fn center(&mut self) -> Result<DVec2, ReadError> {
         Ok(self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
     }
@@ -226,8 +232,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters of the disks: from the shapes if the file has shapes; otherwise from its
-    /// diameters or, if it has none, from the settings, or else 1.
+    /// Returns the diameters of the disks. They come from the shapes if the file has shapes, or else from its
+    /// diameters, or else from the settings. Without any of these, they are 1.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {

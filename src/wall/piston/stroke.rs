@@ -191,7 +191,7 @@ impl Swing {
     /// stop immediately.
     ///
     /// An oscillation that turns around at the height, up to rounding, does not rise through it. An
-    /// oscillation that starts at the height and rises does.
+    /// oscillation that starts at the height and rises does rise through it.
     fn rises_through(&self, height: f64) -> Option<f64> {
         let square = (self.a - height) * (self.a + height) + self.b * self.b;
         let may_turn = height > 0.0 && (self.a < height || self.b <= 0.0);

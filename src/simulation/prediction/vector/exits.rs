@@ -87,7 +87,7 @@ fn size(numbers: __m128d) -> __m128d {
     and_not(both(-0.0), numbers)
 }
 
-/// Replaces what is not a number by infinity.
+/// Replaces NaN by infinity.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn number(waits: __m128d) -> __m128d {

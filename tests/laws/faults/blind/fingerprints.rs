@@ -263,7 +263,7 @@ fn boundaries(pairs: &mut Pairs) {
     });
 }
 
-/// Fingerprints that change although the part stays: "equal for equal parts", and "not its state".
+/// Fingerprints that change although the part stays: "equal for parts made alike", and "not its state".
 fn states(pairs: &mut Pairs) {
     pairs.add_rules("each rule of a program has a number of its own", true, [1.0, 2.0], |number| {
         Marked(smooth(0.1), Fingerprint::of("smooth").number(0.1).number(number))

@@ -1,8 +1,10 @@
 //! Fingerprints that forget what shows in few answers only.
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
-use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Impulse, Smooth};
-use granular_edmd::wall::{Delayed, Sinusoidal, WallMotion};
+use granular_edmd::collision::{
+    CollisionRule, Contact, ElasticBelow, Frictional, Impulse, RulesByKind, Smooth,
+};
+use granular_edmd::wall::{Delayed, Sinusoidal, Tabulated, WallMotion};
 use granular_edmd::{Fingerprint, Kind};
 
 use crate::faults::blind::boundaries::marked;
@@ -30,6 +32,33 @@ fn rules<R: CollisionRule + 'static>(parts: [R; 2], marks: [Fingerprint; 2]) -> 
 fn motions<M: WallMotion + Send + Sync + 'static>([one, other]: [M; 2], marks: [Fingerprint; 2]) -> Parts {
     let [first, second]: [Motion; 2] = [Box::new(Marked(one, marks[0])), Box::new(Marked(other, marks[1]))];
     Parts::Motions([first, second])
+}
+
+/// Returns rules and motions that differ in few answers only, and say so.
+pub(crate) fn honest() -> Vec<Planted<Pair>> {
+    let mut all = List { family: "honest", faults: Vec::new() };
+    let marks = [NAME, NAME.number(1.0)];
+    let parts = rules([0.2, 0.3].map(|loss| table(41, loss)), marks);
+    all.plant("losses of a pair of larger kinds", Pair { parts, act_alike: false });
+    let parts = motions([20.0, 20.5].map(late_ramp), marks);
+    all.plant("durations of a late ramp", Pair { parts, act_alike: false });
+    let parts = motions([1e7, 1.1e7].map(late), marks);
+    all.plant("late starts", Pair { parts, act_alike: false });
+    all.faults
+}
+
+/// A rule that loses more between disks of kind 40 and of this kind.
+fn table(kind: u16, loss: f64) -> RulesByKind<Smooth> {
+    let smooth = |loss| Smooth::from_inelasticity(loss).expect("an inelasticity");
+    RulesByKind::new(smooth(0.1)).with(Kind::new(40), Kind::new(kind), smooth(loss))
+}
+
+fn late(start: f64) -> Delayed {
+    Delayed::new(Sinusoidal::new(0.1, 3.0).expect("an amplitude"), start).expect("a start")
+}
+
+fn late_ramp(duration: f64) -> Delayed {
+    Delayed::new(Tabulated::from_to(0.0, 4.0, duration).expect("a duration"), 1000.0).expect("a start")
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Pair>> {
@@ -61,8 +90,22 @@ pub(crate) fn catalogue() -> Vec<Planted<Pair>> {
         rules([0.3, 0.3_f64.next_up()].map(frictional), [NAME; 2]),
     );
     add("zero", "a rule counts its calls", true, rules([0.1, 0.1].map(smooth), [NAME, NAME.number(1.0)]));
-    let late =
-        |start| Delayed::new(Sinusoidal::new(0.1, 3.0).expect("an amplitude"), start).expect("a start");
+    let kinds = rules([41, 42].map(|kind| table(kind, 0.2)), [NAME; 2]);
+    add("kind", "one of two larger kinds is forgotten", false, kinds);
+    add(
+        "kind",
+        "the loss between two larger kinds is forgotten",
+        false,
+        rules([0.2, 0.3].map(|loss| table(41, loss)), [NAME; 2]),
+    );
+    add(
+        "late ramp",
+        "the duration of a late ramp is forgotten",
+        false,
+        motions([20.0, 20.5].map(late_ramp), [NAME; 2]),
+    );
+    let starts = [1e7, 1.1e7].map(late);
+    add("very late start", "starts at 1e7 and 1.1e7 are one", false, motions(starts, [NAME; 2]));
     add("late start", "starts at 300 and 310 are one", false, motions([300.0, 310.0].map(late), [NAME; 2]));
     add(
         "very late start",

@@ -1,6 +1,6 @@
 //! Motions that break their contract where a check may not look.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use granular_edmd::wall::{AccelerationBounds, BiParabolic, Sawtooth, Sinusoidal, WallMotion, WallState};
@@ -89,7 +89,80 @@ impl Motions {
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Motion>> {
-    List::grown(&[integrals, periods, places, bounds])
+    List::grown(&[integrals, periods, places, bounds, extremes])
+}
+
+/// The motion A(1 − cos ωt) in pieces of some half periods, with exact bounds: the acceleration is largest at
+/// the ends of each half period.
+#[derive(Clone, Copy)]
+struct Raised {
+    frequency: f64,
+    halves: f64,
+    /// Ends after the first half period, and rests outside of it.
+    is_ramp: bool,
+}
+
+impl WallMotion for Raised {
+    fn state(&self, phase: f64) -> WallState {
+        let end = if self.is_ramp { PI / self.frequency } else { f64::INFINITY };
+        let start = if self.is_ramp { 0.0 } else { f64::NEG_INFINITY };
+        let angle = self.frequency * phase.clamp(start, end);
+        let velocity = AMPLITUDE * self.frequency * angle.sin();
+        let moves = (start..end).contains(&phase);
+        WallState::new(AMPLITUDE * (1.0 - angle.cos()), if moves { velocity } else { 0.0 })
+    }
+
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
+        let (piece, most) = (self.halves * PI / self.frequency, AMPLITUDE * self.frequency.powi(2));
+        match self.is_ramp {
+            true if phase < 0.0 => AccelerationBounds::new(0.0, 0.0, 0.0),
+            true if phase >= PI / self.frequency => AccelerationBounds::new(f64::INFINITY, 0.0, 0.0),
+            _ if piece == f64::INFINITY => AccelerationBounds::new(piece, -most, most),
+            _ => {
+                let next = ((phase / piece).floor() + 1.0) * piece;
+                AccelerationBounds::new(if next > phase { next } else { next + piece }, -most, most)
+            }
+        }
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        (0.0, 2.0 * AMPLITUDE)
+    }
+}
+
+fn raised() -> impl Iterator<Item = (String, Raised)> {
+    [3.0, 10.0, 0.37].into_iter().flat_map(|frequency| {
+        let of = move |halves, is_ramp| Raised { frequency, halves, is_ramp };
+        let motions = [
+            ("half a period", of(1.0, false)),
+            ("one period", of(2.0, false)),
+            ("seven periods", of(14.0, false)),
+            ("one endless piece", of(f64::INFINITY, false)),
+            ("a ramp", of(1.0, true)),
+        ];
+        motions.map(|(piece, motion)| (format!("frequency {frequency}, {piece}"), motion))
+    })
+}
+
+/// Returns motions without a fault whose acceleration is largest where a piece ends.
+pub(crate) fn honest() -> Vec<Planted<Motion>> {
+    let mut motions = Motions::default();
+    for (name, motion) in raised() {
+        motions.plant(name, Box::new(motion));
+    }
+    motions.faults
+}
+
+fn extremes(motions: &mut Motions) {
+    for (name, motion) in raised().filter(|(name, _)| !name.ends_with("endless piece")) {
+        for (n, honest) in [(5, motion), (7, motion)] {
+            let name = format!("{name}: both bounds are too small by 1e-{n}");
+            let honest = Changed { reach: 2.0 * AMPLITUDE, ..changed(honest) };
+            motions.with_bounds("largest at an end", name, honest, move |bounds, _| {
+                (bounds.min, bounds.max) = ((1.0 - tenth(n)) * bounds.min, (1.0 - tenth(n)) * bounds.max);
+            });
+        }
+    }
 }
 
 fn integrals(motions: &mut Motions) {

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use granular_edmd::Disk;
 use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
 
 use crate::faults::{List, Planted};
@@ -12,10 +13,13 @@ struct Changed {
     samples: u64,
     runs: u64,
     collisions: u64,
+    arrivals: u64,
     asked: Cell<u64>,
     start: fn(&mut Self, f64),
     sample: fn(&mut Self, f64),
     collision: fn(&mut Self, f64),
+    insert: fn(&mut Self, f64),
+    remove: fn(&mut Self, f64),
     ask: fn(&Self) -> f64,
 }
 
@@ -44,6 +48,15 @@ impl Observer for Changed {
         (self.sample)(self, snapshot.time());
     }
 
+    fn on_insert(&mut self, _: &Disk, time: f64) {
+        self.arrivals += 1;
+        (self.insert)(self, time);
+    }
+
+    fn on_remove(&mut self, _: &Disk, time: f64) {
+        (self.remove)(self, time);
+    }
+
     fn verdict(&mut self) -> Verdict {
         ().verdict()
     }
@@ -53,7 +66,7 @@ fn changed() -> Changed {
     let times = SampleTimes::every(0.7).expect("an interval");
     let (next, asked) = (times.upcoming(), Cell::new(0));
     let nothing: fn(&mut Changed, f64) = |_, _| ();
-    let (samples, runs, collisions) = (0, 0, 0);
+    let (samples, runs, collisions, arrivals) = (0, 0, 0, 0);
     let ask = |clock: &Changed| clock.next;
     Changed {
         times,
@@ -61,10 +74,13 @@ fn changed() -> Changed {
         samples,
         runs,
         collisions,
+        arrivals,
         asked,
         start: nothing,
         sample: nothing,
         collision: nothing,
+        insert: nothing,
+        remove: nothing,
         ask,
     }
 }
@@ -93,6 +109,19 @@ pub(crate) fn catalogue() -> Vec<Planted<Box<dyn Observer>>> {
         }
     };
     add("late collision", "the 400th collision puts the sample off", Changed { collision, ..changed() });
+    let moves: fn(&mut Changed, f64) = |clock, time| clock.next = time + 1.0;
+    add("disks", "a disk that comes in puts the sample off", Changed { insert: moves, ..changed() });
+    add("disks", "a disk that is removed puts the sample off", Changed { remove: moves, ..changed() });
+    let both = Changed { insert: moves, remove: moves, ..changed() };
+    add("disks", "each change of the number of disks puts the sample off", both);
+    let insert: fn(&mut Changed, f64) = |clock, _| {
+        if clock.arrivals == 30 {
+            clock.next += 1e-6;
+        }
+    };
+    add("disks", "the 30th disk that comes in puts the sample off by 1e-6", Changed { insert, ..changed() });
+    let remove: fn(&mut Changed, f64) = |clock, _| clock.next = f64::INFINITY;
+    add("disks", "a disk that is removed ends the samples", Changed { remove, ..changed() });
     let ask: fn(&Changed) -> f64 = |clock| if clock.asked.get() == 777 { f64::NAN } else { clock.next };
     add("seldom", "question 777 has no number", Changed { ask, ..changed() });
     let start: fn(&mut Changed, f64) = |clock, time| {
