@@ -25,11 +25,8 @@
 
 mod classification;
 mod clusters;
-mod k_means;
-mod state;
-mod transitions;
+mod states;
 
 pub use classification::{Classification, StateCriteria, thermal_noise};
 pub use clusters::{Cluster, Clusters};
-pub use state::{ConvectiveRegime, ConvectiveState};
-pub use transitions::{Transition, TransitionLine, transitions};
+pub use states::{ConvectiveRegime, ConvectiveState, Transition, TransitionLine, transitions};

@@ -38,19 +38,14 @@ mod arguments;
 mod bench;
 mod convert;
 mod diff;
-mod files;
-mod keys;
+mod explain;
 mod plans;
 mod replay;
-mod schema;
 mod shape;
 mod source;
-mod template;
-mod trajectory;
-mod watch;
+mod terminal;
 
 use std::error::Error;
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -61,7 +56,7 @@ use serde_json::json;
 use super::errors::{PlanError, StudyError, chain};
 use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
-use watch::Watch;
+use terminal::{STOP, Watch, is_stopped, listen, read, refused, say};
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status`
 /// has all.
@@ -101,7 +96,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
-        Command::Trajectory(wishes) => trajectory::write::<E>(&wishes),
+        Command::Trajectory(wishes) => source::trajectory::<E>(&wishes),
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Diff(wishes) => diff::diff::<E>(&wishes),
@@ -124,39 +119,6 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
     ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
 }
 
-/// Prints a line.
-fn say(line: &str) -> Result<(), Failure> {
-    let mut out = io::stdout();
-    told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
-}
-
-/// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
-/// the result is then false. A full disk is an error.
-fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
-    match written {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
-        written => Ok(written.map(|()| true).map_err(StudyError::io("write", path))?),
-    }
-}
-
-/// Reads a file, or standard input for the name `-`.
-fn read(path: &Path) -> Result<String, Failure> {
-    let text =
-        if path == Path::new("-") { io::read_to_string(io::stdin()) } else { fs::read_to_string(path) };
-    Ok(text.map_err(StudyError::io("read", path))?)
-}
-
-/// Writes a new file. An existing one is not overwritten.
-fn write_new(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(bytes));
-    Ok(written.map_err(StudyError::io("write", path))?)
-}
-
-/// Returns the error of a plan, with the name of its file.
-fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
-    move |source| StudyError::Unreadable { path: path.to_owned(), source }
-}
-
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
     let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
@@ -176,10 +138,10 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         }
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build()?;
-    watch::listen()?;
+    listen()?;
     let watch = Watch::new();
     let show = |progress: &Progress| watch.show(progress);
-    let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()))?;
+    let control = manner.of(Control::default().with_progress(&show).with_interrupt(&STOP))?;
     let summary = pool.install(|| match ramp {
         Some(ramp) => study.run_ramp(ramp, &control),
         None => study.run(&control),
@@ -190,18 +152,18 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     }
     say(&format!("{} of {} values have ended in {}", summary.finished, summary.total, out.display()))?;
     let logs = out.join("logs/*.jsonl");
-    for (count, told, of) in [
+    for (count, fate, of) in [
         (summary.failed, "stalled, failed or reached a limit; status lists them,", "why"),
         (summary.warned, "have warnings;", "of what"),
     ] {
         if count > 0 {
-            say(&format!("{count} of them {told} {} say {of}", logs.display()))?;
+            say(&format!("{count} of them {fate} {} say {of}", logs.display()))?;
         }
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) if summary.failed > 0 => End::Unfinished,
         (true, _) => End::Done,
-        (false, false) if !watch::is_stopped() => End::Elsewhere,
+        (false, false) if !is_stopped() => End::Elsewhere,
         _ => End::Interrupted,
     })
 }

@@ -142,7 +142,7 @@ pub enum StudyError {
         source: io::Error,
     },
     /// The folder holds a study with another plan.
-    #[error("{} holds a study with another plan; choose another folder: {}", path.display(), told(differences))]
+    #[error("{} holds a study with another plan; choose another folder: {}", path.display(), listed(differences))]
     Different {
         /// The folder.
         path: PathBuf,
@@ -160,7 +160,7 @@ pub enum StudyError {
     /// The study was begun by code with other results, or with another revision of the experiment.
     #[error(
         "{} holds a study of other code: {}; take a new folder, or accept the change if its values can be compared",
-        path.display(), told(differences)
+        path.display(), listed(differences)
     )]
     Code {
         /// The folder.
@@ -233,6 +233,11 @@ impl StudyError {
         Self::Refused { path: path.to_owned(), reason: reason.into() }
     }
 
+    /// Returns the error of a file that was cut or changed.
+    pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Damaged { path: path.to_owned(), reason: reason.into() }
+    }
+
     /// Returns the error of a record that was made with another rule, other walls or another revision than
     /// the experiment has now: its code changed.
     pub(super) fn changed(path: &Path, part: &str) -> Self {
@@ -262,16 +267,16 @@ pub struct Difference {
 
 impl fmt::Display for Difference {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
-        write!(formatter, "{} is {} there and {} here", self.field, told(&self.old), told(&self.new))
+        let text = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
+        write!(formatter, "{} is {} there and {} here", self.field, text(&self.old), text(&self.new))
     }
 }
 
 /// Returns the first differences as text.
-fn told(differences: &[Difference]) -> String {
+fn listed(differences: &[Difference]) -> String {
     const FIRST: usize = 5;
-    let told: Vec<String> = differences.iter().take(FIRST).map(ToString::to_string).collect();
+    let first: Vec<String> = differences.iter().take(FIRST).map(ToString::to_string).collect();
     let more = differences.len().saturating_sub(FIRST);
     let more = if more > 0 { format!(", and {more} more") } else { String::new() };
-    format!("{}{more}", told.join(", "))
+    format!("{}{more}", first.join(", "))
 }

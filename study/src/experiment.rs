@@ -2,9 +2,7 @@
 //! an experiment, and the columns of its tables.
 
 pub(super) mod columns;
-pub(super) mod origin;
 pub(super) mod record;
-pub(super) mod riders;
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
@@ -16,10 +14,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::ExperimentError;
-use super::seed::derived_seed;
+use super::parameters::derived_seed;
+use super::sliced::{Interval, SavedDriving, Start};
 use columns::{Column, Table};
 use record::Record;
-use riders::{Interval, SavedDriving, Start};
 
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;

@@ -1,17 +1,19 @@
-//! The folder of a study, with its plan, its provenance and its unfinished values.
+//! The folder of a study: its plan, its provenance, its unfinished values, and the mark of a complete study.
+//! Each file is complete or absent.
 //!
 //! A process that writes plan or tables holds the lock of the folder. The next process that holds it knows
 //! that the writer of a temporary file there is dead.
 
 use std::collections::HashSet;
-use std::fs;
+use std::fs::{self, DirEntry, File, OpenOptions};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::file::{Locked, is_temporary};
+use granular_edmd::file::{Damage, Locked, Seal, is_temporary, write_whole};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use super::provenance::Provenance;
-use super::whole::{self, damaged, files_in, if_there};
-use super::{PlanError, StudyError};
+use super::StudyError;
 
 /// Text of the README in the folder of a study.
 const ABOUT: &str = include_str!("folder.txt");
@@ -23,9 +25,13 @@ const LOGS: &str = "logs";
 const UNFINISHED: &str = "unfinished";
 /// The folder of the records of version 0.3.
 const RAMPS: &str = "ramps";
+const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
 const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
     finish it by version 0.3 (`cargo install granular-edmd@0.3 --features cli`), or take a new folder: its tables stay as they are";
+
+/// Mark of an unfinished value, and the version of the format that this crate writes and reads.
+const SEAL: Seal = Seal::new(*b"GRANPART", 5);
 
 /// The folder of a study.
 #[derive(Debug, Clone)]
@@ -62,19 +68,6 @@ impl Folder {
         Ok(found)
     }
 
-    /// Removes the remaining files of unfinished values once all values are finished.
-    fn clear_unfinished(&self) -> Result<(), StudyError> {
-        let unfinished = self.unfinished()?;
-        unfinished.iter().try_for_each(|[ramp, value]| whole::remove(&self.partial(*ramp, *value)))?;
-        let folder = self.root.join(UNFINISHED);
-        if folder.exists() {
-            whole::remove_temporaries(&folder)?;
-            // A user may keep other files in this folder.
-            let _ = fs::remove_dir(&folder);
-        }
-        Ok(())
-    }
-
     /// Returns an error if the folder has records of version 0.3, which this version does not read.
     pub(super) fn check_format(&self) -> Result<(), StudyError> {
         if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
@@ -92,51 +85,35 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Writes a plan to the folder, and creates the folder if needed. Returns false if the folder already has
-    /// a plan.
-    ///
-    /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
-    pub(super) fn create(
-        &self,
-        plan: &str,
-        provenance: &Provenance,
-        check: impl FnOnce() -> Result<(), PlanError>,
-    ) -> Result<bool, StudyError> {
+    /// Creates the folder if needed, and locks it in order to write a plan.
+    pub(super) fn prepare(&self) -> Result<Locked, StudyError> {
         self.check_free()?;
-        whole::create(&self.root)?;
-        let _lock = self.take_lock()?;
-        let is_new = !self.plan().exists();
-        if is_new {
-            check()?;
-        }
-        whole::remove_temporaries(&self.root)?;
-        if is_new {
-            whole::write(&self.plan(), plan.as_bytes())?;
-        }
-        // If a process is killed here, the folder has a plan but no provenance and no records.
-        if !self.root.join(LOGS).exists() && !self.provenance_file().exists() {
-            whole::write(&self.provenance_file(), provenance.text().as_bytes())?;
-        }
-        self.write_about()?;
-        Ok(is_new)
+        create(&self.root)?;
+        let lock = self.take_lock()?;
+        remove_temporaries(&self.root)?;
+        Ok(lock)
     }
 
-    pub(super) fn provenance_file(&self) -> PathBuf {
+    /// Writes a plan, its provenance and the README, unless they are there. The caller holds the lock.
+    pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
+        if !self.plan().exists() {
+            write(&self.plan(), plan.as_bytes())?;
+        }
+        // If a process is killed here, the folder has a plan but no provenance and no records.
+        if !self.root.join(LOGS).exists() && !self.provenance().exists() {
+            write(&self.provenance(), provenance.as_bytes())?;
+        }
+        self.write_about()
+    }
+
+    pub(super) fn provenance(&self) -> PathBuf {
         self.root.join(PROVENANCE)
     }
 
-    /// Returns the provenance of the study, or `None` if its file is missing.
-    pub(super) fn provenance(&self) -> Result<Option<Provenance>, StudyError> {
-        let path = self.provenance_file();
-        let text = if_there("read", &path, fs::read_to_string(&path))?;
-        let read = text.map(|text| serde_json::from_str(&text)).transpose();
-        read.map_err(|reason| damaged(&path, format!("it is no provenance ({reason})")))
-    }
-
-    /// Replaces the provenance.
-    pub(super) fn replace_provenance(&self, provenance: &Provenance) -> Result<(), StudyError> {
-        let _lock = self.take_lock()?;
-        whole::write(&self.provenance_file(), provenance.text().as_bytes())
+    /// Returns the text of the provenance, or `None` if its file is missing.
+    pub(super) fn read_provenance(&self) -> Result<Option<String>, StudyError> {
+        let path = self.provenance();
+        if_there("read", &path, fs::read_to_string(&path))
     }
 
     /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
@@ -146,7 +123,7 @@ impl Folder {
         if path.exists() && !fs::read(&path).is_ok_and(is_cut) {
             return Ok(());
         }
-        whole::write(&path, ABOUT.as_bytes())
+        write(&path, ABOUT.as_bytes())
     }
 
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
@@ -175,35 +152,39 @@ impl Folder {
 
     /// Returns whether all ramps are finished and in the tables.
     pub(super) fn is_complete(&self) -> bool {
-        self.complete().exists()
+        self.root.join(COMPLETE).exists()
     }
 
     /// Removes the mark of a complete study before a value is written that the tables may lack.
     pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
-        whole::remove(&self.complete())
+        remove(&self.root.join(COMPLETE))
     }
 
-    /// Marks that all ramps are in the tables. The caller holds the lock of the study.
+    /// Marks that all ramps are in the tables, and removes the remaining files of unfinished values. The
+    /// caller holds the lock of the study.
     pub(super) fn mark_complete(&self) -> Result<(), StudyError> {
-        self.clear_unfinished()?;
-        whole::write(&self.complete(), b"")
-    }
-
-    fn complete(&self) -> PathBuf {
-        self.root.join("complete")
+        for [ramp, value] in self.unfinished()? {
+            remove(&self.partial(ramp, value))?;
+        }
+        let folder = self.root.join(UNFINISHED);
+        if folder.exists() {
+            remove_temporaries(&folder)?;
+            // A user may keep other files in this folder.
+            let _ = fs::remove_dir(&folder);
+        }
+        write(&self.root.join(COMPLETE), b"")
     }
 
     fn take_lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
-        let file = fs::File::options().read(true).write(true).create(true).truncate(false).open(&path);
-        let file = file.map_err(StudyError::io("write", &path))?;
+        let file = lock_options().open(&path).map_err(StudyError::io("write", &path))?;
         Locked::wait(file).map_err(|source| StudyError::NoLock { path, source })
     }
 
-    /// Waits for the lock of the whole study, and locks the study in order to write tables.
+    /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let lock = self.take_lock()?;
-        whole::remove_temporaries(&self.root)?;
+        remove_temporaries(&self.root)?;
         // The process that wrote the plan may have been killed before it wrote the README.
         self.write_about()?;
         Ok(lock)
@@ -213,4 +194,109 @@ impl Folder {
 /// Returns whether a file with the name of a lock is a lock, and thus empty.
 fn is_lock(file: &fs::Metadata) -> bool {
     file.is_file() && file.len() == 0
+}
+
+/// Writes a file, completely or not at all.
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+    write_whole(path, bytes).map_err(StudyError::io("write", path))
+}
+
+fn lock_options() -> OpenOptions {
+    let mut options = File::options();
+    options.read(true).write(true).create(true).truncate(false);
+    options
+}
+
+/// Opens the file of a lock, and creates it and its folder if necessary.
+pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
+    let opened = lock_options().open(path);
+    let opened = match (&opened, path.parent()) {
+        (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
+            create(folder)?;
+            lock_options().open(path)
+        }
+        _ => opened,
+    };
+    opened.map_err(StudyError::io("write", path))
+}
+
+/// Creates a folder, with the folders that contain it.
+pub(super) fn create(folder: &Path) -> Result<(), StudyError> {
+    fs::create_dir_all(folder).map_err(StudyError::io("create", folder))
+}
+
+/// Returns data for a file as bytes, which read back as they were written.
+pub(super) fn encoded<T: DeserializeOwned + Serialize>(
+    path: &Path,
+    data: &impl Serialize,
+) -> Result<Vec<u8>, StudyError> {
+    let refused = |source| StudyError::Encode { path: path.to_owned(), source };
+    let contents = postcard::to_stdvec(data).map_err(|error| refused(error.into()))?;
+    let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
+    if again.is_ok_and(|again| again == contents) {
+        return Ok(contents);
+    }
+    let reason = "a sample or observer does not read back as it is written: its type must not have \
+                  `#[serde(untagged)]`, `flatten`, `skip` or `skip_serializing_if`";
+    Err(refused(reason.into()))
+}
+
+/// Reads data that [`encoded`] has made.
+pub(super) fn decoded<T: DeserializeOwned>(contents: &[u8]) -> Result<T, &'static str> {
+    match postcard::take_from_bytes(contents) {
+        Ok((data, [])) => Ok(data),
+        Ok(_) => Err("there is more in it than there should be"),
+        Err(_) => Err("its contents make no sense"),
+    }
+}
+
+/// Writes data with a magic number, a version and a checksum.
+pub(super) fn write_sealed<T: DeserializeOwned + Serialize>(
+    path: &Path,
+    data: &impl Serialize,
+) -> Result<(), StudyError> {
+    write(path, &SEAL.seal(&encoded::<T>(path, data)?))
+}
+
+/// Reads data that [`write_sealed`] has written, or returns `None` if the file does not exist.
+pub(super) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
+    let Some(bytes) = if_there("read", path, fs::read(path))? else { return Ok(None) };
+    let contents = SEAL.open(&bytes).map_err(|broken| match broken {
+        Damage::Foreign => "it does not begin as a value half done",
+        Damage::Version(_) => "it has another version of the format",
+        Damage::Cut => "it was cut",
+        _ => "its checksum does not match",
+    });
+    contents.and_then(decoded).map(Some).map_err(|reason| StudyError::damaged(path, reason))
+}
+
+/// Removes a file if it exists.
+pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
+    if_there("remove", path, fs::remove_file(path)).map(drop)
+}
+
+/// Returns the system's result for a file or folder, or `None` if nothing with this name exists.
+pub(super) fn if_there<T>(
+    action: &'static str,
+    path: &Path,
+    answer: io::Result<T>,
+) -> Result<Option<T>, StudyError> {
+    match answer {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        answer => answer.map(Some).map_err(StudyError::io(action, path)),
+    }
+}
+
+/// Returns the files in a folder; none if it does not exist.
+pub(super) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
+    let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
+    files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))
+}
+
+/// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
+/// be locked.
+pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
+    let mut files = files_in(folder)?;
+    files.retain(|file| is_temporary(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
+    files.iter().try_for_each(|file| remove(&file.path()))
 }

@@ -56,41 +56,35 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod analysis;
+mod claims;
 #[cfg(feature = "cli")]
 pub mod cli;
 mod errors;
 mod execution;
 mod experiment;
 mod folder;
-mod gate;
 pub mod guide;
-mod meanings;
-mod opening;
 mod parameters;
 mod plan;
-mod point;
-mod provenance;
-mod reading;
-mod scalar;
-mod seed;
+mod progress;
+mod records;
+mod sliced;
 mod store;
+mod study;
 mod tables;
 pub mod vibrated_box;
-mod whole;
 
 pub use errors::{Difference, ExperimentError, PlanError, StudyError};
-pub use execution::control::{Control, Progress, Summary};
+pub use execution::{Control, Progress, Summary};
 pub use experiment::columns::{Column, Table};
-pub use experiment::origin::Leg;
-pub use experiment::record::{Outcome, Record};
-pub use experiment::riders::{Interval, SavedDriving, Start};
+pub use experiment::record::{Leg, Outcome, Record};
 pub use experiment::{Experiment, Run};
-pub use opening::Study;
+pub use parameters::Scalar;
 pub use plan::Plan;
-pub use plan::axis::Axis;
 pub use plan::protocol::Protocol;
-pub use plan::ramp::{Course, Ramp, Width};
-pub use plan::refinement::Bracket;
-pub use point::Point;
-pub use reading::RampStatus;
-pub use scalar::Scalar;
+pub use plan::ramp::{Bracket, Course, Ramp, Width};
+pub use plan::values::Axis;
+pub use progress::RampStatus;
+pub use records::Point;
+pub use sliced::{Interval, SavedDriving, Start};
+pub use study::Study;

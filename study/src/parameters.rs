@@ -1,11 +1,124 @@
-//! Parameters of any serializable type, by name.
+//! Parameters of any serializable type, by name; their values; the seeds that follow from them, and numbers
+//! that have no influence on results.
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use std::fmt;
+use std::hash::{BuildHasher, Hasher, RandomState};
+
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer, Serialize};
 use toml::{Table, Value};
 
-use super::Scalar;
 use super::errors::{Difference, PlanError, shortened};
+
+/// A single value of a parameter that varies, or of a cell in a table.
+///
+/// ```
+/// use granular_edmd_study::Scalar;
+/// assert_eq!(Scalar::from(0.1).to_string(), "0.1");
+/// assert_eq!(Scalar::from(3_u64), Scalar::Integer(3));
+/// assert_eq!(Scalar::from("periodic").number(), None);
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+#[non_exhaustive]
+pub enum Scalar {
+    /// Yes or no.
+    Flag(bool),
+    /// A whole number.
+    Integer(i64),
+    /// A number.
+    Number(f64),
+    /// A word, such as the name of a choice.
+    Text(String),
+}
+
+impl Scalar {
+    /// The words about a value that is no scalar.
+    pub(super) const REFUSED: &str = "a value must be a number, a word or a switch";
+
+    /// Returns the number, or `None` for a word or a switch.
+    pub const fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Integer(number) => Some(*number as f64),
+            Self::Flag(_) | Self::Text(_) => None,
+        }
+    }
+
+    /// Returns the scalar of a TOML value; `None` for a table, a list or a date.
+    pub(super) fn of_toml(value: &toml::Value) -> Option<Self> {
+        match value {
+            toml::Value::Boolean(flag) => Some(Self::Flag(*flag)),
+            toml::Value::Integer(number) => Some(Self::Integer(*number)),
+            toml::Value::Float(number) => Some(Self::Number(*number)),
+            toml::Value::String(text) => Some(Self::Text(text.clone())),
+            _ => None,
+        }
+    }
+
+    /// Returns the same value in the type of `other`, if nothing is lost: 1.0 becomes the integer 1, for
+    /// example.
+    pub(super) fn like(self, other: &Self) -> Self {
+        /// Largest magnitude up to which a double represents all whole numbers.
+        const EXACT: f64 = 9_007_199_254_740_992.0;
+        match (other, self) {
+            (Self::Integer(_), Self::Number(number)) if number.abs() <= EXACT && number.trunc() == number => {
+                Self::Integer(number as i64)
+            }
+            (Self::Number(_), Self::Integer(number)) => Self::Number(number as f64),
+            (_, same) => same,
+        }
+    }
+}
+
+/// Derived code would try one kind after another and make an error for each kind that does not fit, which
+/// takes a second for a million values.
+impl<'de> Deserialize<'de> for Scalar {
+    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+        Self::of_toml(&Value::deserialize(file)?).ok_or_else(|| D::Error::custom(Self::REFUSED))
+    }
+}
+
+/// Reading numbers back gives the same bits; words are in quotes where a table needs quotes.
+impl fmt::Display for Scalar {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(flag) => write!(formatter, "{flag}"),
+            Self::Integer(number) => write!(formatter, "{number}"),
+            Self::Number(number) => write!(formatter, "{number:?}"),
+            Self::Text(text) if text.contains([',', '"', '\n', '\r']) => {
+                write!(formatter, "\"{}\"", text.replace('"', "\"\""))
+            }
+            Self::Text(text) => formatter.write_str(text),
+        }
+    }
+}
+
+/// Numbers too large for a table become the largest number that it takes.
+impl From<u64> for Scalar {
+    fn from(number: u64) -> Self {
+        Self::Integer(i64::try_from(number).unwrap_or(i64::MAX))
+    }
+}
+
+/// Numbers too large for a table become the largest number that it takes.
+impl From<usize> for Scalar {
+    fn from(number: usize) -> Self {
+        Self::from(number as u64)
+    }
+}
+
+macro_rules! from {
+    ($($value:ty => $kind:ident),*) => {$(
+        impl From<$value> for Scalar {
+            fn from(value: $value) -> Self {
+                Self::$kind(value.into())
+            }
+        }
+    )*};
+}
+
+from! { bool => Flag, i32 => Integer, i64 => Integer, f64 => Number, &str => Text, String => Text }
 
 /// Returns the parameters of an experiment as a tree of names.
 pub(super) fn tree(experiment: &impl Serialize) -> Result<Table, PlanError> {
@@ -39,12 +152,16 @@ pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
     }
 }
 
-/// Sets a parameter by its whole name; returns false if one of the names before the last does not name a
-/// group.
+/// Sets a parameter by its whole name, in the type of its present value; returns false if one of the names
+/// before the last does not name a group.
 #[must_use]
 pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     match name.split_once('.') {
-        None => Value::try_from(to).map(|to| tree.insert(name.to_owned(), to)).is_ok(),
+        None => {
+            let known = tree.get(name).and_then(Scalar::of_toml);
+            let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
+            Value::try_from(to).map(|to| tree.insert(name.to_owned(), to)).is_ok()
+        }
         Some((first, rest)) => {
             let group = tree.entry(first).or_insert_with(|| Value::Table(Table::new()));
             group.as_table_mut().is_some_and(|group| set(group, rest, to))
@@ -76,18 +193,17 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
     name: &str,
     to: &Scalar,
 ) -> Result<Scalar, PlanError> {
-    let known = get(base, name);
-    let to = known.and_then(Scalar::of_toml).map_or_else(|| to.clone(), |known| to.clone().like(&known));
     let mut changed = base.clone();
     let unknown = |reason: &str| {
         let known = names(base).join(", ");
         PlanError::Refused(format!("there is no parameter `{parameter}` ({reason}); there are {known}"))
     };
-    if !set(&mut changed, name, &to) {
+    if !set(&mut changed, name, to) {
         return Err(unknown("a part of its name is that of a parameter without parts"));
     }
-    let refused = |reason: String| match known {
-        Some(_) => PlanError::Experiment { place: place(&[(parameter, to.clone())]), source: reason.into() },
+    let tried = get(&changed, name).and_then(Scalar::of_toml).filter(|_| get(base, name).is_some());
+    let refused = |reason: String| match tried {
+        Some(to) => PlanError::Experiment { place: place(&[(parameter, to)]), source: reason.into() },
         None => unknown(&reason),
     };
     let read = experiment::<E>(changed).map_err(refused)?;
@@ -123,4 +239,32 @@ fn collect_differences(prefix: &str, old: &Table, new: &Table, found: &mut Vec<D
             }
         }
     }
+}
+
+/// Returns the seed that follows from a seed and this index.
+pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
+    derived(seed, &index.to_le_bytes())
+}
+
+/// Returns the seed that follows from a seed and the value of a parameter.
+pub(super) fn seed_at(seed: u64, parameter: &str, value: &Scalar) -> u64 {
+    let seed = derived(seed, parameter.as_bytes());
+    match value {
+        // Both zeros are one value.
+        Scalar::Number(number) => derived(seed, &(number + 0.0).to_bits().to_le_bytes()),
+        other => derived(seed, other.to_string().as_bytes()),
+    }
+}
+
+/// Returns the first eight bytes of the hash of a seed and these bytes.
+fn derived(seed: u64, bytes: &[u8]) -> u64 {
+    let hash = blake3::Hasher::new().update(&seed.to_le_bytes()).update(bytes).finalize();
+    u64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
+}
+
+/// Returns a random index below this number, or 0. It has no influence on results.
+pub(super) fn anywhere(count: usize) -> usize {
+    // The standard library seeds its hash tables from the system: a random number that needs no dependency.
+    let random = RandomState::new().build_hasher().finish();
+    random.checked_rem(count as u64).unwrap_or(0) as usize
 }

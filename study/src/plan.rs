@@ -1,24 +1,21 @@
 //! Plans: studies as data.
 
-pub(super) mod axis;
+mod checked;
 pub(super) mod protocol;
 pub(super) mod ramp;
-pub(super) mod refinement;
-pub(super) mod steps;
-mod text;
-mod validation;
 pub(super) mod values;
 
+use std::fmt;
+
 use granular_edmd::quantity::accept;
-use serde::Serialize;
+use serde::{Deserialize, Serialize, Serializer};
 use toml::Table;
 
-use super::parameters::{self, place};
-use super::seed::{derived_seed, seed_at};
-use super::{Experiment, ExperimentError, Leg, PlanError, Scalar};
-use axis::Axis;
+use super::parameters::{self, Scalar, derived_seed, place, seed_at};
+use super::{Experiment, ExperimentError, Leg, PlanError};
 use protocol::Protocol;
 use ramp::Ramp;
+use values::Axis;
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
@@ -60,29 +57,36 @@ use ramp::Ramp;
 /// # Ok::<(), granular_edmd_study::PlanError>(())
 /// ```
 #[doc(alias("sweep", "TOML"))]
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "Parts<E>", bound(deserialize = "E: Experiment"))]
 pub struct Plan<E> {
+    pub(super) parts: Parts<E>,
+    /// The parameters of the experiment by name. Each parameter of the sweep has its first value, as the
+    /// experiment reads it, which shows the kind of number.
+    tree: Table,
+    /// The full names of the parameters that vary: first the axes in their order, then the ramp.
+    pub(super) varied: Vec<String>,
+}
+
+/// The parts of a plan, as they are in its file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Plan")]
+pub(super) struct Parts<E> {
     seed: u64,
-    #[serde(skip_serializing_if = "is_one")]
+    #[serde(default = "one", skip_serializing_if = "is_one")]
     repeats: usize,
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     end_states: bool,
     pub(super) experiment: E,
     protocol: Protocol,
     #[serde(skip_serializing_if = "Option::is_none")]
     ramp: Option<Ramp>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
     pub(super) sweep: Vec<Axis>,
-    /// The parameters of the experiment by name.
-    #[serde(skip)]
-    tree: Table,
-    /// The full names of the parameters that vary: first the axes in their order, then the ramp.
-    #[serde(skip)]
-    pub(super) varied: Vec<String>,
-    /// The first value of each parameter that varies, as the experiment reads it. The value shows the kind of
-    /// number.
-    #[serde(skip)]
-    kinds: Vec<Scalar>,
+}
+
+const fn one() -> usize {
+    1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
@@ -90,49 +94,26 @@ const fn is_one(count: &usize) -> bool {
     *count == 1
 }
 
+impl<E: Serialize> Serialize for Plan<E> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.parts.serialize(serializer)
+    }
+}
+
+/// Writes the plan in the form of its file.
+impl<E: Experiment> fmt::Display for Plan<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.to_toml().map_err(|_| fmt::Error)?)
+    }
+}
+
 impl<E: Experiment> Plan<E> {
-    /// Returns the plan of one value before its checks.
-    fn bare(experiment: E, protocol: Protocol, seed: u64) -> Self {
-        let (ramp, sweep, tree) = (None, Vec::new(), Table::new());
-        let (varied, kinds) = (Vec::new(), Vec::new());
-        Self { seed, repeats: 1, end_states: false, experiment, protocol, ramp, sweep, tree, varied, kinds }
-    }
-
-    /// Creates the plan of one value.
+    /// Returns the plan in TOML.
     ///
     /// # Errors
-    /// If the experiment refuses its parameters, the protocol is out of range, or the seed is not below
-    /// $`2^{63}`$.
-    pub fn new(experiment: E, protocol: Protocol, seed: u64) -> Result<Self, PlanError> {
-        Self::bare(experiment, protocol, seed).checked()
-    }
-
-    /// Returns the same plan with a ramp at each point.
-    ///
-    /// # Errors
-    /// If the parameter cannot be ramped, is swept already, or does not belong to the experiment, or if its
-    /// values are refused or do not increase.
-    pub fn with_ramp(self, ramp: Ramp) -> Result<Self, PlanError> {
-        Self { ramp: Some(ramp), ..self }.checked()
-    }
-
-    /// Returns the same plan with one more axis.
-    ///
-    /// The value of the last axis changes fastest.
-    ///
-    /// # Errors
-    /// If the parameter varies already or does not belong to the experiment, or if a value is refused.
-    pub fn with_axis(mut self, axis: Axis) -> Result<Self, PlanError> {
-        self.sweep.push(axis);
-        self.checked()
-    }
-
-    /// Returns the same plan with `repeats` repeats of each point, each with another seed.
-    ///
-    /// # Errors
-    /// If the number is 0, or the plan then has too many values.
-    pub fn with_repeats(self, repeats: usize) -> Result<Self, PlanError> {
-        Self { repeats, ..self }.checked()
+    /// If the plan cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String, PlanError> {
+        toml::to_string(self).map_err(|error| PlanError::toml(&error))
     }
 
     /// Returns the same plan with records that all keep the state at their end
@@ -140,50 +121,51 @@ impl<E: Experiment> Plan<E> {
     ///
     /// Otherwise, a record keeps it only if another value starts from it, since states are most of a record's
     /// bytes.
-    pub fn with_end_states(self) -> Self {
-        Self { end_states: true, ..self }
+    pub fn with_end_states(mut self) -> Self {
+        self.parts.end_states = true;
+        self
     }
 
     /// Returns whether the record of a value keeps the state at its end. Any value of a refined ramp may be
     /// the start of a bisection.
     pub(super) fn keeps_state(&self, value: usize) -> bool {
-        self.end_states || self.is_refined() || value + 1 < self.value_count()
+        self.parts.end_states || self.is_refined() || value + 1 < self.value_count()
     }
 
     /// Returns the protocol by which values are sampled.
     pub const fn protocol(&self) -> &Protocol {
-        &self.protocol
+        &self.parts.protocol
     }
 
     /// Returns the seed from which all other seeds follow.
     pub const fn seed(&self) -> u64 {
-        self.seed
+        self.parts.seed
     }
 
     /// Returns the number of repeats of each point.
     pub const fn repeats(&self) -> usize {
-        self.repeats
+        self.parts.repeats
     }
 
     /// Returns the number of ramps, which is the number of points times the number of repeats.
     pub fn ramp_count(&self) -> usize {
-        self.point_count() * self.repeats
+        self.point_count() * self.parts.repeats
     }
 
     /// Returns the number of points of the grid.
     pub fn point_count(&self) -> usize {
-        self.sweep.iter().map(Axis::len).product()
+        self.parts.sweep.iter().map(Axis::len).product()
     }
 
     /// Returns the number of values of each ramp, without those that a refinement adds.
     pub fn value_count(&self) -> usize {
-        self.ramp.as_ref().map_or(1, Ramp::len)
+        self.parts.ramp.as_ref().map_or(1, Ramp::len)
     }
 
     /// Returns the names of the parameters that vary: first the axes in their order, then the ramp.
     pub fn varied(&self) -> impl Iterator<Item = &str> {
-        let ramped = self.ramp.iter().map(Ramp::parameter);
-        self.sweep.iter().map(Axis::parameter).chain(ramped)
+        let ramped = self.parts.ramp.iter().map(Ramp::parameter);
+        self.parts.sweep.iter().map(Axis::parameter).chain(ramped)
     }
 
     /// Returns the seed of a ramp.
@@ -192,8 +174,8 @@ impl<E: Experiment> Plan<E> {
         let mut swept: Vec<_> = self.varied.iter().zip(&parameters).collect();
         // The order of the axes does not matter.
         swept.sort_by_key(|(name, _)| *name);
-        let point = swept.iter().fold(self.seed, |seed, (name, (_, value))| seed_at(seed, name, value));
-        derived_seed(point, (ramp % self.repeats) as u64)
+        let point = swept.iter().fold(self.parts.seed, |seed, (name, (_, value))| seed_at(seed, name, value));
+        derived_seed(point, (ramp % self.parts.repeats) as u64)
     }
 
     /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
@@ -206,15 +188,16 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the parameters that vary, with the ramped parameter at `at`.
     pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
-        let mut rest = ramp / self.repeats;
+        let mut rest = ramp / self.parts.repeats;
         let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
-        for (axis, kind) in self.sweep.iter().zip(&self.kinds).rev() {
-            let value = axis.value(rest % axis.len());
-            found.extend(value.map(|value| (axis.parameter(), value.like(kind))));
+        for (axis, name) in self.parts.sweep.iter().zip(&self.varied).rev() {
+            let kind = parameters::get(&self.tree, name).and_then(Scalar::of_toml);
+            let value = axis.value(rest % axis.len()).zip(kind);
+            found.extend(value.map(|(value, kind)| (axis.parameter(), value.like(&kind))));
             rest /= axis.len();
         }
         found.reverse();
-        let ramped = self.ramp.as_ref().zip(at);
+        let ramped = self.parts.ramp.as_ref().zip(at);
         found.extend(ramped.map(|(ramp, at)| (ramp.parameter(), at.into())));
         found
     }
@@ -243,21 +226,19 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the ramp of each point, or `None` if the plan has no ramp.
     pub const fn ramp(&self) -> Option<&Ramp> {
-        self.ramp.as_ref()
+        self.parts.ramp.as_ref()
     }
 
     /// Returns whether ramps bisect transitions, and therefore have more values than the plan lists.
     pub(super) fn is_refined(&self) -> bool {
-        self.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
+        self.parts.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
     }
 
     fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
         let mut tree = self.tree.clone();
         for (name, (_, to)) in self.varied.iter().zip(varied) {
-            let known = parameters::get(&tree, name).and_then(Scalar::of_toml);
-            let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
             // The names were checked when the plan was made, so this succeeds.
-            let _ = parameters::set(&mut tree, name, &to);
+            let _ = parameters::set(&mut tree, name, to);
         }
         let refused = |reason: String| Self::refused(varied, reason.into());
         parameters::experiment(tree).map_err(refused)
@@ -268,6 +249,6 @@ impl<E: Experiment> Plan<E> {
     }
 
     pub(super) fn step(&self, value: usize) -> Option<(Leg, f64)> {
-        self.ramp.as_ref().and_then(|ramp| ramp.at(value))
+        self.parts.ramp.as_ref().and_then(|ramp| ramp.at(value))
     }
 }

@@ -3,30 +3,28 @@
 //! A process appends each finished value to its own log, as a whole piece with a checksum. Readers merge all
 //! logs by ramp and value. A log outlives its process: the next process continues it.
 
-mod claims;
-mod index;
 mod log;
-mod writer;
 
 use std::collections::HashSet;
-use std::fs::{DirEntry, File};
-use std::io;
+use std::fs::{DirEntry, File, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use granular_edmd::file::Seal;
+use granular_edmd::file::{Damage, Locked, Seal};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub(super) use claims::{Claimed, Claims, blocks};
-pub(super) use index::{Entries, Entry, Head, Marks};
-use log::{Log, read_piece};
-use writer::Writer;
-
 use super::StudyError;
-use super::whole::{damaged, decoded, encoded, files_in};
+use super::folder::{decoded, encoded, files_in, open_lock};
+use super::parameters::anywhere;
+use log::{HEAD, Log, Piece, pieces, read_piece};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
+
+/// Seconds of work that a loss of power may cost.
+const AT_RISK: f32 = 0.1;
 
 /// The logs in the folder of a study.
 #[derive(Debug, Clone)]
@@ -52,6 +50,18 @@ struct LogFile {
     file: Option<File>,
 }
 
+/// A log that this process alone writes, with a second file of readable lines, which is locked.
+#[derive(Debug)]
+struct Writer {
+    path: PathBuf,
+    log: Log,
+    lines: Locked,
+    /// True if the last line is complete.
+    is_whole: bool,
+    /// Seconds of work that are not synced.
+    at_risk: f32,
+}
+
 impl Store {
     pub(super) fn new(root: &Path) -> Self {
         Self { folder: root.join("logs"), state: Arc::default() }
@@ -59,7 +69,27 @@ impl Store {
 
     /// Reads the new entries of all processes, and returns all entries.
     pub(super) fn refreshed(&self) -> Result<Arc<Entries>, StudyError> {
-        self.state().refresh(&self.folder)
+        let state = &mut *self.state();
+        let known: HashSet<&Path> = state.logs.iter().map(|log| log.path.as_path()).collect();
+        let mut found = logs(&self.folder)?;
+        found.retain(|path| !known.contains(&**path));
+        let new = found.into_iter().map(|path| LogFile { path, end: 0, is_damaged: false, file: None });
+        state.logs.extend(new);
+        let sorted = state.entries.0.len();
+        for (number, log) in state.logs.iter_mut().enumerate() {
+            // The file is opened anew each time, since a client of NFS asks for the present length only then.
+            let read = pieces(&log.path, SEAL, log.end).map_err(|error| failed("read", &log.path, error))?;
+            log.end = read.end;
+            log.is_damaged |= read.is_damaged;
+            if !read.found.is_empty() {
+                let new = read.found.into_iter().map(|piece| Entry { log: number as u32, ..piece });
+                Arc::make_mut(&mut state.entries).0.extend(new);
+            }
+        }
+        if state.entries.0.len() > sorted {
+            Arc::make_mut(&mut state.entries).settle(sorted);
+        }
+        Ok(Arc::clone(&state.entries))
     }
 
     /// Returns all entries that were read so far.
@@ -67,60 +97,54 @@ impl Store {
         Arc::clone(&self.state().entries)
     }
 
+    /// Returns a log with an unreadable part, which may have held any record.
+    pub(super) fn damage(&self) -> Option<StudyError> {
+        let state = self.state();
+        let found = state.logs.iter().find(|log| log.is_damaged)?;
+        Some(StudyError::damaged(&found.path, "a part of it is no record"))
+    }
+
     /// Returns the log that has an entry, for errors.
     pub(super) fn log_of(&self, entry: &Entry) -> PathBuf {
         self.state().logs[entry.log as usize].path.clone()
     }
 
-    /// Returns a log with an unreadable part, which may have held any record.
-    pub(super) fn damage(&self) -> Option<StudyError> {
-        let state = self.state();
-        let found = state.logs.iter().find(|log| log.is_damaged)?;
-        Some(damaged(&found.path, "a part of it is no record"))
+    /// Returns the error of a damaged record.
+    pub(super) fn damaged(&self, entry: &Entry, reason: impl std::fmt::Display) -> StudyError {
+        let Head { ramp, value, .. } = entry.head();
+        StudyError::damaged(&self.log_of(entry), format!("value {value} of ramp {ramp}: {reason}"))
     }
 
     /// Reads the contents of an entry.
     pub(super) fn read<T: DeserializeOwned>(&self, entry: &Entry) -> Result<T, StudyError> {
-        let Head { ramp, value, .. } = entry.head();
-        let (path, contents) = {
-            let mut state = self.state();
-            let log = &mut state.logs[entry.log as usize];
-            let file = match &mut log.file {
-                Some(file) => Ok(file),
-                none => File::open(&log.path).map(|file| none.insert(file)),
-            };
-            (log.path.clone(), file.and_then(|file| read_piece(file, entry)))
-        };
-        let contents = contents.map_err(StudyError::io("read", &path))?;
-        let read = contents.map_err(|_| "its checksum does not match");
-        read.and_then(|contents| decoded(&contents))
-            .map_err(|reason| damaged(&path, format!("value {value} of ramp {ramp}: {reason}")))
+        let contents = self.state().contents(entry)?.map_err(|_| "its checksum does not match");
+        contents.and_then(|contents| decoded(&contents)).map_err(|reason| self.damaged(entry, reason))
     }
 
     /// Appends the record of a value, and a readable line to the log.
-    pub(super) fn append<T: DeserializeOwned + serde::Serialize>(
+    pub(super) fn append<T: DeserializeOwned + Serialize>(
         &self,
         head: Head,
-        record: &impl serde::Serialize,
+        record: &impl Serialize,
         line: &str,
     ) -> Result<(), StudyError> {
-        self.push(head, &encoded::<T>(&self.folder, record)?, Some(line))
+        self.push(head, &encoded::<T>(&self.folder, record)?)?;
+        self.note(line)
     }
 
     /// Marks values as unfinished.
     pub(super) fn void(&self, ramp: usize, values: impl Iterator<Item = usize>) -> Result<(), StudyError> {
         for value in values {
-            let head = Head { ramp, value, edition: 0, marks: Marks::VOID, seconds: f32::NAN };
-            self.push(head, &[], None)?;
+            self.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])?;
         }
         self.refreshed().map(drop)
     }
 
-    fn push(&self, head: Head, contents: &[u8], line: Option<&str>) -> Result<(), StudyError> {
+    fn push(&self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
         let mut state = self.state();
         let before = state.entries.latest(head.ramp, head.value);
         let edition = before.map_or(0, |entry| entry.head().edition + 1);
-        state.writer(&self.folder)?.push(Head { edition, ..head }, contents, line)
+        state.writer(&self.folder)?.push(Head { edition, ..head }, contents)
     }
 
     /// Adds a line to the log for people.
@@ -139,25 +163,13 @@ impl Store {
 }
 
 impl State {
-    fn refresh(&mut self, folder: &Path) -> Result<Arc<Entries>, StudyError> {
-        let known: HashSet<&Path> = self.logs.iter().map(|log| log.path.as_path()).collect();
-        let found: Vec<PathBuf> = logs(folder)?.into_iter().filter(|path| !known.contains(&**path)).collect();
-        let new = found.into_iter().map(|path| LogFile { path, end: 0, is_damaged: false, file: None });
-        self.logs.extend(new);
-        let sorted = self.entries.count();
-        for (number, log) in self.logs.iter_mut().enumerate() {
-            let entries = &mut self.entries;
-            let show = |piece| Arc::make_mut(entries).push(Entry { log: number as u32, ..piece });
-            // The file is opened anew each time, since a client of NFS asks for the present length only then.
-            let read = Log::each(&log.path, SEAL, log.end, show);
-            let (end, is_damaged) = read.map_err(|error| failed("read", &log.path, error))?;
-            log.end = end;
-            log.is_damaged |= is_damaged;
-        }
-        if self.entries.count() > sorted {
-            Arc::make_mut(&mut self.entries).settle(sorted);
-        }
-        Ok(Arc::clone(&self.entries))
+    fn contents(&mut self, entry: &Entry) -> Result<Result<Vec<u8>, Damage>, StudyError> {
+        let LogFile { path, file, .. } = &mut self.logs[entry.log as usize];
+        let opened = match file {
+            Some(file) => Ok(file),
+            none => File::open(&*path).map(|file| none.insert(file)),
+        };
+        opened.and_then(|file| read_piece(file, entry)).map_err(StudyError::io("read", path))
     }
 
     fn writer(&mut self, folder: &Path) -> Result<&mut Writer, StudyError> {
@@ -165,6 +177,177 @@ impl State {
             Some(writer) => Ok(writer),
             none => Ok(none.insert(Writer::open(folder)?)),
         }
+    }
+}
+
+impl Writer {
+    /// Opens a log that no process is writing, or creates a new log.
+    fn open(folder: &Path) -> Result<Self, StudyError> {
+        let mut known = logs(folder)?;
+        known.sort();
+        let count = known.len();
+        known.rotate_left(anywhere(count));
+        let names =
+            known.into_iter().chain((count..).map(|number| folder.join(format!("{number:04}.records"))));
+        for path in names {
+            let lines = path.with_extension("jsonl");
+            match Locked::take(open_lock(&lines)?) {
+                Ok(lines) => {
+                    let log = Log::open(&path, SEAL).map_err(|error| failed("write", &path, error))?;
+                    return Ok(Self { path, log, lines, is_whole: false, at_risk: 0.0 });
+                }
+                Err(TryLockError::WouldBlock) => {}
+                Err(TryLockError::Error(source)) => return Err(StudyError::NoLock { path: lines, source }),
+            }
+        }
+        Err(StudyError::NoLock { path: folder.to_owned(), source: io::ErrorKind::WouldBlock.into() })
+    }
+
+    /// Appends a piece.
+    fn push(&mut self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
+        self.log.push(head.bytes(), contents).map_err(StudyError::io("write", &self.path))?;
+        // Syncing a disk can take longer than running a value again.
+        self.at_risk += head.seconds.max(0.0);
+        if self.at_risk > AT_RISK {
+            self.sync()?;
+        }
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<(), StudyError> {
+        self.at_risk = 0.0;
+        self.log.sync().map_err(StudyError::io("write", &self.path))
+    }
+
+    /// Adds a line. A failure is ignored, since a line that cannot be written must not cost the work.
+    fn note(&mut self, line: &str) {
+        let whole = if self.is_whole { Ok(self.lines.file()) } else { to_last_line_end(self.lines.file()) };
+        self.is_whole = whole.and_then(|mut end| end.write_all(format!("{line}\n").as_bytes())).is_ok();
+    }
+}
+
+/// Moves to the end of the last complete line, and removes everything after it.
+fn to_last_line_end(mut file: &File) -> io::Result<&File> {
+    let mut bytes = Vec::new();
+    file.rewind()?;
+    file.read_to_end(&mut bytes)?;
+    let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1) as u64;
+    if whole < bytes.len() as u64 {
+        file.set_len(whole)?;
+    }
+    file.seek(SeekFrom::Start(whole))?;
+    Ok(file)
+}
+
+/// All entries, one for each ramp and value, in order.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Entries(Vec<Entry>);
+
+impl Entries {
+    /// Sorts all entries. The first `sorted` entries are in order already.
+    fn settle(&mut self, sorted: usize) {
+        let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
+        // For partly sorted entries, a stable sort takes only linear time, but additional memory.
+        match sorted {
+            0 => self.0.sort_unstable_by_key(key),
+            _ => self.0.sort_by_key(key),
+        }
+        self.0.dedup_by_key(|entry| entry.place());
+    }
+
+    /// Returns the entry of a value, even if the value counts as unfinished.
+    fn latest(&self, ramp: usize, value: usize) -> Option<&Entry> {
+        let place = self.0.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
+        Some(&self.0[place])
+    }
+
+    /// Returns the record of a value.
+    pub(super) fn find(&self, ramp: usize, value: usize) -> Option<&Entry> {
+        self.latest(ramp, value).filter(|entry| !entry.head().has(Head::VOID))
+    }
+
+    /// Iterates over the records of some ramps.
+    pub(super) fn of(&self, ramps: std::ops::Range<usize>) -> impl Iterator<Item = &Entry> {
+        let [from, to] =
+            [ramps.start, ramps.end].map(|ramp| self.0.partition_point(|entry| entry.place() < (ramp, 0)));
+        self.0[from..to].iter().filter(|entry| !entry.head().has(Head::VOID))
+    }
+
+    /// Iterates over the headers of all records.
+    pub(super) fn heads(&self) -> impl Iterator<Item = Head> {
+        self.0.iter().map(Entry::head).filter(|head| !head.has(Head::VOID))
+    }
+
+    /// Returns whether all values of a ramp have a record.
+    pub(super) fn is_done(&self, ramp: usize) -> bool {
+        let found = self.of(ramp..ramp + 1).map(Entry::head);
+        let mut whole = found.enumerate().take_while(|(index, head)| head.value == *index);
+        whole.any(|(_, head)| head.has(Head::LAST))
+    }
+}
+
+/// The entry of a record, or of a value that counts as unfinished.
+pub(super) type Entry = Piece;
+
+impl Entry {
+    pub(super) fn head(&self) -> Head {
+        let number = |at: usize| u32::from_le_bytes(std::array::from_fn(|byte| self.head[at + byte]));
+        Head {
+            ramp: number(0) as usize,
+            value: number(4) as usize,
+            edition: number(8) as u16,
+            marks: (number(8) >> 16) as u16,
+            seconds: f32::from_bits(number(12)),
+        }
+    }
+
+    fn place(&self) -> (usize, usize) {
+        let Head { ramp, value, .. } = self.head();
+        (ramp, value)
+    }
+}
+
+/// The header of a record in a log.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Head {
+    pub(super) ramp: usize,
+    pub(super) value: usize,
+    /// If a value has two records, the record of the higher edition counts. Records of equal editions have
+    /// the same contents.
+    edition: u16,
+    /// The marks of the record: a sum of the constants of this type.
+    marks: u16,
+    /// Wall-clock seconds that the value took; NaN if it was taken over.
+    pub(super) seconds: f32,
+}
+
+impl Head {
+    /// The mark of a value that counts as unfinished.
+    const VOID: u16 = 1;
+    /// The mark of the last value of its ramp.
+    pub(super) const LAST: u16 = 2;
+    /// The mark of a value that stalled, failed or reached a limit.
+    pub(super) const FAILED: u16 = 4;
+    /// The mark of a value whose run has warnings.
+    pub(super) const WARNED: u16 = 8;
+
+    pub(super) const fn new(ramp: usize, value: usize, marks: u16, seconds: f32) -> Self {
+        Self { ramp, value, edition: 0, marks, seconds }
+    }
+
+    pub(super) const fn has(&self, mark: u16) -> bool {
+        self.marks & mark != 0
+    }
+
+    fn bytes(&self) -> [u8; HEAD] {
+        let mut bytes = [0; HEAD];
+        // A plan has at most a million values, and a refinement adds some thousands in each ramp.
+        bytes[..4].copy_from_slice(&(self.ramp as u32).to_le_bytes());
+        bytes[4..8].copy_from_slice(&(self.value as u32).to_le_bytes());
+        bytes[8..10].copy_from_slice(&self.edition.to_le_bytes());
+        bytes[10..12].copy_from_slice(&self.marks.to_le_bytes());
+        bytes[12..].copy_from_slice(&self.seconds.to_le_bytes());
+        bytes
     }
 }
 
@@ -178,7 +361,7 @@ fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
 /// Returns the error of a log that cannot be read or written, or is of another format.
 fn failed(action: &'static str, path: &Path, error: io::Error) -> StudyError {
     match error.kind() {
-        io::ErrorKind::InvalidData => damaged(path, error.to_string()),
+        io::ErrorKind::InvalidData => StudyError::damaged(path, error.to_string()),
         _ => StudyError::io(action, path)(error),
     }
 }

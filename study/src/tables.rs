@@ -1,19 +1,84 @@
 //! Tables of records, written row by row, with the header and the rows from the same columns.
 
-mod rows;
-
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use granular_edmd::file::Draft;
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
 
-use super::experiment::columns::{Column, Kind, Table};
-use super::meanings;
-use super::{Bracket, Experiment, Plan, Record, Scalar, StudyError};
-use rows::{Place, Row, Rows, leading, row};
+use super::experiment::columns::{Column, Kind, OF_TABLES, Table, find, of_error};
+use super::experiment::record::Leg;
+use super::folder::create;
+use super::parameters::Scalar;
+use super::plan::ramp::Bracket;
+use super::plan::values::MOST_TRIED;
+use super::{Experiment, Plan, Record, Study, StudyError};
+
+impl<E: Experiment> Study<E> {
+    /// Returns whether the folder has tables of all values.
+    pub fn has_tables(&self) -> bool {
+        self.folder.is_complete() && files(&self.plan, self.folder()).all(|file| file.exists())
+    }
+
+    /// Writes the tables of all finished records into the folder of the study, and returns the number of
+    /// these records.
+    ///
+    /// A run does this when all ramps are done. Call it earlier to see the results so far. Tables are written
+    /// row by row, so they may be larger than memory.
+    ///
+    /// # Errors
+    /// If a record is damaged or missing, or a file cannot be read or written.
+    pub fn write_tables(&self) -> Result<usize, StudyError> {
+        let _lock = self.folder.lock()?;
+        self.tables(self.folder())
+    }
+
+    /// Writes the tables of all finished records into another folder, and returns the number of these
+    /// records.
+    ///
+    /// # Errors
+    /// The same as for [`Self::write_tables`], and if the folder has a table of one of these names.
+    pub fn write_tables_to(&self, folder: impl AsRef<Path>) -> Result<usize, StudyError> {
+        let folder = folder.as_ref();
+        create(folder)?;
+        if let Some(path) = files(&self.plan, folder).find(|path| path.exists()) {
+            return Err(StudyError::refused(&path, "exists already; choose another folder for tables"));
+        }
+        self.tables(folder)
+    }
+
+    /// Writes tables, and returns the number of records in them.
+    pub(super) fn tables(&self, folder: &Path) -> Result<usize, StudyError> {
+        let entries = self.store.refreshed()?;
+        let mut tables = Tables::new(&self.plan, folder)?;
+        let mut finished = 0;
+        // Making walls takes longer than reading a small record, so only a selection of records is compared.
+        let stride = 1 + entries.heads().count() / MOST_TRIED;
+        for ramp in 0..self.plan.ramp_count() {
+            let mut seen = Vec::new();
+            for entry in entries.of(ramp..ramp + 1) {
+                let is_tried = finished % stride == 0;
+                let record = if is_tried { self.read(entry)? } else { self.read_unproven(entry)? };
+                tables.add(&record)?;
+                seen.push(self.plan.seen(&record));
+                finished += 1;
+            }
+            // A table that lacks a row must not look complete.
+            if !entries.is_done(ramp) && (self.folder.is_complete() || self.store.damage().is_some()) {
+                let missing =
+                    || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
+                return Err(self.store.damage().unwrap_or_else(missing));
+            }
+            tables.end_ramp(ramp, &self.plan.brackets(&seen))?;
+        }
+        tables.finish()?;
+        Ok(finished)
+    }
+}
 
 /// The growing tables of a study. A table takes its place in the folder when all of them are whole.
-pub(super) struct Tables<'a, E: Experiment> {
+struct Tables<'a, E: Experiment> {
     plan: &'a Plan<E>,
     columns: Vec<Column<E>>,
     values: Rows,
@@ -34,38 +99,102 @@ struct Repeat {
     is_failed: bool,
 }
 
-/// Returns the files of all tables of a plan in a folder.
-pub(super) fn files<E: Experiment>(plan: &Plan<E>, folder: &Path) -> impl Iterator<Item = PathBuf> {
-    let refined = plan.is_refined().then_some("transitions");
-    let names = ["values", "samples", "points", "columns"].into_iter().chain(refined);
-    let own = E::tables().into_iter().map(|table| table.name().to_owned());
-    names.map(str::to_owned).chain(own).map(move |name| file(folder, &name))
+/// A table that is being written to its file.
+struct Rows {
+    path: PathBuf,
+    draft: Draft,
 }
 
-fn file(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.csv"))
+impl Rows {
+    fn begin(folder: &Path, name: &str) -> Result<Self, StudyError> {
+        let path = file(folder, name);
+        let draft = Draft::of(&path).map_err(StudyError::io("write", &path))?;
+        Ok(Self { path, draft })
+    }
+
+    /// Adds a row: the text of its first cells, and further cells.
+    fn push(&mut self, first: &str, cells: impl IntoIterator<Item = Scalar>) -> Result<(), StudyError> {
+        let row = row(first, cells) + "\n";
+        self.draft.write_all(row.as_bytes()).map_err(StudyError::io("write", &self.path))
+    }
+
+    /// Renames the finished table to its final name.
+    fn finish(self) -> Result<(), StudyError> {
+        self.draft.finish().map_err(StudyError::io("write", &self.path))
+    }
+}
+
+/// Returns the text of cells after the text of the first ones. A cell without a number is empty, which every
+/// reader of tables takes for a missing value; the text `NaN` spoils the means of some.
+fn row(first: &str, cells: impl IntoIterator<Item = Scalar>) -> String {
+    let mut row = String::with_capacity(256);
+    row.push_str(first);
+    for cell in cells {
+        // The first cell of a row is never empty.
+        row.push_str(if row.is_empty() { "" } else { "," });
+        if !cell.number().is_some_and(f64::is_nan) {
+            // Writing to a string does not fail.
+            let _ = write!(row, "{cell}");
+        }
+    }
+    row
+}
+
+/// Returns the cells of a mean: the mean, its error, and its number of independent samples.
+fn cells(estimate: &Estimate) -> [Scalar; 3] {
+    [estimate.mean(), estimate.standard_error(), estimate.independent_samples()].map(Scalar::from)
+}
+
+/// The subject of a row: one value, all repeats of a value, or, without a value, a transition.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    ramp: usize,
+    value: Option<usize>,
+    leg: Option<Leg>,
+    /// Value of the ramped parameter.
+    at: Option<f64>,
+    /// True for all repeats together.
+    is_point: bool,
+}
+
+impl Place {
+    /// Returns the names and cells of the leading columns.
+    fn leading<E: Experiment>(self, plan: &Plan<E>) -> Vec<(&str, Scalar)> {
+        let repeats = plan.repeats();
+        let (name, index) = if self.is_point { ("point", self.ramp / repeats) } else { ("ramp", self.ramp) };
+        let mut cells = vec![(name, index.into())];
+        cells.extend(self.value.map(|value| ("value", value.into())));
+        cells.push(("leg", self.leg.map_or_else(String::new, |leg| leg.to_string()).into()));
+        cells.extend((!self.is_point && repeats > 1).then(|| ("repeat", (self.ramp % repeats).into())));
+        cells.extend(plan.parameters_at(self.ramp, self.at));
+        cells
+    }
+
+    /// Returns the text of the leading cells of a row.
+    fn first<E: Experiment>(self, plan: &Plan<E>) -> String {
+        row("", self.leading(plan).into_iter().map(|(_, cell)| cell))
+    }
 }
 
 impl<'a, E: Experiment> Tables<'a, E> {
     /// Begins tables with a first line and no rows.
-    pub(super) fn new(plan: &'a Plan<E>, folder: &Path) -> Result<Self, StudyError> {
+    fn new(plan: &'a Plan<E>, folder: &Path) -> Result<Self, StudyError> {
         let columns = E::columns();
         let mut described = Rows::begin(folder, "columns")?;
-        described.push(Row::of(["table", "column", "unit", "meaning"]))?;
+        described.push("table,column,unit,meaning", [])?;
         let mut begin = |name: &str, place: Place, own: Vec<Heading>| -> Result<Rows, StudyError> {
-            let leading = leading(plan, place).into_iter().map(|(name, _)| Heading::new(name, ""));
+            let leading = place.leading(plan).into_iter().map(|(name, _)| Heading::new(name, ""));
             let headings: Vec<Heading> = leading.chain(own).collect();
             for heading in &headings {
-                let meaning = meanings::of_column(plan, name, heading.name());
-                described.push(Row::of([name, heading.name(), heading.unit(), &meaning]))?;
+                let meaning = meaning(plan, &columns, name, heading.name());
+                described.push(name, [heading.name().into(), heading.unit().into(), meaning.into()])?;
             }
             let mut rows = Rows::begin(folder, name)?;
-            rows.push(Row::of(headings.iter().map(Heading::name)))?;
+            rows.push("", headings.iter().map(|heading| heading.name().into()))?;
             Ok(rows)
         };
         let (leg, at) = plan.step(0).unzip();
         let first = Place { ramp: 0, value: Some(0), leg, at, is_point: false };
-        let transition = Place { value: None, at: None, ..first };
         let in_values = columns.iter().filter(|column| column.in_values);
         let own = in_values.clone().flat_map(Column::headings);
         let values = begin("values", first, between(&["seed", "made_by", "outcome", "samples"], own))?;
@@ -79,7 +208,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
         let transitions = refined.map(|ramp| {
             let near = ["near", "far"].map(|side| format!("{}_{side}", ramp.parameter()));
             let own = near.into_iter().chain(["from_state", "to_state"].map(str::to_owned));
-            begin("transitions", transition, own.map(|name| Heading::new(name, "")).collect())
+            let place = Place { value: None, at: None, ..first };
+            begin("transitions", place, own.map(|name| Heading::new(name, "")).collect())
         });
         let transitions = transitions.transpose()?;
         let more = E::tables().into_iter().map(|table| {
@@ -92,29 +222,67 @@ impl<'a, E: Experiment> Tables<'a, E> {
     }
 
     /// Adds the rows of a record; records come in their order.
-    pub(super) fn add(&mut self, record: &Record<E>) -> Result<(), StudyError> {
+    fn add(&mut self, record: &Record<E>) -> Result<(), StudyError> {
         let (ramp, value) = (record.ramp_index(), Some(record.value_index()));
         let place = Place { ramp, value, leg: record.leg(), at: record.ramped_value(), is_point: false };
-        let row = row(self.plan, place);
-        self.add_value(record, row.clone())?;
-        self.add_samples(record, &row)?;
+        let first = place.first(self.plan);
+        self.add_value(record, &first)?;
+        for (time, sample) in record.times().iter().zip(record.samples()) {
+            let of_sample = self.columns.iter().filter(|column| column.in_samples);
+            let cells = of_sample.filter_map(|column| column.of(sample));
+            self.samples.push(&first, [Scalar::from(*time)].into_iter().chain(cells))?;
+        }
         for (table, rows) in &mut self.more {
             for cells in table.rows(record) {
                 // Missing numbers are empty cells.
                 let cells = cells.into_iter().chain(std::iter::repeat(f64::NAN)).take(table.columns().len());
-                rows.push(cells.fold(row.clone(), |row, cell| row.with(&cell.into())))?;
+                rows.push(&first, cells.map(Scalar::from))?;
             }
         }
         Ok(())
     }
 
+    fn add_value(&mut self, record: &Record<E>, first: &str) -> Result<(), StudyError> {
+        // A double cannot hold every number of 64 bits. With a letter before it, it is text for every reader
+        // of tables.
+        let seed = format!("x{:016x}", record.seed());
+        let (maker, outcome) = (record.contents.origin.maker.to_string(), record.outcome().name());
+        let mut row = vec![seed.into(), maker.into(), outcome.into(), record.samples().len().into()];
+        let mut estimates = Vec::new();
+        for column in self.columns.iter().filter(|column| column.in_values) {
+            if let Some(estimate) = column.estimate(record) {
+                row.extend(cells(&estimate));
+                estimates.push(estimate);
+            } else if let Kind::Record(value) = &column.kind {
+                row.push(value(record));
+            }
+        }
+        row.push(self.not_converged(&estimates));
+        self.values.push(first, row)?;
+        // A refinement has different values in each repeat.
+        let value = record.value_index();
+        if value < self.plan.value_count() {
+            self.repeats.resize_with(self.repeats.len().max(value + 1), Vec::new);
+            self.repeats[value].push(Repeat { estimates, is_failed: record.outcome().reason().is_some() });
+        }
+        Ok(())
+    }
+
+    /// Returns the names of the columns whose error is only a lower bound, separated by spaces: they have too
+    /// few samples for their correlations.
+    fn not_converged(&self, estimates: &[Estimate]) -> Scalar {
+        let columns = self.columns.iter().filter(|column| column.in_values && column.has_error());
+        let found = columns.zip(estimates).filter(|(_, estimate)| !estimate.is_converged());
+        found.map(|(column, _)| column.name()).collect::<Vec<_>>().join(" ").into()
+    }
+
     /// Adds the rows that need all records of a ramp.
-    pub(super) fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) -> Result<(), StudyError> {
+    fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) -> Result<(), StudyError> {
         for Bracket { leg, near, far, from, to } in brackets {
             let Some(rows) = &mut self.transitions else { break };
             let place = Place { ramp, value: None, leg: *leg, at: None, is_point: false };
-            let cells = [Scalar::from(*near), (*far).into(), from.as_str().into(), to.as_str().into()];
-            rows.push(cells.iter().fold(row(self.plan, place), Row::with))?;
+            let own = [(*near).into(), (*far).into(), from.as_str().into(), to.as_str().into()];
+            rows.push(&place.first(self.plan), own)?;
         }
         if (ramp + 1).is_multiple_of(self.plan.repeats()) {
             self.end_point(ramp)?;
@@ -129,72 +297,52 @@ impl<'a, E: Experiment> Tables<'a, E> {
             let (leg, at) = self.plan.step(value).unzip();
             let place = Place { ramp, value: Some(value), leg, at, is_point: true };
             let failed = repeats.iter().filter(|repeat| repeat.is_failed).count();
-            let row = row(self.plan, place).with(&repeats.len().into()).with(&failed.into());
             let of_column = |column: usize| repeats.iter().map(move |repeat| repeat.estimates[column]);
             let columns = 0..repeats[0].estimates.len();
             let together: Vec<_> = columns.map(|column| Estimate::over_repeats(of_column(column))).collect();
-            let row = together.iter().fold(row, Row::with_estimate);
-            self.points.push(row.with(&self.not_converged(&together)))?;
+            let counts = [repeats.len().into(), failed.into()].into_iter();
+            let row = counts.chain(together.iter().flat_map(cells)).chain([self.not_converged(&together)]);
+            self.points.push(&place.first(self.plan), row)?;
         }
         Ok(())
     }
 
-    /// Returns the names of the columns whose error is only a lower bound, separated by spaces: they have too
-    /// few samples for their correlations.
-    fn not_converged(&self, estimates: &[Estimate]) -> Scalar {
-        let columns = self.columns.iter().filter(|column| column.in_values && column.has_error());
-        let found = columns.zip(estimates).filter(|(_, estimate)| !estimate.is_converged());
-        found.map(|(column, _)| column.name()).collect::<Vec<_>>().join(" ").into()
-    }
-
     /// Renames the finished tables to their final names.
-    pub(super) fn finish(self) -> Result<(), StudyError> {
+    fn finish(self) -> Result<(), StudyError> {
         let own = self.more.into_iter().map(|(_, rows)| rows);
         let all = [self.values, self.samples, self.points, self.described].into_iter();
         all.chain(self.transitions).chain(own).try_for_each(Rows::finish)
     }
+}
 
-    fn add_value(&mut self, record: &Record<E>, row: Row) -> Result<(), StudyError> {
-        // A double cannot hold every number of 64 bits. With a letter before it, it is text for every reader
-        // of tables.
-        let row = row.with(&format!("x{:016x}", record.seed()).into());
-        let row = row.with(&record.contents.origin.maker.to_string().into());
-        let mut row = row.with(&record.outcome().name().into()).with(&record.samples().len().into());
-        let mut estimates = Vec::new();
-        for column in self.columns.iter().filter(|column| column.in_values) {
-            if let Some(estimate) = column.estimate(record) {
-                row = row.with_estimate(&estimate);
-                estimates.push(estimate);
-            } else if let Kind::Record(value) = &column.kind {
-                row = row.with(&value(record));
-            }
-        }
-        self.values.push(row.with(&self.not_converged(&estimates)))?;
-        // A refinement has different values in each repeat.
-        let value = record.value_index();
-        if value < self.plan.value_count() {
-            self.repeats.resize_with(self.repeats.len().max(value + 1), Vec::new);
-            self.repeats[value].push(Repeat { estimates, is_failed: record.outcome().reason().is_some() });
-        }
-        Ok(())
-    }
+/// Returns the files of all tables of a plan in a folder.
+fn files<E: Experiment>(plan: &Plan<E>, folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let refined = plan.is_refined().then_some("transitions");
+    let names = ["values", "samples", "points", "columns"].into_iter().chain(refined);
+    let own = E::tables().into_iter().map(|table| table.name().to_owned());
+    names.map(str::to_owned).chain(own).map(move |name| file(folder, &name))
+}
 
-    fn add_samples(&mut self, record: &Record<E>, row: &Row) -> Result<(), StudyError> {
-        for (time, sample) in record.times().iter().zip(record.samples()) {
-            let mut row = row.clone().with(&(*time).into());
-            for column in self.columns.iter().filter(|column| column.in_samples) {
-                if let Kind::Sample(value) = &column.kind {
-                    row = row.with(&value(sample));
-                }
-            }
-            self.samples.push(row)?;
-        }
-        Ok(())
-    }
+fn file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.csv"))
 }
 
 /// Returns the headings of a table between its leading columns and the last one.
 fn between(first: &[&str], own: impl Iterator<Item = Heading>) -> Vec<Heading> {
     let plain = |name: &&str| Heading::new(*name, "");
     first.iter().map(plain).chain(own).chain([Heading::new("not_converged", "")]).collect()
+}
+
+/// Returns the meaning of a column of a table of a plan; empty if the experiment gives none.
+fn meaning<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>], table: &str, column: &str) -> String {
+    let whole_name = |name: &str| plan.varied().zip(&plan.varied).find(|(short, _)| *short == name);
+    let parameter = |name: &str| whole_name(name).and_then(|(_, whole)| find(E::meanings(), whole));
+    let side = |ending| column.strip_suffix(ending).filter(|_| table == "transitions");
+    let sides = [("_near", "near side, from which the ramp came"), ("_far", "far side")];
+    if let Some((name, side)) = sides.iter().find_map(|(ending, side_of)| Some((side(*ending)?, side_of))) {
+        return format!("Value of {name} on the {side}.");
+    }
+    let own = find(&OF_TABLES, column).or_else(|| parameter(column)).or_else(|| find(E::meanings(), column));
+    let own = own.map(|meaning| meaning.trim_end_matches(" Required.").to_owned());
+    own.or_else(|| of_error(columns, column)).unwrap_or_default()
 }

@@ -3,21 +3,17 @@
 //! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a custom type would. [`Sample`] holds
 //! what is measured. Its [`Record`] has methods for the flow: order, densest layer, energy change and noise.
 
-mod base;
-mod convection;
-mod rule;
+mod parts;
 mod sample;
 
-pub use base::{Base, Sides};
-pub use rule::BoxRule;
-use rule::Kind;
+use parts::Kind;
+pub use parts::{Base, BoxRule, Sides};
 pub use sample::{Measurement, Sample};
 
 use std::sync::LazyLock;
 
 use super::experiment::columns::{Meanings, meanings};
 use super::{Column, Experiment, ExperimentError, Record, Table};
-use crate::analysis::StateCriteria;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Frictional};
 use granular_edmd::observable::Snapshot;
@@ -243,18 +239,16 @@ impl Experiment for VibratedBox {
     }
 
     fn columns() -> Vec<Column<Self>> {
-        convection::columns()
+        sample::columns()
     }
 
     fn tables() -> Vec<Table<Self>> {
-        convection::tables()
+        sample::tables()
     }
 
     /// Returns the name of the convective regime; `None` without samples.
     fn state(record: &Record<Self>) -> Option<String> {
-        let (noise, layer) = (record.thermal_noise(), record.densest_layer());
-        let found = StateCriteria::default().classify(&record.order(), noise, layer);
-        found.ok().map(|found| found.regime().to_string())
+        sample::regime(record)
     }
 
     /// Returns false for the size of the box, which must hold its disks, and for a frequency, a change of

@@ -4,9 +4,8 @@ use granular_edmd::ParameterError;
 use granular_edmd::observable::{ConvectionOrder, DenseLayer};
 use granular_edmd::quantity::{accept, non_negative, positive};
 
-use super::clusters::{Cluster, Clusters};
-use super::k_means::distinct_clusters;
-use super::state::{ConvectiveRegime, ConvectiveState};
+use super::clusters::{Cluster, Clusters, distinct_clusters};
+use super::states::{ConvectiveRegime, ConvectiveState};
 use granular_edmd::glam::DVec2;
 
 /// Seed of the clustering. Distinct clusters do not depend on it.

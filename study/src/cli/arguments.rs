@@ -74,23 +74,23 @@ pub(super) enum Command {
     },
     /// Writes the disks after each cycle of a value, for OVITO, LAMMPS or ParaView, by the ending of the
     /// file.
-    Trajectory(super::trajectory::Wishes),
+    Trajectory(Trajectory),
     /// Writes the disks of a file of any format to a file of another format.
     ///
     /// Columns are found by their names, in any order and case: x, y or pos, velo or vx, radius or diameter,
     /// mass, density or momenta, omega, orientation or angle, id, type, kind or species, image. Notes on
     /// standard error say what is ignored, wrapped or shrunk.
-    Convert(super::convert::Wishes),
+    Convert(Convert),
     /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the
     /// state before one of them.
     ///
     /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
     /// the wall, position of the disk, speeds of closing and of slip before, impulse on the disk, change of
     /// energy.
-    Replay(super::replay::Wishes),
+    Replay(Replay),
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
     /// from its position in the other run than a tolerance.
-    Diff(super::diff::Wishes),
+    Diff(Diff),
     /// Prints completions for a shell, or with `man` a page of the manual.
     Completions {
         /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
@@ -113,6 +113,114 @@ pub(super) enum Command {
         #[arg(long)]
         quick: bool,
     },
+}
+
+/// The value of a plan or a study, and the time until which it runs.
+#[derive(Debug, clap::Args)]
+pub(super) struct Place {
+    /// Index of the ramp, counted from 0.
+    #[arg(long, default_value_t = 0)]
+    pub(super) ramp: usize,
+    /// Index of the value in the ramp, counted from 0. A value after the first one starts where an earlier
+    /// one ended, which only the folder of a study knows.
+    #[arg(long, default_value_t = 0)]
+    pub(super) value: usize,
+    /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
+    /// --shrink` makes a start from disks that overlap.
+    #[arg(long)]
+    pub(super) start: Option<PathBuf>,
+    /// Absolute time at which the run ends; the end of the value if not given.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) until: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Trajectory {
+    /// The plan, in TOML (`-` for standard input), or the folder of a study.
+    pub(super) plan: PathBuf,
+    /// File to write, by its ending: .xyz or .extxyz, .lammpstrj or .dump, .gsd, or .pvd with its folder;
+    /// .xyz.gz and .lammpstrj.gz are compressed. An existing file is not overwritten.
+    #[arg(long)]
+    pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// Number of cycles, which may go beyond the end of the value.
+    #[arg(long, default_value_t = 100)]
+    pub(super) cycles: u32,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Convert {
+    /// File to read, recognized by its contents, also compressed: extended XYZ, a dump or a data file of
+    /// LAMMPS, GSD, or a table with names of columns. `-` for standard input.
+    pub(super) input: PathBuf,
+    /// File to write, by its ending: .xyz, .extxyz, .lammpstrj, .dump, .gsd, .pvd, .csv, .data, .lmp or .vtp;
+    /// .xyz.gz and .lammpstrj.gz are compressed. An existing file is not overwritten.
+    pub(super) out: PathBuf,
+    /// Frame to read, counted from 0, or from the end if negative; `last` for −1.
+    #[arg(long, default_value = "last", allow_negative_numbers = true, value_parser = frame)]
+    pub(super) frame: isize,
+    /// Step of the frame to read instead, as dumps and GSD number their frames.
+    #[arg(long, conflicts_with = "frame")]
+    pub(super) step: Option<u64>,
+    /// Largest overlap that is accepted, relative to the sum of the radii.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) tolerance: Option<f64>,
+    /// Shrinks all radii in proportion until no disks overlap. Overlaps with walls remain, since the file
+    /// does not say where walls are.
+    #[arg(long)]
+    pub(super) shrink: bool,
+    /// Mass per area of disks in a file without masses.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) density: Option<f64>,
+    /// Radius of disks in a file without radii.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) radius: Option<f64>,
+}
+
+/// Reads a frame number.
+fn frame(text: &str) -> Result<isize, std::num::ParseIntError> {
+    if text == "last" { Ok(-1) } else { text.parse() }
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Replay {
+    /// The plan, in TOML (`-` for standard input), or the folder of a study.
+    pub(super) plan: PathBuf,
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// Absolute time after which all collisions are written.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) from: Option<f64>,
+    /// Id of a disk, to write only its collisions.
+    #[arg(long)]
+    pub(super) disk: Option<u64>,
+    /// Number of collisions to write, the last ones; 10 if there is no `--from`.
+    #[arg(long)]
+    pub(super) last: Option<usize>,
+    /// Number of a collision, to write the state before it instead: as disks if the file ends in .xyz,
+    /// .lammpstrj, .csv, .data or .vtp, and otherwise as a checkpoint for `--start`.
+    #[arg(long, conflicts_with_all = ["from", "disk", "last"])]
+    pub(super) before: Option<u64>,
+    /// File to write; standard output if not given. An existing file is not overwritten.
+    #[arg(long)]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Diff {
+    /// A plan, in TOML (`-` for standard input), or the folder of a study.
+    pub(super) first: PathBuf,
+    /// The other plan or folder; the first one again if not given.
+    pub(super) second: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) place: Place,
+    /// File from which the second run starts; `--start` belongs to the first.
+    #[arg(long)]
+    pub(super) other_start: Option<PathBuf>,
+    /// Distance beyond which a disk is away from its position in the other run.
+    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
+    pub(super) tolerance: f64,
 }
 
 #[derive(Debug, clap::Args)]

@@ -9,7 +9,8 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Limits, RunError};
 use granular_edmd::speed::{self, Circumstances, Meter, Quartiles, RunReport};
 
-use super::{End, Failure, Plan, StudyError, core_time, read, refused, say};
+use super::terminal::{read, refused, say};
+use super::{End, Failure, Plan, StudyError, core_time};
 use crate::Experiment;
 
 /// Largest number of ramps whose first values are run for the core hours of a plan.

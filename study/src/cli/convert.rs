@@ -1,50 +1,18 @@
-//! The command `convert`: disks from a file of any format, in a file of another.
+//! The command `convert`, and the formats of files of disks, which follow from the endings of names.
 
+use std::f64::consts::PI;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use granular_edmd::ParameterError;
-use granular_edmd::trajectory::Reader;
+use granular_edmd::observable::SampleTimes;
+use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump, Reader, Recorder, State};
+use granular_edmd::{Disk, ParameterError};
 
-use super::files::Ending;
-use super::source::tell;
+use super::arguments::Convert;
+use super::terminal::{tell, write_new};
 use super::{End, Failure, PlanError};
 
-#[derive(Debug, clap::Args)]
-pub(super) struct Wishes {
-    /// File to read, recognized by its contents, also compressed: extended XYZ, a dump or a data file of
-    /// LAMMPS, GSD, or a table with names of columns. `-` for standard input.
-    input: PathBuf,
-    /// File to write, by its ending: .xyz, .extxyz, .lammpstrj, .dump, .gsd, .pvd, .csv, .data, .lmp or .vtp;
-    /// .xyz.gz and .lammpstrj.gz are compressed. An existing file is not overwritten.
-    out: PathBuf,
-    /// Frame to read, counted from 0, or from the end if negative; `last` for −1.
-    #[arg(long, default_value = "last", allow_negative_numbers = true, value_parser = frame)]
-    frame: isize,
-    /// Step of the frame to read instead, as dumps and GSD number their frames.
-    #[arg(long, conflicts_with = "frame")]
-    step: Option<u64>,
-    /// Largest overlap that is accepted, relative to the sum of the radii.
-    #[arg(long, allow_negative_numbers = true)]
-    tolerance: Option<f64>,
-    /// Shrinks all radii in proportion until no disks overlap. Overlaps with walls remain, since the file
-    /// does not say where walls are.
-    #[arg(long)]
-    shrink: bool,
-    /// Mass per area of disks in a file without masses.
-    #[arg(long, allow_negative_numbers = true)]
-    density: Option<f64>,
-    /// Radius of disks in a file without radii.
-    #[arg(long, allow_negative_numbers = true)]
-    radius: Option<f64>,
-}
-
-/// Reads a frame number.
-fn frame(text: &str) -> Result<isize, std::num::ParseIntError> {
-    if text == "last" { Ok(-1) } else { text.parse() }
-}
-
-impl Wishes {
+impl Convert {
     fn reader(&self) -> Result<Reader, ParameterError> {
         let reader = Reader::new().with_frame(self.frame);
         let reader = self.step.map_or(reader.clone(), |step| reader.with_step(step));
@@ -57,7 +25,7 @@ impl Wishes {
 }
 
 /// Converts a file, and reports what is ignored, changed or lost.
-pub(super) fn convert(wishes: &Wishes) -> Result<End, Failure> {
+pub(super) fn convert(wishes: &Convert) -> Result<End, Failure> {
     let ending = Ending::need(&wishes.out, |_| true)?;
     let reader = wishes.reader().map_err(PlanError::from)?;
     let state = match &wishes.input {
@@ -74,4 +42,110 @@ pub(super) fn convert(wishes: &Wishes) -> Result<End, Failure> {
         tell(&format!("{} has no place for the {} of the file", wishes.out.display(), lost.join(", ")));
     }
     Ok(End::Done)
+}
+
+/// A format of files of disks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ending {
+    Csv,
+    Data,
+    Dump,
+    Gsd,
+    Pvd,
+    Vtp,
+    Xyz,
+}
+
+/// Endings of names.
+const ENDINGS: [(&str, Ending); 10] = [
+    ("xyz", Ending::Xyz),
+    ("extxyz", Ending::Xyz),
+    ("lammpstrj", Ending::Dump),
+    ("dump", Ending::Dump),
+    ("gsd", Ending::Gsd),
+    ("pvd", Ending::Pvd),
+    ("csv", Ending::Csv),
+    ("data", Ending::Data),
+    ("lmp", Ending::Data),
+    ("vtp", Ending::Vtp),
+];
+
+impl Ending {
+    /// Returns the format of a file, by the ending of its name. A trajectory as text may be compressed.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let (name, is_packed) = name.strip_suffix(".gz").map_or((name.as_str(), false), |name| (name, true));
+        let (_, found) = ENDINGS
+            .into_iter()
+            .find(|(ending, _)| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.')))?;
+        (!is_packed || matches!(found, Self::Xyz | Self::Dump)).then_some(found)
+    }
+
+    /// Returns the format of a file, or the error of an ending that is not accepted.
+    pub(super) fn need(path: &Path, accepts: impl Fn(Self) -> bool) -> Result<Self, PlanError> {
+        Self::of(path).filter(|&ending| accepts(ending)).ok_or_else(|| {
+            let accepted = ENDINGS.iter().filter(|(_, ending)| accepts(*ending));
+            let names: Vec<String> = accepted.map(|(ending, _)| format!(".{ending}")).collect();
+            PlanError::Refused(format!("{} must end in one of {}", path.display(), names.join(", ")))
+        })
+    }
+
+    /// Returns whether a file of the format can have many frames.
+    pub(super) const fn is_trajectory(self) -> bool {
+        matches!(self, Self::Xyz | Self::Dump | Self::Gsd | Self::Pvd)
+    }
+
+    /// Returns the bytes of a file with one state, if it is plain text.
+    pub(super) fn text(self, path: &Path, state: &State) -> Option<io::Result<Vec<u8>>> {
+        if path.extension().is_some_and(|ending| ending == "gz") {
+            return None;
+        }
+        let (snapshot, mut bytes) = (state.snapshot(), Vec::new());
+        let frame = Frame::new(0, &snapshot);
+        let written = match self {
+            Self::Csv => state.write_csv(&mut bytes),
+            Self::Data => state.write_lammps_data(&mut bytes),
+            Self::Vtp => state.write_vtk(&mut bytes),
+            Self::Xyz => ExtendedXyz.write_frame(&frame, &mut bytes),
+            Self::Dump => LammpsDump.write_frame(&frame, &mut bytes),
+            Self::Gsd | Self::Pvd => return None,
+        };
+        Some(written.map(|()| bytes))
+    }
+
+    /// Writes a state to a new file.
+    pub(super) fn write(self, path: &Path, state: &State) -> Result<(), Failure> {
+        if self.is_trajectory() {
+            Recorder::create(path, ByEnding, SampleTimes::every(1.0)?)?.record(&state.snapshot())?;
+            return Ok(());
+        }
+        let bytes = self.text(path, state).transpose()?.unwrap_or_default();
+        write_new(path, &bytes)
+    }
+
+    /// Returns the names of the data in the state that the format cannot hold.
+    pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
+        let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
+        let any = |has: fn(&Disk) -> bool| state.disks().iter().any(has);
+        let is_lammps = matches!(self, Self::Dump | Self::Data);
+        let is_single = |number: f64| f64::from(number as f32) == number;
+        let has_digits = state.disks().iter().any(|disk| {
+            let (position, velocity) = (disk.position(), disk.velocity());
+            let numbers = [position.x, position.y, velocity.x, velocity.y, disk.radius(), disk.mass()];
+            !numbers.into_iter().all(is_single)
+        });
+        let keeps_time = self != Self::Csv;
+        let keeps_gravity = matches!(self, Self::Xyz | Self::Gsd);
+        let parts = [
+            (self == Self::Csv && state.domain().is_some(), "box"),
+            (!keeps_time && state.time().is_some(), "time"),
+            (!keeps_gravity && has_gravity, "gravity"),
+            (!state.kind_names().is_empty(), "names of kinds"),
+            (is_lammps && any(|disk| disk.inertia_factor() != 0.5), "inertia factors"),
+            (self == Self::Data && any(|disk| disk.angle() != 0.0), "angles"),
+            (self == Self::Gsd && any(|disk| disk.angle().abs() > PI), "whole turns of angles"),
+            (self == Self::Gsd && has_digits, "digits beyond single precision"),
+        ];
+        parts.into_iter().filter(|(is_lost, _)| *is_lost).map(|(_, name)| name).collect()
+    }
 }

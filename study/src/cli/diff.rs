@@ -1,38 +1,22 @@
 //! The command `diff`: the first differences of two runs.
 
 use std::collections::HashSet;
-use std::path::PathBuf;
 
 use granular_edmd::Disk;
 use granular_edmd::quantity::non_negative;
 use granular_edmd::replay::{Differences, Replay};
 
-use super::source::{HEADINGS, Place, Source, row, tell, tell_end};
-use super::watch::end_at_once;
-use super::{End, Failure, PlanError, say};
+use super::arguments::Diff;
+use super::source::{HEADINGS, Source, row, tell_end};
+use super::terminal::{end_at_once, say, tell};
+use super::{End, Failure, PlanError};
 use crate::{Experiment, Run};
 
 /// Number of parts of a compared interval, after each of which the progress is shown.
 const PARTS: u32 = 32;
 
-#[derive(Debug, clap::Args)]
-pub(super) struct Wishes {
-    /// A plan, in TOML (`-` for standard input), or the folder of a study.
-    first: PathBuf,
-    /// The other plan or folder; the first one again if not given.
-    second: Option<PathBuf>,
-    #[command(flatten)]
-    place: Place,
-    /// File from which the second run starts; `--start` belongs to the first.
-    #[arg(long)]
-    other_start: Option<PathBuf>,
-    /// Distance beyond which a disk is away from its position in the other run.
-    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
-    tolerance: f64,
-}
-
 /// Compares two runs, for longer and longer times until both differences are found.
-pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Wishes) -> Result<End, Failure> {
+pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Diff) -> Result<End, Failure> {
     let tolerance = non_negative("tolerance", wishes.tolerance).map_err(PlanError::from)?;
     let second = wishes.second.as_ref().unwrap_or(&wishes.first);
     let mut one = Source::<E>::open(&wishes.first, &wishes.place, wishes.place.start.as_deref())?;

@@ -6,7 +6,8 @@ use std::path::Path;
 use clap::{CommandFactory, ValueEnum};
 
 use super::arguments::Arguments;
-use super::{End, Failure, LISTED, keys, read, refused, say, schema, template, write_new};
+use super::terminal::{read, refused, say, write_new};
+use super::{End, Failure, LISTED, explain};
 use crate::{Experiment, Plan, PlanError, Ramp};
 
 /// Largest number of values of a ramp that `check` prints in full.
@@ -16,16 +17,16 @@ pub(super) fn new<E: Experiment>(
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,
     file: Option<&Path>,
 ) -> Result<End, Failure> {
-    let text = template::commented(&example()?)?;
+    let text = explain::commented(&example()?)?;
     file.map_or_else(|| say(text.trim_end()), |path| write_new(path, text.as_bytes()))?;
     Ok(End::Done)
 }
 
 pub(super) fn explain<E: Experiment>(key: Option<&str>, schema: bool) -> Result<End, Failure> {
     say(&if schema {
-        serde_json::to_string_pretty(&schema::schema::<E>())?
+        serde_json::to_string_pretty(&explain::schema::<E>())?
     } else {
-        keys::explained::<E>(key).map_err(PlanError::Refused)?
+        explain::explained::<E>(key).map_err(PlanError::Refused)?
     })?;
     Ok(End::Done)
 }

@@ -3,15 +3,16 @@
 use std::collections::VecDeque;
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use granular_edmd::replay::{Replayed, Steps};
 use granular_edmd::trajectory::State;
 
-use super::files::Ending;
-use super::source::{HEADINGS, Place, Source, row, tell_end};
-use super::watch::{self, is_stopped};
-use super::{End, Failure, PlanError, StudyError, told};
+use super::arguments::Replay;
+use super::convert::Ending;
+use super::source::{HEADINGS, Source, row, tell_end};
+use super::terminal::{is_stopped, listen, wrote};
+use super::{End, Failure, PlanError, StudyError};
 use crate::{Experiment, Run};
 
 /// Default number of collisions to write.
@@ -20,32 +21,8 @@ const FEW: usize = 10;
 /// Number of collisions between two checks for signals.
 const BATCH: usize = 1024;
 
-#[derive(Debug, clap::Args)]
-pub(super) struct Wishes {
-    /// The plan, in TOML (`-` for standard input), or the folder of a study.
-    plan: PathBuf,
-    #[command(flatten)]
-    place: Place,
-    /// Absolute time after which all collisions are written.
-    #[arg(long, allow_negative_numbers = true)]
-    from: Option<f64>,
-    /// Id of a disk, to write only its collisions.
-    #[arg(long)]
-    disk: Option<u64>,
-    /// Number of collisions to write, the last ones; 10 if there is no `--from`.
-    #[arg(long)]
-    last: Option<usize>,
-    /// Number of a collision, to write the state before it instead: as disks if the file ends in .xyz,
-    /// .lammpstrj, .csv, .data or .vtp, and otherwise as a checkpoint for `--start`.
-    #[arg(long, conflicts_with_all = ["from", "disk", "last"])]
-    before: Option<u64>,
-    /// File to write; standard output if not given. An existing file is not overwritten.
-    #[arg(long)]
-    out: Option<PathBuf>,
-}
-
 /// Runs a value again, and writes the requested collisions or state. An incomplete file is removed.
-pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
+pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
     let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
     wishes.check(&source)?;
     let mut out: Box<dyn Write> = match &wishes.out {
@@ -54,9 +31,9 @@ pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
     };
     let mut write = |bytes: &[u8]| {
         let written = out.write_all(bytes).and_then(|()| out.flush());
-        told(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
+        wrote(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
     };
-    watch::listen()?;
+    listen()?;
     let written = match wishes.before {
         Some(number) => state_before(number, source, wishes.out.as_deref(), &mut write),
         None => rows(wishes, source, &mut write),
@@ -67,7 +44,7 @@ pub(super) fn replay<E: Experiment>(wishes: &Wishes) -> Result<End, Failure> {
     written
 }
 
-impl Wishes {
+impl Replay {
     /// Returns an error if the run has no time after `--from`, or cannot have the disk of `--disk`.
     fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<E>) -> Result<(), PlanError> {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
@@ -85,7 +62,7 @@ impl Wishes {
 
 /// Writes collisions as they come, or the last ones at the end.
 fn rows<E: Experiment>(
-    wishes: &Wishes,
+    wishes: &Replay,
     mut source: Source<E>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
 ) -> Result<End, Failure> {

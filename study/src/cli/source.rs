@@ -1,44 +1,26 @@
 //! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a
-//! file.
+//! file. The command `trajectory`, which needs nothing more.
 
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use granular_edmd::Simulation;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::{CollisionRule, Regime};
-use granular_edmd::observable::Partner;
+use granular_edmd::observable::{Partner, SampleTimes};
 use granular_edmd::replay::Replayed;
 use granular_edmd::simulation::{Checkpoint, CheckpointError, Limits, RunEnd, RunError};
-use granular_edmd::trajectory::Reader;
+use granular_edmd::trajectory::{ByEnding, Reader, Recorder};
 
-use super::watch::{Watch, is_stopped};
-use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
-use crate::seed::derived_seed;
+use super::arguments::{Place, Trajectory};
+use super::convert::Ending;
+use super::terminal::{Watch, is_stopped, read, refused, say, tell};
+use super::{End, Failure, Plan, PlanError, StudyError, chain};
+use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 
 /// Wall-clock time between two checks for signals.
 const LOOK: Duration = Duration::from_millis(200);
-
-/// The value of a plan or a study, and the time until which it runs.
-#[derive(Debug, clap::Args)]
-pub(super) struct Place {
-    /// Index of the ramp, counted from 0.
-    #[arg(long, default_value_t = 0)]
-    ramp: usize,
-    /// Index of the value in the ramp, counted from 0. A value after the first one starts where an earlier
-    /// one ended, which only the folder of a study knows.
-    #[arg(long, default_value_t = 0)]
-    value: usize,
-    /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
-    /// --shrink` makes a start from disks that overlap.
-    #[arg(long)]
-    pub(super) start: Option<PathBuf>,
-    /// Absolute time at which the run ends; the end of the value if not given.
-    #[arg(long, allow_negative_numbers = true)]
-    pub(super) until: Option<f64>,
-}
 
 /// A run at its start.
 pub(super) struct Source<E: Experiment> {
@@ -134,11 +116,6 @@ fn is_no_checkpoint(error: &CheckpointError) -> bool {
     }
 }
 
-/// Prints notes for the reader of a result, on standard error.
-pub(super) fn tell(note: &str) {
-    let _ = writeln!(io::stderr(), "note: {note}");
-}
-
 /// Prints the error with which a run ended. Errors name disks by their indices, and tables name them by their
 /// ids.
 pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
@@ -171,4 +148,18 @@ pub(super) fn row(replayed: &Replayed, boundary: &impl Boundary) -> String {
     let cells = [(*number).into(), time, (*id).into(), partner, wall.into(), x, y].into_iter();
     let cells = cells.chain(speeds.into_iter().chain(changes).map(Scalar::from)).chain([regime.into()]);
     cells.map(|cell| cell.to_string()).collect::<Vec<_>>().join(",")
+}
+
+/// Runs a value again, and writes a frame after each cycle.
+pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Failure> {
+    let Trajectory { plan, out, place, cycles } = wishes;
+    Ending::need(out, Ending::is_trajectory)?;
+    let Source { mut run, cycle, .. } = Source::<E>::open(plan, place, place.start.as_deref())?;
+    let mut recorder = Recorder::create(out, ByEnding, SampleTimes::every(cycle)?)?;
+    // Half a cycle more, so that rounding does not cut the last frame off.
+    let end = run.time() + cycle * (f64::from(*cycles) + 0.5);
+    run.run_until(place.until.map_or(end, |until| end.min(until)), &mut recorder)?;
+    let (frames, disks) = (recorder.times().len(), run.len());
+    say(&format!("{frames} frames of {disks} disks are in {}", out.display()))?;
+    Ok(End::Done)
 }

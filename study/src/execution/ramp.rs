@@ -5,26 +5,17 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use super::active::{Active, Partial, Value};
-use super::earlier::SameRamps;
 use super::session::{LOOK, Session};
+use super::value::{Active, Partial, Value};
+use crate::claims::Claimed;
 use crate::experiment::record::{Contents, Outcome, Record};
-use crate::plan::refinement::{Seen, Step};
-use crate::store::{Claimed, Entries, Head, Marks};
-use crate::whole::{self, damaged};
-use crate::{Experiment, StudyError};
+use crate::folder::{create, read_sealed, remove, write_sealed};
+use crate::plan::ramp::{Seen, Step};
+use crate::store::{Entries, Head};
+use crate::{Experiment, Plan, Study, StudyError};
 
 /// Shortest part of a run between two saves, so that a run advances even if it is saved all the time.
 const SHORTEST: Duration = Duration::from_millis(20);
-
-/// A new value in the store.
-struct Made<E: Experiment> {
-    record: Record<E>,
-    /// The time that the value took; `None` if it comes from an earlier study.
-    time: Option<Duration>,
-    /// Warnings of the value's simulation.
-    warnings: Vec<String>,
-}
 
 /// The progress through a ramp.
 struct Walk<'a, 's, E: Experiment> {
@@ -33,7 +24,8 @@ struct Walk<'a, 's, E: Experiment> {
     /// The records that the store had when the ramp was claimed.
     entries: &'a Entries,
     unfinished: &'a HashSet<[usize; 2]>,
-    earlier: SameRamps<'a, E>,
+    /// The ramps of earlier studies that agree with this ramp in all values so far.
+    earlier: Vec<(&'a Study<E>, usize)>,
     seen: Vec<Seen>,
     last: Option<Record<E>>,
     /// True if there is a file with the next value's unfinished state.
@@ -66,7 +58,7 @@ pub(super) fn attempt<E: Experiment>(
             session.skip(1);
             continue;
         }
-        let earlier = session.earlier.ramps(study.plan().ramp_seed(ramp));
+        let earlier = session.earlier_ramps(study.plan().ramp_seed(ramp));
         let (entries, unfinished, seen) = (&entries, &unfinished, Vec::new());
         let mut walk =
             Walk { session, ramp, entries, unfinished, earlier, seen, last: None, has_partial: false };
@@ -84,11 +76,11 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
         self.has_partial = self.unfinished.contains(&[self.ramp, value]);
-        if value >= study.plan().value_count() {
+        if value >= study.plan.value_count() {
             self.session.count_more();
         }
         if let Some(record) = self.known(step)? {
-            self.seen.push(study.plan().seen(&record));
+            self.seen.push(study.plan.seen(&record));
             self.last = Some(record);
             return Ok(true);
         }
@@ -100,58 +92,69 @@ impl<E: Experiment> Walk<'_, '_, E> {
             Some(before) if before + 1 < value => study.record(self.ramp, before)?,
             _ => self.last.take(),
         };
-        let Some(made) = self.new_value(step, before.as_ref())? else { return Ok(false) };
-        self.seen.push(study.plan().seen(&made.record));
-        self.keep(&made)?;
-        self.last = Some(made.record);
-        Ok(true)
+        self.new_value(step, before.as_ref())
     }
 
     /// Returns the record of the next value, if it is finished.
     fn known(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
         let (study, ramp, value) = (self.session.study, self.ramp, self.seen.len());
         let Some(entry) = self.entries.find(ramp, value) else { return Ok(None) };
-        let read = study.read(&entry).and_then(|record| {
+        let read = study.read(entry).and_then(|record| {
             // The record may belong to another step, if an earlier value was run again since.
-            if (record.leg(), record.ramped_value()) == (step.leg, step.at) {
-                return Ok(Some(record));
-            }
-            let reason = format!("value {value} of ramp {ramp}: it is of another value");
-            Err(damaged(&study.store.log_of(&entry), reason))
+            let is_same = (record.leg(), record.ramped_value()) == (step.leg, step.at);
+            if is_same { Ok(Some(record)) } else { Err(study.store.damaged(entry, "it is of another value")) }
         });
         let record = self.session.if_sound(read)?;
         if record.is_some() {
-            self.advance(study.plan().protocol().steps());
+            self.advance(study.plan.protocol().steps());
             // A process that was killed just after it had finished a value may have left this file.
             self.forget_partial(value)?;
         }
         Ok(record)
     }
 
-    /// Runs the next value from a record, or takes the value over from an earlier study. Returns `None` if
-    /// the value was interrupted.
-    fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<Option<Made<E>>, StudyError> {
+    /// Runs the next value from a record, or takes the value over from an earlier study. Returns false if the
+    /// value was interrupted.
+    fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<bool, StudyError> {
         let (study, value, started) = (self.session.study, self.seen.len(), Instant::now());
         // A plan with many values was checked at only some of them.
         let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
         let origin = study.origin(self.ramp, value);
         let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
-        let mut earlier = self.earlier.next(&study.plan, &self.seen, step)?;
+        let mut earlier = self.earlier(step)?;
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
             let record = work.taken_over(record);
-            let warnings = record.counters().warnings().iter().map(ToString::to_string).collect();
-            return Ok(Some(Made { record, time: None, warnings }));
+            let warnings: Vec<_> = record.counters().warnings().iter().map(ToString::to_string).collect();
+            return self.keep(record, &warnings, None);
         }
         let mut active = match self.saved(&work)? {
             Some(active) => active,
             None => work.begin(earlier)?,
         };
         self.advance(active.steps());
-        let Some(outcome) = self.steps(&mut active)? else { return Ok(None) };
+        let Some(outcome) = self.steps(&mut active)? else { return Ok(false) };
         let warnings = active.warnings();
-        let record = active.record(outcome)?;
-        Ok(Some(Made { record, time: Some(started.elapsed()), warnings }))
+        self.keep(active.record(outcome)?, &warnings, Some(started.elapsed()))
+    }
+
+    /// Returns the record of the next value, if an earlier study has it.
+    fn earlier(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
+        let (plan, seen) = (&self.session.study.plan, &self.seen);
+        // After a value with more samples, the next one starts from another state.
+        let are_same = |other: &Plan<E>| seen.is_empty() || other.protocol() == plan.protocol();
+        self.earlier.retain(|(study, _)| are_same(&study.plan) && study.plan.next(seen) == Some(step));
+        for (study, ramp) in &self.earlier {
+            let record = study.known_record(*ramp, seen.len())?;
+            // Values from other code that the earlier study accepted are computed again here, and so are
+            // values that a limit ended, which may have been the clock's.
+            let is_ours = |record: &Record<E>| study.is_ours(&record.contents.origin);
+            let is_whole = |record: &Record<E>| !matches!(record.outcome(), Outcome::Limited { .. });
+            if let Some(record) = record.filter(|record| is_ours(record) && is_whole(record)) {
+                return Ok(Some(record));
+            }
+        }
+        Ok(None)
     }
 
     /// Returns the saved data of an unfinished value, or `None` if there are none.
@@ -161,7 +164,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
             return Ok(None);
         }
         let path = study.folder.partial(self.ramp, index);
-        let read = whole::read_sealed::<Partial<E>>(&path).and_then(|partial| {
+        let read = read_sealed::<Partial<E>>(&path).and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
             study.check_origin(&partial.0, self.ramp, index, &path)?;
             value.go_on(partial, &path).map(Some)
@@ -208,30 +211,53 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let partial = active
             .partial()
             .map_err(|source| StudyError::Encode { path: path.clone(), source: source.into() })?;
-        path.parent().map_or(Ok(()), whole::create)?;
-        whole::write_sealed::<Partial<E>>(&path, &partial)
+        path.parent().map_or(Ok(()), create)?;
+        write_sealed::<Partial<E>>(&path, &partial)
     }
 
-    /// Stores the record of a value as the last record.
-    fn keep(&self, made: &Made<E>) -> Result<(), StudyError> {
-        let (study, record) = (self.session.study, &made.record);
+    /// Stores the record of a value as the last record, with the warnings of its simulation and the time that
+    /// it took; `None` if it comes from an earlier study.
+    fn keep(
+        &mut self,
+        record: Record<E>,
+        warnings: &[String],
+        time: Option<Duration>,
+    ) -> Result<bool, StudyError> {
+        let study = self.session.study;
+        self.seen.push(study.plan.seen(&record));
         self.session.open_study()?;
-        let is_last = study.plan.next(&self.seen).is_none();
-        let marks = Marks::default().with(Marks::LAST, is_last);
-        let marks = marks.with(Marks::FAILED, record.outcome().reason().is_some());
-        let marks = marks.with(Marks::WARNED, !made.warnings.is_empty());
-        let seconds = made.time.map_or(f32::NAN, |time| time.as_secs_f32());
-        let head = Head { ramp: self.ramp, value: record.value_index(), edition: 0, marks, seconds };
-        let line = line(made);
+        let marks = [
+            (Head::LAST, study.plan.next(&self.seen).is_none()),
+            (Head::FAILED, record.outcome().reason().is_some()),
+            (Head::WARNED, !warnings.is_empty()),
+        ];
+        let marks = marks.iter().filter(|(_, is_due)| *is_due).map(|(mark, _)| mark).sum();
+        let seconds = time.map_or(f32::NAN, |time| time.as_secs_f32());
+        let line = Line {
+            ramp: record.ramp_index(),
+            value: record.value_index(),
+            outcome: record.outcome().name(),
+            reason: record.outcome().reason(),
+            warnings: &warnings.join("; "),
+            collisions: record.counters().disk_collisions,
+            taken_over: time.is_none(),
+            seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),
+            unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
+        };
+        // Numbers and texts are always JSON.
+        let line = serde_json::to_string(&line).unwrap_or_default();
+        let head = Head::new(self.ramp, record.value_index(), marks, seconds);
         study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents, &line)?;
-        self.forget_partial(record.value_index())
+        self.forget_partial(record.value_index())?;
+        self.last = Some(record);
+        Ok(true)
     }
 
     fn forget_partial(&self, value: usize) -> Result<(), StudyError> {
         if !self.has_partial {
             return Ok(());
         }
-        whole::remove(&self.session.study.folder.partial(self.ramp, value))
+        remove(&self.session.study.folder.partial(self.ramp, value))
     }
 
     /// Counts steps of the next value.
@@ -257,21 +283,4 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
     unix_time: u64,
-}
-
-fn line<E: Experiment>(Made { record, warnings, time }: &Made<E>) -> String {
-    let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-    let line = Line {
-        ramp: record.ramp_index(),
-        value: record.value_index(),
-        outcome: record.outcome().name(),
-        reason: record.outcome().reason(),
-        warnings: &warnings.join("; "),
-        collisions: record.counters().disk_collisions,
-        taken_over: time.is_none(),
-        seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),
-        unix_time,
-    };
-    // Numbers and texts are always JSON.
-    serde_json::to_string(&line).unwrap_or_default()
 }

@@ -1,17 +1,18 @@
-//! Data that all threads of a running study share.
+//! One run of a study: its blocks of ramps, for all threads, and the data that they share.
 
+use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use super::earlier::Earlier;
-use super::queue::Queue;
-use crate::store::{Entry, Marks};
-use crate::{Control, Experiment, Progress, Study, StudyError, Summary};
+use super::{Control, Progress, Summary};
+use crate::parameters::{self, anywhere};
+use crate::store::{Entries, Entry, Head};
+use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
 
 /// Longest time between two checks of a thread for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
@@ -20,7 +21,9 @@ pub(super) const LOOK: Duration = Duration::from_millis(200);
 pub(super) struct Session<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) control: &'a Control<'a>,
-    pub(super) earlier: Earlier<E>,
+    /// Earlier studies, each with the indices of its ramps by seed.
+    earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
+    pub(super) queue: Queue,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
     /// Number of finished steps, and number of steps in all values.
@@ -40,12 +43,22 @@ impl<'a, E: Experiment> Session<'a, E> {
         study: &'a Study<E>,
         control: &'a Control<'a>,
         ramps: Range<usize>,
+        blocks: impl Iterator<Item = Range<usize>>,
     ) -> Result<Self, StudyError> {
+        let open = |folder: &PathBuf| {
+            let earlier = Study::open(folder)?;
+            StudyError::if_different(folder, differences(&earlier.plan, &study.plan)?)?;
+            earlier.store.refreshed()?;
+            let seeds = (0..earlier.plan.ramp_count()).map(|ramp| (earlier.plan.ramp_seed(ramp), ramp));
+            let ramps = seeds.collect();
+            Ok((earlier, ramps))
+        };
         let values = (ramps.len() * study.plan().value_count()) as u64;
         Ok(Self {
             study,
             control,
-            earlier: Earlier::open(control.earlier, study.plan())?,
+            earlier: control.earlier.iter().map(open).collect::<Result<_, StudyError>>()?,
+            queue: Queue::new(blocks),
             ramps,
             steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
             redone: Mutex::default(),
@@ -54,18 +67,18 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Marks the finished blocks of a queue as taken. A verification keeps all blocks.
-    pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
+    /// Removes the finished blocks from the queue. A verification keeps all blocks.
+    pub(super) fn strike_done(&self) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
         }
-        let entries = self.study.store.refreshed()?;
-        queue.strike(|ramps| {
-            let is_done = ramps.clone().all(|ramp| entries.is_done(ramp));
-            self.skip(if is_done { ramps.len() } else { 0 });
-            is_done
-        });
+        self.skip(self.queue.strike(&*self.study.store.refreshed()?));
         Ok(())
+    }
+
+    /// Returns the ramps of earlier studies that have this seed.
+    pub(super) fn earlier_ramps(&self, seed: u64) -> Vec<(&Study<E>, usize)> {
+        self.earlier.iter().filter_map(|(study, ramps)| Some((study, *ramps.get(&seed)?))).collect()
     }
 
     /// Counts the steps of finished ramps.
@@ -111,7 +124,8 @@ impl<'a, E: Experiment> Session<'a, E> {
     }
 
     pub(super) fn must_stop(&self) -> bool {
-        self.control.is_interrupted() || self.broken.load(Ordering::Relaxed)
+        self.control.interrupt.is_some_and(|stop| stop.load(Ordering::Relaxed))
+            || self.broken.load(Ordering::Relaxed)
     }
 
     /// Sleeps for this time, or until the run must stop.
@@ -128,16 +142,109 @@ impl<'a, E: Experiment> Session<'a, E> {
         elsewhere.retain(|ramp| !entries.is_done(*ramp));
         let values = self.study.plan().value_count();
         let found = || entries.of(self.ramps.clone()).map(Entry::head);
-        let with = |mark: Marks| found().filter(|head| head.marks.has(mark)).count();
+        let with = |mark| found().filter(|head| head.has(mark)).count();
         let finished = found().count();
         let more = found().filter(|head| head.value >= values).count();
         // An unfinished refinement lacks at least one value.
         let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
-        let (failed, warned) = (with(Marks::FAILED), with(Marks::WARNED));
+        let (failed, warned) = (with(Head::FAILED), with(Head::WARNED));
         let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
         redone.sort();
         redone.dedup();
         Ok(Summary { finished, failed, warned, total, elsewhere, redone })
     }
+}
+
+/// Blocks that wait, and blocks of other processes.
+///
+/// Processes begin at random blocks and continue in order from there, so they seldom meet, and each runs
+/// the blocks ahead of it. A process that meets another moves to a new random block.
+#[derive(Debug)]
+pub(super) struct Queue(Mutex<Blocks>);
+
+#[derive(Debug)]
+struct Blocks {
+    waiting: VecDeque<Range<usize>>,
+    elsewhere: VecDeque<Range<usize>>,
+}
+
+impl Queue {
+    fn new(blocks: impl Iterator<Item = Range<usize>>) -> Self {
+        let (waiting, elsewhere) = (begun_anywhere(blocks.collect()), VecDeque::new());
+        Self(Mutex::new(Blocks { waiting, elsewhere }))
+    }
+
+    /// Takes the next block.
+    pub(super) fn next(&self) -> Option<Range<usize>> {
+        self.blocks().waiting.pop_front()
+    }
+
+    /// Notes that another process has a block, and moves to another block of the queue.
+    pub(super) fn leave(&self, ramps: Range<usize>) {
+        let mut blocks = self.blocks();
+        blocks.elsewhere.push_back(ramps);
+        blocks.waiting = begun_anywhere(std::mem::take(&mut blocks.waiting));
+    }
+
+    /// Removes the finished blocks, and returns the number of their ramps.
+    fn strike(&self, entries: &Entries) -> usize {
+        let Blocks { waiting, elsewhere } = &mut *self.blocks();
+        let mut ramps = 0;
+        for blocks in [waiting, elsewhere] {
+            blocks.retain(|block| {
+                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
+                ramps += if is_done { block.len() } else { 0 };
+                !is_done
+            });
+        }
+        ramps
+    }
+
+    /// Returns the ramps of other processes.
+    pub(super) fn elsewhere(&self) -> Vec<usize> {
+        self.blocks().elsewhere.iter().cloned().flatten().collect()
+    }
+
+    /// Lets a number of other processes' blocks wait for another attempt.
+    pub(super) fn retry(&self, count: usize) {
+        let mut blocks = self.blocks();
+        let mut tried = begun_anywhere(std::mem::take(&mut blocks.elsewhere));
+        blocks.elsewhere = tried.split_off(count.min(tried.len()));
+        blocks.waiting.append(&mut tried);
+    }
+
+    fn blocks(&self) -> MutexGuard<'_, Blocks> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Returns the same ring of blocks from a random one on.
+fn begun_anywhere(mut blocks: VecDeque<Range<usize>>) -> VecDeque<Range<usize>> {
+    blocks.rotate_left(anywhere(blocks.len()));
+    blocks
+}
+
+/// Returns the fields in which two plans differ, except for fields by which a study may grow.
+fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Difference>, PlanError> {
+    const FREE: [&str; 7] =
+        ["repeats", "end_states", "sweep", "protocol.samples", "ramp.values", "ramp.course", "ramp.refine"];
+    let mut all = parameters::differences(&parameters::tree(old)?, &parameters::tree(new)?);
+    let is_free =
+        |field: &str| FREE.iter().any(|free| field == *free || field.starts_with(&format!("{free}.")));
+    let varies = |field: &str| {
+        field.strip_prefix("experiment.").is_some_and(|name| new.varied.iter().any(|varied| varied == name))
+    };
+    all.retain(|Difference { field, .. }| !is_free(field) && !varies(field));
+    let swept = |plan: &Plan<E>| {
+        let mut names = plan.varied[..plan.parts.sweep.len()].to_vec();
+        names.sort();
+        names.join(", ")
+    };
+    let [old, new] = [old, new].map(swept);
+    if old != new {
+        let field = "the list of swept parameters".to_owned();
+        all.push(Difference { field, old: Some(old), new: Some(new) });
+    }
+    Ok(all)
 }

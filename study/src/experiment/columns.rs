@@ -1,4 +1,4 @@
-//! Columns of tables, each defined once by its name, unit and value.
+//! Columns of tables, each defined once by its name, unit and value, and the meanings of their names.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
 
-use crate::{Experiment, PlanError, Record, Scalar};
+use crate::parameters::Scalar;
+use crate::{Experiment, Record};
 
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
 type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
@@ -114,6 +115,14 @@ impl<E: Experiment> Column<E> {
         !matches!(self.kind, Kind::Record(_))
     }
 
+    /// Returns the value for a sample, or `None` if the column is not of samples.
+    pub(crate) fn of(&self, sample: &E::Sample) -> Option<Scalar> {
+        match &self.kind {
+            Kind::Sample(value) => Some(value(sample)),
+            _ => None,
+        }
+    }
+
     /// Returns the estimate for a record, or `None` if the column has no error.
     pub(crate) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
@@ -194,56 +203,22 @@ pub(crate) fn meanings(text: &'static str) -> Vec<(&'static str, &'static str)> 
     text.lines().filter_map(|line| line.split_once(": ")).collect()
 }
 
-/// The names of the tables of every study.
-const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
+/// Returns the meaning of one of the two columns that follow a mean.
+pub(crate) fn of_error<E: Experiment>(columns: &[Column<E>], column: &str) -> Option<String> {
+    columns.iter().filter(|mean| mean.has_error()).map(Column::name).find_map(|mean| {
+        let numbers = ["Standard error of the mean", "Number of independent samples behind the mean"];
+        let of = error_names(mean).into_iter().zip(numbers).find(|(name, _)| name == column);
+        of.map(|(_, number)| format!("{number} of {mean}."))
+    })
+}
 
-/// The columns of [`OF_TABLES`] that some tables alone have, so that others may have columns of these names.
-const OF_SOME: [&str; 3] = ["time", "from_state", "to_state"];
+/// Returns the meaning of a name.
+pub(crate) fn find(meanings: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
+    meanings.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
+}
 
 /// Returns the names of the two columns that follow a column of means: the error, and the number of
 /// independent samples.
 pub(crate) fn error_names(name: &str) -> [String; 2] {
     ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
-}
-
-/// Checks that the names of an experiment's columns and tables are valid and unique, also among the varied
-/// parameters and the built-in columns.
-pub(crate) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
-    let (columns, tables) = (E::columns(), E::tables());
-    let names = OF_TABLES.iter().map(|(name, _)| *name);
-    let of_all: Vec<&str> = names.filter(|name| !OF_SOME.contains(name)).collect();
-    let taken = [of_all.as_slice(), varied].concat();
-    let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
-        columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
-    };
-    check("column", &of(|column| column.in_samples), &[taken.as_slice(), &["time"]].concat())?;
-    let with_errors = columns.iter().filter(|column| column.in_values && column.has_error());
-    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
-    let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
-    check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
-    let all = [of_all.as_slice(), &["time"], &errors].concat();
-    if let Some(name) = varied.iter().find(|name| all.contains(name)) {
-        return Err(refused("varied parameter", name, "a column of the tables has it"));
-    }
-    for table in &tables {
-        check("column", &table.columns.iter().map(Heading::name).collect::<Vec<_>>(), &taken)?;
-    }
-    check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
-}
-
-fn check(what: &str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
-    for (index, name) in names.iter().enumerate() {
-        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
-        if name.is_empty() || !name.chars().all(is_plain) {
-            return Err(refused(what, name, "it must be of letters, digits and underscores"));
-        }
-        if taken.contains(name) || names[..index].contains(name) {
-            return Err(refused(what, name, "another one has it"));
-        }
-    }
-    Ok(())
-}
-
-fn refused(what: &str, name: &str, reason: &str) -> PlanError {
-    PlanError::Refused(format!("{name:?} cannot be the name of a {what}: {reason}"))
 }

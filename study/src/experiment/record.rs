@@ -1,4 +1,4 @@
-//! Records of finished values.
+//! Records of finished values, and their origin: a study, a place in it, and the code that made them.
 
 use std::fmt;
 
@@ -8,83 +8,12 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
-use super::origin::{Leg, Origin};
 use super::with_error;
-use crate::parameters;
-use crate::{Experiment, ExperimentError, Interval, Scalar};
+use crate::parameters::{self, Scalar};
+use crate::{Experiment, ExperimentError, Interval};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
-
-/// The outcome of a value.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-#[non_exhaustive]
-pub enum Outcome {
-    /// All samples were taken.
-    Completed,
-    /// The observer ended the value.
-    ///
-    /// The record has only the samples until then. The next value of the ramp starts from the state at that
-    /// time.
-    Stopped {
-        /// Time since the start of the ramp.
-        time: f64,
-    },
-    /// Time hardly advanced, as in an inelastic collapse.
-    ///
-    /// The record has only the samples until then. The next value of the ramp starts from the state in which
-    /// this one started.
-    Stalled {
-        /// Time since the start of the ramp.
-        time: f64,
-        /// Message of the engine.
-        reason: String,
-    },
-    /// The value reached a limit: the collisions of its
-    /// [protocol](crate::Protocol::with_most_collisions), or the seconds of a
-    /// [control](crate::Control::with_most_seconds).
-    ///
-    /// The samples and the next value are as for a stalled value.
-    Limited {
-        /// Time since the start of the ramp.
-        time: f64,
-        /// The limit.
-        reason: String,
-    },
-    /// The engine or a method of the experiment returned another error.
-    ///
-    /// The samples and the next value are as for a stalled value.
-    Failed {
-        /// Time since the start of the ramp.
-        time: f64,
-        /// Message of the engine.
-        reason: String,
-    },
-}
-
-impl Outcome {
-    /// Returns the outcome in one word.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Completed => "completed",
-            Self::Stopped { .. } => "stopped",
-            Self::Stalled { .. } => "stalled",
-            Self::Limited { .. } => "limited",
-            Self::Failed { .. } => "failed",
-        }
-    }
-
-    /// Returns the reason why the value was not finished: it stalled, failed, or reached a limit.
-    pub fn reason(&self) -> Option<&str> {
-        match self {
-            Self::Stalled { reason, .. } | Self::Failed { reason, .. } | Self::Limited { reason, .. } => {
-                Some(reason)
-            }
-            Self::Completed | Self::Stopped { .. } => None,
-        }
-    }
-}
 
 /// A finished value: its parameters, samples and counters, and its last state if the plan keeps it.
 ///
@@ -94,52 +23,6 @@ impl Outcome {
 pub struct Record<E: Experiment> {
     pub(crate) experiment: E,
     pub(crate) contents: Contents<E::Sample, E::Observer>,
-}
-
-/// The contents of a record's file. The experiment is missing, since it follows from the plan.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Contents<S, O> {
-    pub(crate) origin: Origin,
-    pub(crate) leg: Option<Leg>,
-    /// Value of the ramped parameter.
-    pub(crate) at: Option<f64>,
-    pub(crate) outcome: Outcome,
-    pub(crate) end: Cycles,
-    pub(crate) measured: Measured<S, O>,
-    pub(crate) counters: Counters,
-    /// Fingerprints of the rule and the walls that made the value.
-    pub(crate) parts: [Option<Fingerprint>; 2],
-    /// Number of finished steps.
-    pub(crate) steps: u64,
-    /// The state and the driving at the end, if the plan keeps them.
-    pub(crate) state: Option<Checkpoint>,
-    pub(crate) driving: Option<Vec<u8>>,
-}
-
-/// The measurements of a value.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Measured<S, O> {
-    pub(crate) times: Vec<f64>,
-    pub(crate) samples: Vec<S>,
-    pub(crate) observer: O,
-}
-
-/// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
-/// does not drift as a sum of cycles does.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Cycles {
-    /// Absolute time from which cycles are counted.
-    pub(crate) since: f64,
-    pub(crate) count: u64,
-}
-
-impl Cycles {
-    pub(crate) const START: Self = Self { since: 0.0, count: 0 };
-
-    /// Returns the absolute time after further cycles of this length.
-    pub(crate) fn time(&self, more: f64, cycle: f64) -> f64 {
-        self.since + (self.count as f64 + more) * cycle
-    }
 }
 
 impl<E: Experiment> Record<E> {
@@ -258,6 +141,122 @@ impl<E: Experiment> fmt::Debug for Record<E> {
     }
 }
 
+/// The outcome of a value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// All samples were taken.
+    Completed,
+    /// The observer ended the value.
+    ///
+    /// The record has only the samples until then. The next value of the ramp starts from the state at that
+    /// time.
+    Stopped {
+        /// Time since the start of the ramp.
+        time: f64,
+    },
+    /// Time hardly advanced, as in an inelastic collapse.
+    ///
+    /// The record has only the samples until then. The next value of the ramp starts from the state in which
+    /// this one started.
+    Stalled {
+        /// Time since the start of the ramp.
+        time: f64,
+        /// Message of the engine.
+        reason: String,
+    },
+    /// The value reached a limit: the collisions of its
+    /// [protocol](crate::Protocol::with_most_collisions), or the seconds of a
+    /// [control](crate::Control::with_most_seconds).
+    ///
+    /// The samples and the next value are as for a stalled value.
+    Limited {
+        /// Time since the start of the ramp.
+        time: f64,
+        /// The limit.
+        reason: String,
+    },
+    /// The engine or a method of the experiment returned another error.
+    ///
+    /// The samples and the next value are as for a stalled value.
+    Failed {
+        /// Time since the start of the ramp.
+        time: f64,
+        /// Message of the engine.
+        reason: String,
+    },
+}
+
+impl Outcome {
+    /// Returns the outcome in one word.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::Stopped { .. } => "stopped",
+            Self::Stalled { .. } => "stalled",
+            Self::Limited { .. } => "limited",
+            Self::Failed { .. } => "failed",
+        }
+    }
+
+    /// Returns the reason why the value was not finished: it stalled, failed, or reached a limit.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Stalled { reason, .. } | Self::Failed { reason, .. } | Self::Limited { reason, .. } => {
+                Some(reason)
+            }
+            Self::Completed | Self::Stopped { .. } => None,
+        }
+    }
+}
+
+/// The contents of a record's file. The experiment is missing, since it follows from the plan.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Contents<S, O> {
+    pub(crate) origin: Origin,
+    pub(crate) leg: Option<Leg>,
+    /// Value of the ramped parameter.
+    pub(crate) at: Option<f64>,
+    pub(crate) outcome: Outcome,
+    pub(crate) end: Cycles,
+    pub(crate) measured: Measured<S, O>,
+    pub(crate) counters: Counters,
+    /// Fingerprints of the rule and the walls that made the value.
+    pub(crate) parts: [Option<Fingerprint>; 2],
+    /// Number of finished steps.
+    pub(crate) steps: u64,
+    /// The state and the driving at the end, if the plan keeps them.
+    pub(crate) state: Option<Checkpoint>,
+    pub(crate) driving: Option<Vec<u8>>,
+}
+
+/// The measurements of a value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Measured<S, O> {
+    pub(crate) times: Vec<f64>,
+    pub(crate) samples: Vec<S>,
+    pub(crate) observer: O,
+}
+
+/// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
+/// does not drift as a sum of cycles does.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Cycles {
+    /// Absolute time from which cycles are counted.
+    pub(crate) since: f64,
+    pub(crate) count: u64,
+}
+
+impl Cycles {
+    pub(crate) const START: Self = Self { since: 0.0, count: 0 };
+
+    /// Returns the absolute time after further cycles of this length.
+    pub(crate) fn time(&self, more: f64, cycle: f64) -> f64 {
+        self.since + (self.count as f64 + more) * cycle
+    }
+}
+
 impl<S, O> Measured<S, O> {
     /// Checks that the times, the samples and the observer are possible.
     pub(crate) fn check<E>(&self, experiment: &E, state: Option<&Checkpoint>) -> Result<(), String>
@@ -283,4 +282,67 @@ pub(crate) fn check_state(
     let rounding = TIME_ROUNDING * range.end();
     let is_in = state.time() >= range.start() - rounding && state.time() <= range.end() + rounding;
     check(is_in, "its state is of another time")
+}
+
+/// The study, ramp and value to which a file belongs.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Origin {
+    /// Hash of the plan.
+    pub(crate) study: [u8; 32],
+    pub(crate) maker: Maker,
+    pub(crate) ramp: usize,
+    pub(crate) value: usize,
+    pub(crate) seed: u64,
+}
+
+/// The code that made a record.
+///
+/// Two makers with the same results number, revision and columns give the same results, whatever their
+/// versions are.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Maker {
+    /// Version of this crate.
+    pub(crate) version: String,
+    /// The crate's [`RESULTS`](granular_edmd::RESULTS).
+    pub(crate) results: u32,
+    /// The revision of the experiment.
+    pub(crate) revision: Fingerprint,
+    /// Fingerprint of the names and units in all tables. An experiment need not declare a change of these.
+    pub(crate) columns: Fingerprint,
+}
+
+impl Maker {
+    /// Returns, in one word, the numbers that decide whether a study accepts the code.
+    pub(crate) fn key(&self) -> String {
+        format!("{}:{}:{}", self.results, self.revision, self.columns)
+    }
+}
+
+/// Formats a record's maker for a cell of a table.
+impl fmt::Display for Maker {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { version, results, revision, .. } = self;
+        write!(formatter, "{version} results={results} revision={revision}")
+    }
+}
+
+/// The direction from which a ramp comes to a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Leg {
+    /// From below.
+    Up,
+    /// From above.
+    Down,
+}
+
+impl fmt::Display for Leg {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(match self {
+            Self::Up => "up",
+            Self::Down => "down",
+        })
+    }
 }

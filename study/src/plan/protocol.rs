@@ -3,6 +3,7 @@
 use granular_edmd::ParameterError;
 use granular_edmd::quantity::accept;
 
+use super::values::from_file;
 use crate::Interval;
 
 /// Largest length of a value in cycles, and largest number of samples, at which products are still exact.
@@ -26,12 +27,14 @@ pub struct Protocol {
     settle: u64,
     samples: u64,
     every: u64,
-    phase: f64,
+    /// Phase of the samples in their cycle, in `(0, 1]`.
+    pub(crate) phase: f64,
+    /// Largest number of collisions in a value, or `None` if there is no limit.
     #[serde(skip_serializing_if = "Option::is_none")]
-    most_collisions: Option<u64>,
+    pub(crate) most_collisions: Option<u64>,
 }
 
-crate::gate::from_file! {
+from_file! {
     Protocol {
         settle: u64,
         samples: u64,
@@ -90,11 +93,6 @@ impl Protocol {
         Ok(Self { most_collisions: Some(most), ..self })
     }
 
-    /// Returns the largest number of collisions in a value, or `None` if there is no limit.
-    pub(crate) const fn most_collisions(&self) -> Option<u64> {
-        self.most_collisions
-    }
-
     /// Returns the number of cycles from a sample to the next.
     pub const fn every(&self) -> u64 {
         self.every
@@ -120,19 +118,12 @@ impl Protocol {
         self.settle.div_ceil(self.every)
     }
 
-    /// Returns the cycles from the start of a value to the end of this step; steps are counted from 0.
-    pub(crate) fn end_of(&self, step: u64) -> u64 {
-        let settling = self.settling_steps();
-        if step < settling {
-            ((step + 1) * self.every).min(self.settle)
-        } else {
-            self.settle + (step - settling + 1) * self.every
-        }
-    }
-
     /// Returns the number of cycles in `steps` steps.
     pub(crate) fn cycles_of(&self, steps: u64) -> u64 {
-        steps.checked_sub(1).map_or(0, |last| self.end_of(last))
+        match steps.checked_sub(self.settling_steps()) {
+            Some(samples) => self.settle + samples * self.every,
+            None => steps * self.every,
+        }
     }
 
     /// Returns the number of samples in `steps` steps.
@@ -140,24 +131,10 @@ impl Protocol {
         steps.saturating_sub(self.settling_steps())
     }
 
-    /// Returns whether a step ends with a sample.
-    pub(crate) const fn is_sampled(&self, step: u64) -> bool {
-        step >= self.settling_steps()
-    }
-
     /// Returns the step after this number of finished steps, or the last step of a finished value.
-    pub(crate) fn last_of(&self, steps: u64) -> Interval {
-        self.interval(self.steps().saturating_sub(1).min(steps))
-    }
-
-    /// Returns the step of this index.
-    pub(crate) fn interval(&self, index: u64) -> Interval {
+    pub(crate) fn step(&self, finished: u64) -> Interval {
+        let index = finished.min(self.steps().saturating_sub(1));
         Interval { index, sample: index.checked_sub(self.settling_steps()) }
-    }
-
-    /// Returns the time from a sample to the end of its step, in cycles.
-    pub(crate) const fn lead(&self) -> f64 {
-        1.0 - self.phase
     }
 }
 
@@ -168,9 +145,9 @@ mod tests {
     #[test]
     fn steps_tile_a_value() {
         let protocol = Protocol::new(25, 3, 10).unwrap();
-        let ends: Vec<u64> = (0..protocol.steps()).map(|step| protocol.end_of(step)).collect();
-        assert_eq!(ends, [10, 20, 25, 35, 45, 55]);
+        let ends: Vec<u64> = (0..=protocol.steps()).map(|steps| protocol.cycles_of(steps)).collect();
+        assert_eq!(ends, [0, 10, 20, 25, 35, 45, 55]);
         assert_eq!(ends.last(), Some(&protocol.cycles()));
-        assert_eq!((0..6).filter(|&step| protocol.is_sampled(step)).count(), 3);
+        assert_eq!((0..6).filter(|&step| protocol.step(step).sample.is_some()).count(), 3);
     }
 }

@@ -1,10 +1,14 @@
-//! Ramps: the successive values of a parameter in one run.
+//! Ramps: the successive values of a parameter in one run, and further values that bracket transitions
+//! between states.
+
+use std::ops::Range;
 
 use granular_edmd::quantity::positive;
 use serde::{Deserialize, Serialize};
 
-use super::values::Values;
-use crate::{Leg, PlanError, Scalar};
+use super::values::{Values, from_file};
+use crate::parameters::Scalar;
+use crate::{Experiment, Leg, Plan, PlanError, Record};
 
 /// The order in which a [`Ramp`] goes through its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -35,16 +39,16 @@ pub enum Course {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ramp {
     parameter: String,
-    values: Values<f64>,
+    values: Values,
     course: Course,
     #[serde(skip_serializing_if = "Option::is_none")]
     refine: Option<Width>,
 }
 
-crate::gate::from_file! {
+from_file! {
     Ramp {
         parameter: String,
-        values: Values<f64>,
+        values: Values,
         #[serde(default)]
         course: Course,
         refine: Option<Width>
@@ -80,15 +84,22 @@ impl Ramp {
         values: impl IntoIterator<Item = f64>,
         course: Course,
     ) -> Result<Self, PlanError> {
-        let values = Values::List(values.into_iter().collect());
+        let values = Values::list(values);
         Self { parameter: parameter.into(), values, course, refine: None }.checked()
     }
 
-    fn checked(self) -> Result<Self, PlanError> {
+    fn checked(mut self) -> Result<Self, PlanError> {
         self.values.check(&self.parameter)?;
+        self.values.set_kind(&Scalar::Number(0.0));
         let Values::List(values) = &self.values else { return Ok(self) };
-        let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else { return Ok(self) };
-        let [before, value] = [pair[0], pair[1]].map(Scalar::from);
+        if let Some(word) = values.iter().find(|value| value.number().is_none()) {
+            return Err(PlanError::varied(
+                &self.parameter,
+                format!("has the value {word}, which is no number"),
+            ));
+        }
+        let falls = |pair: &&[Scalar]| pair[0].number() >= pair[1].number();
+        let Some([before, value]) = values.windows(2).find(falls) else { return Ok(self) };
         let reason = format!(
             "has {value} after {before}: the values of a ramp must increase; say `course` for the way"
         );
@@ -108,19 +119,19 @@ impl Ramp {
         let (Width::Absolute(number) | Width::Relative(number)) = width;
         positive("width of a transition", number)?;
         if let Width::Relative(_) = width {
-            positive("value of a ramp with a relative width", self.values.at(0))?;
+            positive("value of a ramp with a relative width", self.value(0))?;
         }
         Ok(Self { refine: Some(width), ..self })
     }
 
     /// Returns the width to which transitions are bisected, or `None` without bisection.
-    pub(crate) const fn refinement(&self) -> Option<Width> {
+    pub(super) const fn refinement(&self) -> Option<Width> {
         self.refine
     }
 
     /// Returns whether a value lies between the first and the last value of the ramp.
     pub(crate) fn spans(&self, at: f64) -> bool {
-        self.values.at(0) <= at && at <= self.values.at(self.values.len() - 1)
+        self.value(0) <= at && at <= self.value(self.values.len() - 1)
     }
 
     /// Returns the name of the parameter.
@@ -131,6 +142,11 @@ impl Ramp {
     /// Returns the values in the order in which the ramp comes to them, with the directions.
     pub fn path(&self) -> impl Iterator<Item = (Leg, f64)> {
         (0..self.len()).filter_map(|index| self.at(index))
+    }
+
+    fn value(&self, index: usize) -> f64 {
+        // The values were checked to be numbers when the ramp was made.
+        self.values.at(index).number().unwrap_or(f64::NAN)
     }
 
     /// Returns the number of values that the ramp comes to.
@@ -144,9 +160,151 @@ impl Ramp {
     /// Returns the value of this index, and the direction from which the ramp comes to it.
     pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
         if self.course != Course::Down && index < self.values.len() {
-            return Some((Leg::Up, self.values.at(index)));
+            return Some((Leg::Up, self.value(index)));
         }
         let from_below = self.len().checked_sub(index + 1)?;
-        Some((Leg::Down, self.values.at(from_below)))
+        Some((Leg::Down, self.value(from_below)))
+    }
+}
+
+/// The data of a finished value on which the path depends.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Seen {
+    pub(crate) leg: Option<Leg>,
+    pub(crate) at: Option<f64>,
+    pub(crate) state: Option<String>,
+}
+
+impl<E: Experiment> Plan<E> {
+    /// Returns the parts of a record on which the path depends. Finding the name of a state may take long,
+    /// and only a refined ramp needs the name.
+    pub(crate) fn seen(&self, record: &Record<E>) -> Seen {
+        let state = if self.is_refined() { E::state(record) } else { None };
+        Seen { leg: record.leg(), at: record.ramped_value(), state }
+    }
+
+    /// Returns the next value of a ramp after the finished values, or `None` if the ramp is complete.
+    pub(crate) fn next(&self, seen: &[Seen]) -> Option<Step> {
+        match self.ramp() {
+            Some(ramp) => ramp.search(seen).err(),
+            None => seen.is_empty().then_some(Step { leg: None, at: None, before: None }),
+        }
+    }
+
+    /// Returns the brackets of all transitions; empty until all of them have the requested width.
+    pub(crate) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
+        self.ramp().and_then(|ramp| ramp.search(seen).ok()).unwrap_or_default()
+    }
+}
+
+/// The next value on a path, and the index of the value from which it starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Step {
+    pub(crate) leg: Option<Leg>,
+    pub(crate) at: Option<f64>,
+    pub(crate) before: Option<usize>,
+}
+
+/// Two values of a ramped parameter between which the state changes.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Bracket {
+    /// The direction from which the ramp came to the transition: from below or from above.
+    pub leg: Option<Leg>,
+    /// The value on the near side of the transition, from which the ramp came.
+    pub near: f64,
+    /// The value on the far side.
+    pub far: f64,
+    /// The state on the side from which the ramp came.
+    pub from: String,
+    /// The state on the far side; empty if the far side's record shows no state.
+    pub to: String,
+}
+
+impl Ramp {
+    /// Returns the brackets of all transitions among the finished values. The error is the next value that
+    /// the ramp or a bracket needs.
+    fn search(&self, seen: &[Seen]) -> Result<Vec<Bracket>, Step> {
+        let own = self.len();
+        if let Some((leg, at)) = self.at(seen.len()) {
+            return Err(Step { leg: Some(leg), at: Some(at), before: seen.len().checked_sub(1) });
+        }
+        let Some(width) = self.refinement() else { return Ok(Vec::new()) };
+        let mut search = Search { seen, width, halves: own..seen.len(), brackets: Vec::new() };
+        for (near, far) in (0..own).zip(1..own) {
+            search.between(near, far)?;
+        }
+        Ok(search.brackets)
+    }
+}
+
+/// A search for transitions among the finished values.
+struct Search<'a> {
+    seen: &'a [Seen],
+    width: Width,
+    /// The indices of the bisections' values that the search has not used yet.
+    halves: Range<usize>,
+    brackets: Vec<Bracket>,
+}
+
+impl Search<'_> {
+    /// Narrows the transitions between two neighbors of the ramp, in the order of the path. The error is the
+    /// next value that they need.
+    ///
+    /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to
+    /// the direction from which the ramp came. The first of several transitions is narrowed first: every
+    /// state but the near one counts as beyond the transition.
+    fn between(&mut self, mut near: usize, far: usize) -> Result<(), Step> {
+        if self.seen[far].state.is_none() {
+            return Ok(());
+        }
+        // The values beyond the transition, the closest value last.
+        let mut beyond = vec![far];
+        while let Some(&far) = beyond.last() {
+            let [from, to] = [near, far].map(|index| &self.seen[index].state);
+            let is_transition = from.is_some() && from != to;
+            if let Some(at) = self.middle(near, far).filter(|_| is_transition) {
+                let half = Step { leg: self.seen[far].leg, at: Some(at), before: Some(near) };
+                let index = self.halves.next().ok_or(half)?;
+                if self.seen[index].state == *from {
+                    near = index;
+                } else {
+                    beyond.push(index);
+                }
+                continue;
+            }
+            if is_transition {
+                let [near, far] = [near, far].map(|index| &self.seen[index]);
+                let [at, beyond] = [near, far].map(|seen| seen.at.unwrap_or(f64::NAN));
+                let [from, to] = [near, far].map(|seen| seen.state.clone().unwrap_or_default());
+                self.brackets.push(Bracket { leg: far.leg, near: at, far: beyond, from, to });
+            }
+            near = far;
+            beyond.pop();
+        }
+        Ok(())
+    }
+
+    /// Returns the middle of two values, or `None` if the values are close enough.
+    fn middle(&self, near: usize, far: usize) -> Option<f64> {
+        let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
+        let width = far - near;
+        // Where both forms are possible, the sum of the halves would round differently. It therefore serves
+        // only where the width overflows.
+        let at = if width.is_finite() { near + 0.5 * width } else { 0.5 * near + 0.5 * far };
+        // There is no number between two neighboring doubles.
+        let is_between = (near < at && at < far) || (far < at && at < near);
+        (is_between && !self.width.holds(near, far)).then_some(at)
+    }
+}
+
+impl Width {
+    /// Returns whether two values are within this width of each other.
+    fn holds(self, near: f64, far: f64) -> bool {
+        (far - near).abs()
+            <= match self {
+                Self::Absolute(width) => width,
+                Self::Relative(share) => share * near.abs().max(far.abs()),
+            }
     }
 }

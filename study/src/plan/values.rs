@@ -1,15 +1,110 @@
-//! The values of a ramp or an axis: a list, or a rule.
+//! The values of a parameter: a list, or a rule, which costs no memory, however many values follow from it.
+//! The values of an axis.
 
 use std::collections::HashSet;
-use std::fmt;
-use std::marker::PhantomData;
 
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
+use granular_edmd::ParameterError;
+use granular_edmd::quantity::{accept, finite, positive};
+use serde::{Deserialize, Serialize};
 
-use super::steps::Steps;
-use crate::{PlanError, Scalar};
+use crate::PlanError;
+use crate::parameters::Scalar;
+
+/// Implements `Deserialize`: reads exactly these fields, then evaluates the expression.
+///
+/// A derived `Deserialize` would fill private fields with numbers that no constructor accepts.
+macro_rules! from_file {
+    ($name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),+ } => $checked:expr, $error:ty) => {
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+                // The mirror has the name of the type, which stands in errors of formats.
+                #[derive(serde::Deserialize)]
+                #[serde(deny_unknown_fields)]
+                struct $name {
+                    $($(#[$attribute])* $field: $type,)+
+                }
+                let $name { $($field),+ } = serde::Deserialize::deserialize(file)?;
+                let checked = || -> Result<Self, $error> { $checked };
+                checked().map_err(serde::de::Error::custom)
+            }
+        }
+    };
+}
+
+pub(super) use from_file;
+
+/// A parameter that differs between ramps, so that each of its values starts afresh, independent of all
+/// others.
+///
+/// ```
+/// use granular_edmd_study::Axis;
+/// assert_eq!(Axis::new("inelasticity", [0.0, 0.01])?.len(), 2);
+/// assert_eq!(Axis::new("sides", ["hard", "periodic"])?.parameter(), "sides");
+/// # Ok::<(), granular_edmd_study::PlanError>(())
+/// ```
+#[doc(alias("sweep", "parameter scan"))]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Axis {
+    parameter: String,
+    values: Values,
+}
+
+from_file! {
+    Axis { parameter: String, values: Values } => Self { parameter, values }.checked(), PlanError
+}
+
+#[expect(clippy::len_without_is_empty, reason = "an axis has at least one value")]
+impl Axis {
+    /// Creates an axis of the parameter of this name with these values, in any order.
+    ///
+    /// # Errors
+    /// If there are no values, one is not finite, or one comes twice.
+    pub fn new(
+        parameter: impl Into<String>,
+        values: impl IntoIterator<Item: Into<Scalar>>,
+    ) -> Result<Self, PlanError> {
+        Self { parameter: parameter.into(), values: Values::list(values) }.checked()
+    }
+
+    fn checked(self) -> Result<Self, PlanError> {
+        self.values.check(&self.parameter)?;
+        self.check_twice().map(|()| self)
+    }
+
+    fn check_twice(&self) -> Result<(), PlanError> {
+        let Some(value) = self.values.twice() else { return Ok(()) };
+        let reason =
+            format!("takes the value {value} twice; for several runs of each value give the plan repeats");
+        Err(PlanError::varied(&self.parameter, reason))
+    }
+
+    /// Returns the name of the parameter.
+    pub fn parameter(&self) -> &str {
+        &self.parameter
+    }
+
+    /// Returns the number of values.
+    pub const fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Returns the value of this index, or `None` beyond the last value.
+    pub fn value(&self, index: usize) -> Option<Scalar> {
+        (index < self.len()).then(|| self.values.at(index))
+    }
+
+    /// Returns the indices of the values that are tried when a plan is made.
+    pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
+        self.values.tried()
+    }
+
+    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files.
+    /// Values that differ may be one value of that type.
+    pub(super) fn set_kind(&mut self, kind: &Scalar) -> Result<(), PlanError> {
+        self.values.set_kind(kind);
+        self.check_twice()
+    }
+}
 
 /// Largest number of values that are tried when a plan is made.
 pub(crate) const MOST_TRIED: usize = 1024;
@@ -23,33 +118,65 @@ pub(crate) fn tried(count: usize) -> impl Iterator<Item = usize> {
 }
 
 /// One or more values of a parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub(super) enum Values<T> {
-    List(Vec<T>),
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, try_from = "toml::Value")]
+pub(super) enum Values {
+    List(Vec<Scalar>),
     Rule(Steps),
 }
 
-impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
+/// Derived code would try a list and a rule, and could not say what is wrong with either.
+impl TryFrom<toml::Value> for Values {
+    type Error = String;
+
+    fn try_from(value: toml::Value) -> Result<Self, String> {
+        match value {
+            toml::Value::Array(list) => {
+                let scalars = list.iter().map(|value| Scalar::of_toml(value).ok_or(Scalar::REFUSED));
+                Ok(Self::List(scalars.collect::<Result<_, _>>()?))
+            }
+            toml::Value::Table(rule) => rule.try_into().map(Self::Rule).map_err(|error| error.to_string()),
+            other => Err(format!(
+                "{other} is neither a list of values nor a rule {{ from, to, step }} or {{ from, to, log }}"
+            )),
+        }
+    }
+}
+
+impl Values {
+    /// Creates a list of values.
+    pub(super) fn list(values: impl IntoIterator<Item: Into<Scalar>>) -> Self {
+        Self::List(values.into_iter().map(Into::into).collect())
+    }
+
     pub(super) const fn len(&self) -> usize {
         match self {
             Self::List(list) => list.len(),
-            Self::Rule(steps) => steps.count(),
+            Self::Rule(steps) => steps.count,
         }
     }
 
     /// Returns the value of an index below the number of values.
-    pub(super) fn at(&self, index: usize) -> T {
+    pub(super) fn at(&self, index: usize) -> Scalar {
         match self {
             Self::List(list) => list[index].clone(),
             Self::Rule(steps) => steps.value(index).into(),
         }
     }
 
+    /// Turns the values of a list into the type of another value.
+    pub(super) fn set_kind(&mut self, kind: &Scalar) {
+        if let Self::List(list) = self {
+            for value in list {
+                *value = std::mem::replace(value, Scalar::Flag(false)).like(kind);
+            }
+        }
+    }
+
     /// Returns the indices of the values that are tried. The values of a list are in any order, so the
     /// indices include the smallest and the largest value: an experiment usually accepts a range.
     pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
-        let number = |index: &usize| self.at(*index).into().number().unwrap_or(0.0);
+        let number = |index: &usize| self.at(*index).number().unwrap_or(0.0);
         let order = |one: &usize, other: &usize| number(one).total_cmp(&number(other));
         let all = if matches!(self, Self::List(_)) { 0..self.len() } else { 0..0 };
         let extremes = [all.clone().min_by(order), all.max_by(order)];
@@ -62,8 +189,7 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
         if list.is_empty() {
             return Err(PlanError::varied(parameter, "has no values"));
         }
-        let mut numbers = list.iter().filter_map(|value| value.clone().into().number());
-        match numbers.find(|value| !value.is_finite()) {
+        match list.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) {
             Some(value) => {
                 Err(PlanError::varied(parameter, format!("has a value that is not finite: {value}")))
             }
@@ -72,12 +198,11 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
     }
 
     /// Returns a value that occurs twice in the list, if any.
-    pub(super) fn twice(&self) -> Option<Scalar> {
+    fn twice(&self) -> Option<&Scalar> {
         let Self::List(list) = self else { return None };
         let mut known = HashSet::with_capacity(list.len());
-        let mut all = list.iter().map(|value| value.clone().into());
         // Zero is added so that both zeros count as the same value.
-        all.find(|value: &Scalar| {
+        list.iter().find(|value| {
             !known.insert(match value {
                 Scalar::Number(number) => Ok((number + 0.0).to_bits()),
                 other => Err(format!("{other:?}")),
@@ -86,27 +211,106 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
     }
 }
 
-/// Reads a list or a rule. Derived code would try both and could not say what is wrong with either.
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Values<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Reader(PhantomData))
-    }
+/// Largest number of values that follow from a rule: doubles do not count larger numbers exactly.
+const MOST: f64 = 9_007_199_254_740_992.0;
+
+/// Fraction of a step by which the last step may miss the end. It allows for the rounding of decimal
+/// fractions, since neither 0.1 nor 1/3 is a double.
+const ROUNDING: f64 = 1e-9;
+
+/// Increasing values that follow from a rule, in place of a list in a plan:
+/// `{ from = 0.0, to = 1.0, step = 0.1 }` for equal steps, `{ from = 1e-3, to = 1.0, log = 31 }` for 31
+/// values in equal ratios.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub(crate) struct Steps {
+    from: f64,
+    to: f64,
+    /// The difference of neighbors, or `None` for equal ratios.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
+    /// The number of values in equal ratios.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    log: Option<usize>,
+    #[serde(skip)]
+    count: usize,
 }
 
-struct Reader<T>(PhantomData<T>);
+from_file! {
+    Steps { from: f64, to: f64, step: Option<f64>, log: Option<usize> } => match (step, log) {
+        (Some(step), None) => Self::linear(from, to, step),
+        (None, Some(count)) => Self::logarithmic(from, to, count),
+        (step, _) => {
+            let given = if step.is_some() { 2.0 } else { 0.0 };
+            Err(ParameterError::new("number of `step` and `log` beside `from` and `to`", "1", given))
+        }
+    }, ParameterError
+}
 
-impl<'de, T: Deserialize<'de>> Visitor<'de> for Reader<T> {
-    type Value = Values<T>;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("a list of values, or a rule { from, to, step } or { from, to, log }")
+impl Steps {
+    /// Creates values in equal steps from `from` on. The last value is `to` if a whole number of steps
+    /// reaches it.
+    ///
+    /// # Errors
+    /// If a number is not finite, the step is not positive or below the rounding of the values, or `to` is
+    /// below `from`.
+    fn linear(from: f64, to: f64, step: f64) -> Result<Self, ParameterError> {
+        finite("first value", from)?;
+        finite("last value", to)?;
+        positive("step", step)?;
+        accept(to >= from, "last value", "at least the first one", to)?;
+        let largest = from.abs().max(to.abs());
+        accept(largest.next_up() - largest <= step, "step", "above the rounding of the values", step)?;
+        let steps = libm::floor((to - from) / step + ROUNDING);
+        accept(steps < MOST, "number of steps", "below 2^53", steps)?;
+        Ok(Self { from, to, step: Some(step), log: None, count: steps as usize + 1 })
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Values<T>, A::Error> {
-        Vec::deserialize(SeqAccessDeserializer::new(list)).map(Values::List)
+    /// Creates `count` values in equal ratios, the first and the last included.
+    ///
+    /// # Errors
+    /// If the first value is not positive, the last one is not finite or not above the first, their ratio is
+    /// not finite, or there are fewer than two, or too many, so that neighbors would be equal.
+    fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
+        positive("first value", from)?;
+        positive("last value", to)?;
+        accept(to > from, "last value", "above the first one", to)?;
+        let ratio = to / from;
+        accept(ratio.is_finite(), "last value over the first one", "finite", ratio)?;
+        accept(count >= 2, "number of values", "at least 2", count as f64)?;
+        let is_resolved = libm::log(ratio) / (count - 1) as f64 >= 4.0 * f64::EPSILON;
+        accept(is_resolved, "number of values", "so small that neighbors differ", count as f64)?;
+        Ok(Self { from, to, step: None, log: Some(count), count })
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, rule: A) -> Result<Values<T>, A::Error> {
-        Steps::deserialize(MapAccessDeserializer::new(rule)).map(Values::Rule)
+    /// Returns the value of an index below the number of values.
+    ///
+    /// Each value follows from its index, not from the one before, so errors do not add up. Equal steps give
+    /// the decimal fractions that a reader of the plan expects.
+    fn value(&self, index: usize) -> f64 {
+        match self.step {
+            Some(step) => self.decimal(index, step),
+            None if index + 1 == self.count => self.to,
+            None => {
+                let share = index as f64 / (self.count - 1) as f64;
+                self.from * libm::pow(self.to / self.from, share)
+            }
+        }
+    }
+
+    /// Returns a value in equal steps: 0.07 and not 0.06999999999999999, if the first value and the step are
+    /// decimal fractions, too.
+    fn decimal(&self, index: usize, step: f64) -> f64 {
+        let value = self.from + index as f64 * step;
+        let is_close = |near: &f64| (near - value).abs() <= ROUNDING * step;
+        if index == 0 || (index + 1 == self.count && is_close(&self.to)) {
+            return if index == 0 { self.from } else { self.to };
+        }
+        let largest = self.from.abs().max(self.to.abs());
+        let places = (14.0 - libm::floor(libm::log10(largest))).clamp(0.0, 300.0) as usize;
+        let rounded = |number: f64| format!("{number:.places$}").parse::<f64>().unwrap_or(number);
+        let are_decimal = [self.from, step].iter().all(|&number| rounded(number) == number);
+        let near = Some(rounded(value)).filter(|near| are_decimal && is_close(near));
+        // The sum with 0 turns -0 into 0.
+        near.unwrap_or(value) + 0.0
     }
 }

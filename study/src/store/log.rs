@@ -51,7 +51,7 @@ pub(crate) struct Piece {
 impl Log {
     /// Opens a log to append to it, and creates the log if it does not exist.
     pub(crate) fn open(path: &Path, seal: Seal) -> io::Result<Self> {
-        let end = if path.exists() { Self::each(path, seal, 0, drop)?.0 } else { 0 };
+        let end = if path.exists() { pieces(path, seal, 0)?.end } else { 0 };
         let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
         let mut log = Self { file, end, is_cut: false };
         if end < START {
@@ -90,37 +90,42 @@ impl Log {
     pub(crate) fn sync(&self) -> io::Result<()> {
         self.file.sync_data()
     }
+}
 
-    /// Passes the complete pieces of a log from a position on, 0 or the end of an earlier reading, one by one
-    /// to a closure; their checksums are not compared. Returns the end of the last piece, and whether bytes
-    /// that are not a piece precede a piece.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
-    pub(crate) fn each(
-        path: &Path,
-        seal: Seal,
-        from: u64,
-        mut show: impl FnMut(Piece),
-    ) -> io::Result<(u64, bool)> {
-        let mut file = File::open(path)?;
-        let length = file.seek(SeekFrom::End(0))?;
-        if from >= length {
-            return Ok((from, false));
-        }
-        file.seek(SeekFrom::Start(from))?;
-        let mut input = BufReader::with_capacity(1 << 16, file);
-        if from == 0 && !begins(&mut input, seal)? {
-            return Ok((from, false));
-        }
-        let (mut end, mut is_damaged) = (from.max(START), false);
-        while let Some(piece) = next(&mut input, end, length)? {
-            is_damaged |= piece.start - BEFORE as u64 != end;
-            end = piece.start + u64::from(piece.length);
-            show(piece);
-        }
-        Ok((end, is_damaged))
+/// The complete pieces of a log from a position on.
+#[derive(Debug)]
+pub(crate) struct Pieces {
+    pub(crate) found: Vec<Piece>,
+    /// End of the last piece.
+    pub(crate) end: u64,
+    /// True if bytes that are not a piece precede a piece.
+    pub(crate) is_damaged: bool,
+}
+
+/// Finds the complete pieces of a log from a position on, 0 or the end of an earlier reading. Their checksums
+/// are not compared.
+///
+/// # Errors
+/// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
+pub(crate) fn pieces(path: &Path, seal: Seal, from: u64) -> io::Result<Pieces> {
+    let mut pieces = Pieces { found: Vec::new(), end: from, is_damaged: false };
+    let mut file = File::open(path)?;
+    let length = file.seek(SeekFrom::End(0))?;
+    if from >= length {
+        return Ok(pieces);
     }
+    file.seek(SeekFrom::Start(from))?;
+    let mut input = BufReader::with_capacity(1 << 16, file);
+    if from == 0 && !begins(&mut input, seal)? {
+        return Ok(pieces);
+    }
+    pieces.end = from.max(START);
+    while let Some(piece) = next(&mut input, pieces.end, length)? {
+        pieces.is_damaged |= piece.start - BEFORE as u64 != pieces.end;
+        pieces.end = piece.start + u64::from(piece.length);
+        pieces.found.push(piece);
+    }
+    Ok(pieces)
 }
 
 /// Reads the contents of a piece, or returns an error if they are damaged.
@@ -146,8 +151,8 @@ fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
     if expected.starts_with(&start) {
         return Ok(false);
     }
-    let told = "it is of another format, or of another version of it";
-    Err(io::Error::new(io::ErrorKind::InvalidData, told))
+    let reason = "it is of another format, or of another version of it";
+    Err(io::Error::new(io::ErrorKind::InvalidData, reason))
 }
 
 /// Finds the next complete piece at a position or after it, and moves to its end.

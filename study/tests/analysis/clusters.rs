@@ -4,8 +4,7 @@ use granular_edmd::ParameterError;
 use granular_edmd::glam::DVec2;
 use granular_edmd_study::analysis::StateCriteria;
 
-use crate::parts::clusters::{Cluster, Clusters};
-use crate::parts::k_means::{distinct_clusters, k_means};
+use crate::parts::clusters::{Cluster, Clusters, distinct_clusters, k_means};
 use crate::{NOISE, Outcome, Random, figure_4};
 
 /// Returns the best of sixteen searches.

@@ -8,5 +8,3 @@
 
 #[path = "../../src/analysis/clusters.rs"]
 pub(crate) mod clusters;
-#[path = "../../src/analysis/k_means.rs"]
-pub(crate) mod k_means;

@@ -6,14 +6,12 @@ use std::path::Path;
 
 use granular_edmd::file::Seal;
 
-use crate::logs::log::{HEAD, Log, Piece, START, read_piece};
+use crate::logs::log::{self, HEAD, Log, Piece, START, read_piece};
 
 const SEAL: Seal = Seal::new(*b"TEST LOG", 1);
 
 fn found_in(path: &Path) -> Vec<Piece> {
-    let mut found = Vec::new();
-    Log::each(path, SEAL, 0, |piece| found.push(piece)).unwrap();
-    found
+    log::pieces(path, SEAL, 0).unwrap().found
 }
 
 fn pieces(path: &Path) -> Vec<Vec<u8>> {

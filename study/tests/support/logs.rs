@@ -45,9 +45,7 @@ fn pieces(log: &Path) -> Vec<Found> {
         let place = [number(&piece.head[..4]), number(&piece.head[4..8])];
         Found { log: log.to_owned(), piece, place, edition: number(&piece.head[8..12]) as u16 }
     };
-    let mut all = Vec::new();
-    Log::each(log, SEAL, 0, |piece| all.push(found(piece))).unwrap();
-    all
+    self::log::pieces(log, SEAL, 0).unwrap().found.into_iter().map(found).collect()
 }
 
 /// Returns the last edition of each record.

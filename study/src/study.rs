@@ -1,13 +1,16 @@
-//! Creating and opening a study in its folder, with the checks at that time.
+//! A study: a plan in a folder, and the code that may continue it. Creating and opening check both.
 
 use std::path::Path;
 
-use super::experiment::origin::{Maker, Origin};
-use super::folder::Folder;
+use granular_edmd::boundary::Boundary;
+use granular_edmd::collision::CollisionRule;
+use granular_edmd::{Fingerprint, RESULTS};
+
+use super::claims::Claims;
+use super::experiment::record::{Maker, Origin};
+use super::folder::{Folder, write};
 use super::parameters::{self, tree};
-use super::provenance::{self, Provenance};
-use super::store::{Claims, Store};
-use super::whole::damaged;
+use super::store::Store;
 use super::{Difference, Experiment, Plan, PlanError, StudyError};
 
 /// A [`Plan`] in a folder, with the records of its finished values.
@@ -73,7 +76,7 @@ impl<E: Experiment> Study<E> {
         check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>,
     ) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder)?, plan)?;
-        if !study.folder.holds_study() || !study.folder.provenance_file().exists() {
+        if !study.folder.holds_study() || !study.folder.provenance().exists() {
             study.put_plan(check)?;
         }
         study.check_plan()?;
@@ -92,10 +95,12 @@ impl<E: Experiment> Study<E> {
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
         let before = study.read_provenance()?;
-        let now = study.ours();
+        let accepted = before.as_ref().map_or_else(String::new, Provenance::keys);
+        let now = Provenance { accepted, ..study.ours() };
         let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
-            study.folder.replace_provenance(&now.after(before.as_ref()))?;
+            let _lock = study.folder.lock()?;
+            write(&study.folder.provenance(), now.text().as_bytes())?;
         }
         Ok(differences)
     }
@@ -118,15 +123,25 @@ impl<E: Experiment> Study<E> {
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
-        let maker = provenance::maker::<E>();
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        let (revision, columns) = (E::revision(), columns::<E>());
+        let maker = Maker { version, results: RESULTS, revision, columns };
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
         Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
     }
 
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
     /// plan.
+    ///
+    /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        self.folder.create(&self.text, &self.ours(), || check(&self.plan))
+        let _lock = self.folder.prepare()?;
+        let is_new = !self.folder.plan().exists();
+        if is_new {
+            check(&self.plan)?;
+        }
+        self.folder.put(&self.text, &self.ours().text())?;
+        Ok(is_new)
     }
 
     /// Returns the study, or an error if this program may not continue it.
@@ -137,16 +152,37 @@ impl<E: Experiment> Study<E> {
 
     /// Returns this program as the maker of the study.
     fn ours(&self) -> Provenance {
-        Provenance::here(&self.plan, &self.hash)
+        let (experiment, maker) = (&self.plan.parts.experiment, &self.maker);
+        let program = std::env::current_exe().ok();
+        let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
+        let rule = experiment.rule().ok().and_then(|rule| rule.fingerprint());
+        let boundary = experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
+        let [rule, boundary] =
+            [rule, boundary].map(|part| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string()));
+        Provenance {
+            results: maker.results.to_string(),
+            revision: maker.revision.to_string(),
+            columns: maker.columns.to_string(),
+            rule,
+            boundary,
+            version: maker.version.clone(),
+            program: program.to_string_lossy().into_owned(),
+            target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+            plan: self.hash.to_hex().to_string(),
+            accepted: String::new(),
+        }
     }
 
     /// Reads the provenance, which must belong to this plan if it is there.
     fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
-        let provenance = self.folder.provenance()?;
-        if provenance.as_ref().is_some_and(|provenance| !provenance.is_of(&self.hash)) {
-            return Err(StudyError::foreign(&self.folder.provenance_file()));
+        let (path, text) = (self.folder.provenance(), self.folder.read_provenance()?);
+        let Some(text) = text else { return Ok(None) };
+        let provenance: Provenance = serde_json::from_str(&text)
+            .map_err(|reason| StudyError::damaged(&path, format!("it is no provenance ({reason})")))?;
+        if provenance.plan == self.hash.to_hex().as_str() {
+            return Ok(Some(provenance));
         }
-        Ok(provenance)
+        Err(StudyError::foreign(&path))
     }
 
     fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
@@ -208,9 +244,10 @@ impl<E: Experiment> Study<E> {
             return Err(StudyError::foreign(path));
         }
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
-            return Err(damaged(path, "it is of another value"));
+            return Err(StudyError::damaged(path, "it is of another value"));
         }
-        if self.is_ours(found) || self.provenance.as_ref().is_some_and(|code| code.takes(&found.maker)) {
+        let is_accepted = |code: &Provenance| code.keys().split(' ').any(|key| key == found.maker.key());
+        if self.is_ours(found) || self.provenance.as_ref().is_some_and(is_accepted) {
             return Ok(());
         }
         Err(StudyError::changed(path, "revision"))
@@ -220,4 +257,69 @@ impl<E: Experiment> Study<E> {
     pub(super) fn is_ours(&self, found: &Origin) -> bool {
         found.maker.key() == self.maker.key()
     }
+}
+
+/// The file `provenance.json`: the code that may continue a study, and the program that began it.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+struct Provenance {
+    results: String,
+    revision: String,
+    columns: String,
+    rule: String,
+    boundary: String,
+    version: String,
+    program: String,
+    target: String,
+    /// Hash of the plan.
+    plan: String,
+    /// The earlier makers that were accepted, as keys separated by blanks.
+    accepted: String,
+}
+
+impl Provenance {
+    /// Returns the text of the file.
+    fn text(&self) -> String {
+        // Texts are always JSON.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Returns the deciding fields in which this program differs from the one that made the study.
+    fn differences(&self, there: Option<&Self>) -> Vec<Difference> {
+        let all = self.deciding().into_iter().enumerate().map(|(place, (name, ours))| Difference {
+            field: name.to_owned(),
+            old: there.map(|there| there.deciding()[place].1.clone()),
+            new: Some(ours.clone()),
+        });
+        all.filter(|field| field.old != field.new).collect()
+    }
+
+    /// Returns the fields that decide whether a program may continue the study of a plan.
+    const fn deciding(&self) -> [(&'static str, &String); 5] {
+        [
+            ("results", &self.results),
+            ("revision", &self.revision),
+            ("columns", &self.columns),
+            ("rule", &self.rule),
+            ("boundary", &self.boundary),
+        ]
+    }
+
+    /// Returns the present maker and the earlier, accepted ones, as keys separated by blanks.
+    fn keys(&self) -> String {
+        let Self { results, revision, columns, accepted, .. } = self;
+        format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()
+    }
+}
+
+/// Returns a fingerprint of the names and units in all tables.
+fn columns<E: Experiment>() -> Fingerprint {
+    let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);
+    let columns = E::columns().iter().fold(Fingerprint::of("columns"), |hash, column| {
+        let tables = f64::from(u8::from(column.in_samples) + 2 * u8::from(column.in_values));
+        heading(hash, column.name(), column.unit()).number(tables)
+    });
+    E::tables().iter().fold(columns, |hash, table| {
+        let hash = hash.text(table.name());
+        table.columns().iter().fold(hash, |hash, column| heading(hash, column.name(), column.unit()))
+    })
 }

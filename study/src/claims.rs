@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use granular_edmd::file::Locked;
 
-use crate::StudyError;
-use crate::whole::{files_in, open_lock};
+use super::StudyError;
+use super::folder::{files_in, open_lock};
 
 /// Number of lock files.
 const LOCKS: usize = 256;
@@ -23,11 +23,11 @@ const BLOCKS: usize = 2048;
 /// The file of the lock stays. If it were removed, two processes could hold the locks of two different files
 /// of the same name.
 #[derive(Debug)]
-pub(crate) struct Claim(Locked);
+pub(super) struct Claim(Locked);
 
 /// The result of a claim.
 #[derive(Debug)]
-pub(crate) enum Claimed {
+pub(super) enum Claimed {
     /// This process has the ramps.
     Ours(Claim),
     /// Another process has the ramps.
@@ -36,23 +36,24 @@ pub(crate) enum Claimed {
     Collision,
 }
 
-/// Returns the blocks into which this number of ramps is divided.
-pub(crate) fn blocks(ramps: usize) -> impl Iterator<Item = Range<usize>> {
-    let size = ramps.div_ceil(BLOCKS).max(1);
-    (0..ramps).step_by(size).map(move |first| first..ramps.min(first + size))
-}
-
 /// The folder of the lock files.
 #[derive(Debug, Clone)]
-pub(crate) struct Claims {
+pub(super) struct Claims {
     folder: PathBuf,
+    /// Number of all ramps.
+    ramps: usize,
     /// Number of ramps in a block.
     size: usize,
 }
 
 impl Claims {
-    pub(crate) fn new(root: &Path, ramps: usize) -> Self {
-        Self { folder: root.join("locks"), size: ramps.div_ceil(BLOCKS).max(1) }
+    pub(super) fn new(root: &Path, ramps: usize) -> Self {
+        Self { folder: root.join("locks"), ramps, size: ramps.div_ceil(BLOCKS).max(1) }
+    }
+
+    /// Returns the blocks into which the ramps are divided.
+    pub(super) fn blocks(&self) -> impl Iterator<Item = Range<usize>> {
+        (0..self.ramps).step_by(self.size).map(|first| first..self.ramps.min(first + self.size))
     }
 
     fn file(&self, ramp: usize) -> PathBuf {
@@ -60,13 +61,13 @@ impl Claims {
     }
 
     /// Claims ramps of one block.
-    pub(crate) fn claim(&self, ramps: &Range<usize>) -> Result<Claimed, StudyError> {
+    pub(super) fn claim(&self, ramps: &Range<usize>) -> Result<Claimed, StudyError> {
         let path = self.file(ramps.start);
         let file = open_lock(&path)?;
         match Locked::take(file) {
             Ok(locked) => {
-                let told = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
-                told.map_err(StudyError::io("write", &path))?;
+                let written = tell(&locked, &format!("{}..{}\n", ramps.start, ramps.end));
+                written.map_err(StudyError::io("write", &path))?;
                 Ok(Claimed::Ours(Claim(locked)))
             }
             Err(TryLockError::WouldBlock) => {
@@ -79,7 +80,7 @@ impl Claims {
     }
 
     /// Returns the ramps that processes are running, as far as the locks show.
-    pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
+    pub(super) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
         let paths = files_in(&self.folder)?.into_iter().map(|file| file.path());
         Ok(paths.filter(|path| is_taken(path)).filter_map(|path| held(&path)).collect())
     }
@@ -129,7 +130,7 @@ mod tests {
     fn a_claim_is_seen_by_others_until_it_ends() {
         let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
         let claims = Claims::new(&root, 10_000);
-        let all: Vec<Range<usize>> = blocks(10_000).collect();
+        let all: Vec<Range<usize>> = claims.blocks().collect();
         assert_eq!((all.len(), &all[1], all.last()), (2000, &(5..10), Some(&(9995..10_000))));
         let Claimed::Ours(claim) = claims.claim(&all[1]).unwrap() else { panic!("it is free") };
         assert!(matches!(claims.claim(&(7..8)).unwrap(), Claimed::Theirs));

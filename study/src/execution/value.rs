@@ -7,16 +7,15 @@ use std::time::Duration;
 use granular_edmd::Simulation;
 use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
-use super::sliced::{self, Riders};
-use crate::errors::{ExperimentError, StudyError, chain};
-use crate::experiment::origin::Origin;
-use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
 #[cfg(feature = "cli")]
-use crate::opening::Study;
-use crate::plan::refinement::Step;
-use crate::seed::derived_seed;
-use crate::whole::damaged;
-use crate::{Experiment, Interval, Plan, Protocol, Run, SavedDriving, Start};
+use crate::Study;
+use crate::errors::{ExperimentError, StudyError, chain};
+use crate::experiment::record::Origin;
+use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
+use crate::parameters::derived_seed;
+use crate::plan::ramp::Step;
+use crate::sliced::{self, Riders};
+use crate::{Experiment, Plan, Protocol, Run, SavedDriving, Start};
 
 /// A value to be run.
 pub(super) struct Value<'a, E: Experiment> {
@@ -136,7 +135,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let loaded = check(is_loaded, "its driving is another").map_err(str::to_owned);
         let state = loaded.and_then(|()| self.state_of(partial));
-        let (work, run) = state.map_err(|reason| damaged(path, reason))?;
+        let (work, run) = state.map_err(|reason| StudyError::damaged(path, reason))?;
         let riders = self.riders(run.time(), driving, true)?;
         Ok(Active { value: self, work, run, riders })
     }
@@ -150,7 +149,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         check_state(&state, from..=to)?;
         work.measured.check(&self.experiment, Some(&state))?;
         let boundary = match work.steps.checked_sub(u64::from(!work.is_prepared)) {
-            Some(last) => self.experiment.boundary_in(&protocol.interval(last), &work.measured.observer),
+            Some(last) => self.experiment.boundary_in(&protocol.step(last), &work.measured.observer),
             None => self.experiment.boundary(),
         };
         let run = boundary.and_then(|boundary| Self::resume(&state, &self.experiment, boundary));
@@ -173,7 +172,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let walls = before.last_boundary(&self.plan.protocol().last_of(before.contents.steps));
+        let walls = before.last_boundary(&self.plan.protocol().step(before.contents.steps));
         let run = walls.and_then(|walls| Self::resume(state, &before.experiment, walls));
         let mut run = run.map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
@@ -245,7 +244,7 @@ impl<E: Experiment> Active<'_, E> {
             }
             Ok(RunEnd::WallClock) => Ok(false),
             Ok(RunEnd::Collisions) => {
-                let most = self.value.plan.protocol().most_collisions().unwrap_or(u64::MAX);
+                let most = self.value.plan.protocol().most_collisions.unwrap_or(u64::MAX);
                 Err(self.limited(format!("it has reached the limit of {most} collisions")))
             }
             Ok(_) => Err(Outcome::Stopped { time }),
@@ -264,39 +263,25 @@ impl<E: Experiment> Active<'_, E> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
         }
-        let interval: Interval = self.value.plan.protocol().interval(self.work.steps);
+        let interval = self.value.plan.protocol().step(self.work.steps);
         let observer = &mut self.work.measured.observer;
         let prepared = self.value.experiment.prepare(&interval, &mut self.run, observer);
         prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
     }
 
+    /// Runs to the sample of the next step, if it has one, takes it, and runs to the end of the step.
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
-        let protocol = self.value.plan.protocol();
-        let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
-        let end = protocol.end_of(step) as f64;
-        let at = |cycles: f64| self.work.start.time(cycles, cycle);
-        let (sample, end) = (at(end - protocol.lead()), at(end));
-        if protocol.is_sampled(step) {
-            return self.sample(sample, end, slice);
+        let (protocol, cycle) = (self.value.plan.protocol(), self.value.experiment.cycle());
+        let end = protocol.cycles_of(self.work.steps + 1) as f64;
+        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end]
+            .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
+        let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
+            &mut self.work;
+        if protocol.step(*steps).sample.is_none() {
+            return sliced::run(&mut self.run, &to_end, &mut self.riders, &mut (), is_under_way);
         }
-        let limits = self.limits(end, slice);
-        sliced::run(&mut self.run, &limits, &mut self.riders, &mut (), &mut self.work.is_under_way)
-    }
-
-    /// Returns the limits of one part of the value's run.
-    fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
-        let limits = Limits::until(end).with_wall_clock(slice);
-        let Some(most) = self.value.plan.protocol().most_collisions() else { return limits };
-        let done = self.run.counters().since(&self.work.counters).collisions();
-        limits.with_most_collisions(most.saturating_sub(done))
-    }
-
-    fn sample(&mut self, time: f64, end: f64, slice: Duration) -> Result<RunEnd, RunError> {
-        let [to_sample, to_end] = [time, end].map(|end| self.limits(end, slice));
-        let Work { measured, is_under_way, steps, .. } = &mut self.work;
-        let Measured { times, samples, observer } = measured;
         // A slice may have ended between the sample and the end of the step.
-        if samples.len() as u64 == self.value.plan.protocol().samples_of(*steps) {
+        if samples.len() as u64 == protocol.samples_of(*steps) {
             let ended = sliced::run(&mut self.run, &to_sample, &mut self.riders, observer, is_under_way)?;
             if ended != RunEnd::Time {
                 return Ok(ended);
@@ -306,6 +291,14 @@ impl<E: Experiment> Active<'_, E> {
             samples.push(self.value.experiment.sample(&snapshot, observer));
         }
         sliced::run(&mut self.run, &to_end, &mut self.riders, observer, is_under_way)
+    }
+
+    /// Returns the limits of one part of the value's run.
+    fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
+        let limits = Limits::until(end).with_wall_clock(slice);
+        let Some(most) = self.value.plan.protocol().most_collisions else { return limits };
+        let done = self.run.counters().since(&self.work.counters).collisions();
+        limits.with_most_collisions(most.saturating_sub(done))
     }
 
     /// Returns the unfinished value as data, from which it can continue later.

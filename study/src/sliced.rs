@@ -1,12 +1,79 @@
-//! Runs in slices, which an observer sees as a single run.
+//! The run of a value in slices, which its observer sees as a single run. A driving, which is saved with the
+//! value, and a companion, which is not, take part in it.
+
+use std::path::Path;
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
-use granular_edmd::simulation::{Limits, RunEnd, RunError, Simulation};
+use granular_edmd::simulation::{Driving, Limits, RunEnd, RunError, Simulation};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use crate::{ExperimentError, SavedDriving};
+use super::ExperimentError;
+
+/// A [`Driving`] that a study saves with an unfinished value, and restores with it.
+///
+/// Every driving that serde writes and reads implements this trait.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a driving that can be saved",
+    note = "implement `simulation::Driving`, and derive `Serialize` and `Deserialize`"
+)]
+pub trait SavedDriving: Driving + Send {
+    /// Returns the driving as bytes.
+    ///
+    /// # Errors
+    /// If serde cannot write it.
+    fn save(&self) -> Result<Vec<u8>, ExperimentError>;
+
+    /// Restores the state of a saved driving.
+    ///
+    /// # Errors
+    /// If the bytes are of another driving.
+    fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError>;
+}
+
+impl<D: Driving + Serialize + DeserializeOwned + Send> SavedDriving for D {
+    fn save(&self) -> Result<Vec<u8>, ExperimentError> {
+        postcard::to_stdvec(self).map_err(ExperimentError::new)
+    }
+
+    fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError> {
+        *self = postcard::from_bytes(bytes).map_err(ExperimentError::new)?;
+        Ok(())
+    }
+}
+
+/// The start of a value, or of the remainder of an interrupted value, for which a
+/// [companion](super::Experiment::companion) is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Start<'a> {
+    /// Folder of the study.
+    pub folder: &'a Path,
+    /// Index of the ramp.
+    pub ramp: usize,
+    /// Index of the value in the ramp.
+    pub value: usize,
+    /// Seed of the ramp.
+    pub seed: u64,
+    /// Absolute time from which the run starts or continues.
+    pub time: f64,
+    /// True if the value continues from a saved state. A value that was killed before its first save starts
+    /// anew, and files of its companion may exist already.
+    pub is_resumed: bool,
+}
+
+/// A step of a value: a part of its settling, or the interval that ends with a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Interval {
+    /// Index of the step in its value, settling included.
+    pub index: u64,
+    /// Index of the sample with which the step ends; `None` while the value settles.
+    pub sample: Option<u64>,
+}
 
 /// The companion and the driving beside the observer.
 #[derive(Default)]

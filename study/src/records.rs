@@ -1,0 +1,220 @@
+//! The results of a study: records, points and transitions.
+
+use granular_edmd::statistics::Estimate;
+
+use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
+use super::experiment::with_error;
+use super::plan::ramp::{Bracket, Seen};
+use super::store::Entry;
+use super::{Experiment, Plan, Study, StudyError};
+
+/// A value at a point of the grid, with the records of its repeats, which have the same parameters and
+/// different seeds.
+///
+/// ```
+/// # use granular_edmd_study::vibrated_box::{Base, VibratedBox};
+/// # use granular_edmd_study::{Control, Plan, Protocol, Study};
+/// # let base = Base::Thermal { temperature: 1.0, slip: false };
+/// # let plan = Plan::new(VibratedBox::new(10, 10.0, base).with_gravity(0.1), Protocol::new(10, 20, 1)?, 1)?;
+/// # let plan = plan.with_repeats(3)?;
+/// # let folder = std::env::temp_dir().join(format!("granular-edmd-point-{}", std::process::id()));
+/// # let study = Study::create(&folder, &plan)?;
+/// # study.run(&Control::default())?;
+/// for point in study.points() {
+///     let point = point?;
+///     let height = point.mean(|sample| sample.height);
+///     println!("{height}, as from {:.1} independent samples", height.independent_samples());
+///     assert_eq!((point.records().len(), height.samples()), (3, 60));
+/// }
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Point<E: Experiment> {
+    pub(super) index: usize,
+    pub(super) value: usize,
+    /// The records of the finished repeats, at least one.
+    pub(super) records: Vec<Record<E>>,
+}
+
+impl<E: Experiment> Point<E> {
+    /// Returns the index of the point in the grid.
+    pub const fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Returns the index of the value in the ramp.
+    pub const fn value_index(&self) -> usize {
+        self.value
+    }
+
+    /// Returns the direction from which the ramp came to the value; `None` without a ramp.
+    pub fn leg(&self) -> Option<Leg> {
+        self.records[0].leg()
+    }
+
+    /// Returns the experiment, with the parameters of this value.
+    pub fn experiment(&self) -> &E {
+        self.records[0].experiment()
+    }
+
+    /// Returns the records of the finished repeats.
+    pub fn records(&self) -> &[Record<E>] {
+        &self.records
+    }
+
+    /// Returns the mean of a quantity over the samples of all repeats, by [`Estimate::over_repeats`].
+    pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
+        Estimate::over_repeats(self.records.iter().map(|record| record.mean(&quantity)))
+    }
+
+    /// Returns the mean of the column of this name over all repeats; `None` if there is no such column, or it
+    /// has no error.
+    pub fn estimate(&self, column: &str) -> Option<Estimate> {
+        let columns = E::columns();
+        let column = with_error(&columns, column)?;
+        Some(Estimate::over_repeats(self.records.iter().filter_map(|record| column.estimate(record))))
+    }
+}
+
+impl<E: Experiment> Study<E> {
+    /// Returns the record of a value, or `None` if the value is not finished.
+    ///
+    /// # Errors
+    /// If there is no such ramp, or the record is damaged, of another study, of other code, or cannot be
+    /// read.
+    pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
+        self.check_ramp(ramp)?;
+        if let Some(record) = self.known_record(ramp, value)? {
+            return Ok(Some(record));
+        }
+        match (self.store.refreshed()?.find(ramp, value), self.store.damage()) {
+            (Some(entry), _) => self.read(entry).map(Some),
+            (None, Some(error)) => Err(error),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// Returns the record of a value, if it was finished when the store was last read.
+    pub(super) fn known_record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
+        self.store.known().find(ramp, value).map(|entry| self.read(entry)).transpose()
+    }
+
+    /// Reads a record of the store.
+    pub(super) fn read(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
+        let record = self.read_unproven(entry)?;
+        // Accepted code differs from this program on purpose.
+        let is_ours = self.is_ours(&record.contents.origin);
+        let last = self.plan.protocol().step(record.contents.steps);
+        match record.changed_part(&last).filter(|_| is_ours) {
+            Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
+            None => Ok(record),
+        }
+    }
+
+    /// Reads a record of the store without making the rule and the walls to compare their fingerprints.
+    pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
+        let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
+        self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(entry))?;
+        let is_outside = |at| !self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
+        if contents.at.is_some_and(is_outside) {
+            return Err(self.store.damaged(entry, "it is outside the ramp"));
+        }
+        let record = Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents };
+        check_record(&record, &self.plan).map_err(|reason| self.store.damaged(entry, reason))?;
+        Ok(record)
+    }
+
+    /// Iterates over all finished records, ramp by ramp, and reads them one by one.
+    pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        self.records_of(0..self.plan.ramp_count())
+    }
+
+    /// Iterates over all finished records of a ramp, and reads them one by one.
+    ///
+    /// If there is no such ramp, the only item is an error.
+    pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        let missing = self.check_ramp(ramp).err();
+        let ramps = if missing.is_some() { 0..0 } else { ramp..ramp + 1 };
+        missing.into_iter().map(Err).chain(self.records_of(ramps))
+    }
+
+    fn records_of(
+        &self,
+        ramps: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        let (entries, error) = match self.store.refreshed() {
+            Ok(entries) => (entries.of(ramps).copied().collect::<Vec<Entry>>(), None),
+            Err(error) => (Vec::new(), Some(error)),
+        };
+        error.into_iter().map(Err).chain(entries.into_iter().map(|entry| self.read(&entry)))
+    }
+
+    /// Returns a value at a point of the grid, with all its finished repeats, or `None` if no repeat is
+    /// finished.
+    ///
+    /// # Errors
+    /// If there is no such point, or a record is damaged, of another study, or cannot be read.
+    pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
+        self.store.refreshed()?;
+        self.known_point(index, value)
+    }
+
+    fn known_point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
+        let count = self.plan.point_count();
+        if index >= count {
+            return Err(StudyError::Absent { what: "point", index, count });
+        }
+        let repeats = self.plan.repeats();
+        let ramps = index * repeats..(index + 1) * repeats;
+        let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
+        let records = records.collect::<Result<Vec<_>, _>>()?;
+        Ok((!records.is_empty()).then_some(Point { index, value, records }))
+    }
+
+    /// Reads, one by one, all values that have a finished repeat, at all points of the grid.
+    ///
+    /// Values that a refinement adds are left out, since they differ between repeats.
+    pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
+        let error = self.store.refreshed().err();
+        let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
+        let places = (0..self.plan.point_count()).flat_map(values);
+        let found = places.filter_map(|(index, value)| self.known_point(index, value).transpose());
+        error.into_iter().map(Err).chain(found)
+    }
+
+    /// Returns the transitions that a refined ramp has bracketed; empty until all are bracketed.
+    ///
+    /// # Errors
+    /// If there is no such ramp, or a record is damaged, of another study, or cannot be read.
+    pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
+        let seen: Vec<Seen> = self
+            .ramp_records(ramp)
+            .map(|record| Ok(self.plan.seen(&record?)))
+            .collect::<Result<_, StudyError>>()?;
+        Ok(self.plan.brackets(&seen))
+    }
+}
+
+/// Checks that a record belongs to its ramp and value in a study, or returns the reason why it does not.
+fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
+    let Contents { origin, leg, at, outcome, end, measured, state, .. } = &record.contents;
+    let protocol = plan.protocol();
+    let most = protocol.cycles().saturating_mul(origin.value as u64 + 1);
+    check(end.count <= most, "it is longer than the protocol")?;
+    let samples = measured.samples.len() as u64;
+    let is_short = *outcome != Outcome::Completed && samples < protocol.samples();
+    check(samples == protocol.samples() || is_short, "its samples are not as many as in the protocol")?;
+    let is_placed = match plan.step(origin.value) {
+        Some((way, value)) => *leg == Some(way) && *at == Some(value),
+        None => plan.is_refined() || at.is_none(),
+    };
+    check(is_placed, "its place in the ramp is not the plan's")?;
+    let is_kept = state.is_some() == plan.keeps_state(origin.value);
+    check(is_kept, "it keeps a state that it should not, or lacks one")?;
+    if let Some(state) = state {
+        let time = end.time(0.0, record.experiment.cycle());
+        check_state(state, time..=time)?;
+        check([state.rule(), state.boundary()] == record.contents.parts, "its state is of other parts")?;
+    }
+    measured.check(&record.experiment, state.as_ref())
+}
