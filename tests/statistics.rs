@@ -275,6 +275,36 @@ fn the_error_of_repeats_together_is_that_of_one_long_run() {
     }
 }
 
+/// Runs that are each in a state of its own: a run that is twenty times longer counts as one state.
+#[test]
+fn a_long_run_in_one_of_many_states_is_one_state() {
+    for long in [1, 20] {
+        let together: Vec<Estimate> = (0..SEEDS)
+            .map(|seed| {
+                let mut states = Autoregressive::new(seed, 0.0);
+                let runs = (0..16).map(|repeat| {
+                    let (state, length) =
+                        (states.next().unwrap(), if repeat == 0 { long * 100 } else { 100 });
+                    let noise = Autoregressive::new(1000 * (seed + 1) + repeat, 0.0);
+                    noise.take(length).map(|x| state + 0.01 * x).collect::<BlockedMean>().estimate()
+                });
+                Estimate::over_repeats(runs)
+            })
+            .collect();
+        let means: RunningMean = together.iter().map(Estimate::mean).collect();
+        let squares: RunningMean = together.iter().map(|one| one.standard_error().powi(2)).collect();
+        let ratio = squares.mean().sqrt() / means.standard_deviation();
+        assert!((0.75..1.3).contains(&ratio), "{long}: {ratio}");
+    }
+}
+
+#[test]
+fn equal_samples_of_repeats_do_not_converge() {
+    let run = || [2.5; 60].into_iter().collect::<BlockedMean>().estimate();
+    let together = Estimate::over_repeats((0..9).map(|_| run()));
+    assert!(!together.is_converged() && together.standard_error() == 0.0, "{together}");
+}
+
 #[test]
 fn repeats_without_samples_are_left_out() {
     let none = BlockedMean::new().estimate();

@@ -22,7 +22,7 @@ const LARGEST: f64 = 1e100;
 /// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
 ///    error from blocks of a quarter of the size by at most one and a half times its uncertainty;
 /// 3. for all larger blocks, the error exceeds $`\epsilon_B`$ by at most twice its own uncertainty;
-/// 4. the samples at the end that fill no block change the mean by at most $`2\epsilon_B`$.
+/// 4. the samples at the end that fill no block change the mean by at most $`\epsilon_B`$.
 ///
 /// The first condition suffices for a series with one correlation time. The other conditions detect a second,
 /// longer correlation time with a small share of the variance, such as heat that slowly comes and goes in a

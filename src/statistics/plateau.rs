@@ -21,9 +21,9 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 const EXCESS: f64 = 60.0;
 
 /// Largest effect on the mean of samples that fill no block, in errors of the blocks. In a long series this
-/// effect is less than half an error; if it exceeds this limit, the blocks do not show the scatter of the
+/// effect is about a tenth of an error; if it exceeds this limit, the blocks do not show the scatter of the
 /// whole series.
-const LARGEST_REST: f64 = 2.0;
+const LARGEST_REST: f64 = 1.0;
 
 /// Rounding of means, relative to the error of independent samples.
 const ROUNDING: f64 = 1e-6;

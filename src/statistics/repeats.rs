@@ -3,8 +3,12 @@
 use super::Estimate;
 use super::plateau::FEWEST_INDEPENDENT;
 
-/// Smallest number of repeats with a meaningful scatter, as with blocks.
-const ENOUGH: usize = 8;
+/// Smallest number of repeats whose scatter is meaningful, as with blocks: eight, whose lengths may differ a
+/// little.
+const ENOUGH: f64 = 7.5;
+
+/// Variance between runs, relative to the variance that their errors explain, above which the runs differ.
+const DIFFERENT: f64 = 4.0;
 
 impl Estimate {
     /// Combines the estimates of several independent runs into one, as if all samples were of one run.
@@ -17,11 +21,15 @@ impl Estimate {
     /// \quad w_i = n_i/n .
     /// ```
     ///
+    /// Here, $`k`$ is the number of runs. If the second error is more than twice the first, the runs found
+    /// different states, and a long run is worth no more than a short one: $`k`$ is then
+    /// $`1/\sum_i w_i^2`$, which is smaller if the lengths differ.
+    ///
     /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
     /// way. The scatter of two or three runs, however, may be small by chance; the errors of the runs then
-    /// count. The estimate has converged if the estimates of all runs have converged, if there are at least
-    /// eight runs, or if the runs together have 120 independent samples by this error, the number that a
-    /// single run needs. Runs without samples are left out.
+    /// count. The estimate has converged if the estimates of all runs have converged, if $`k`$ is about eight or
+    /// more, or if the runs together have 120 independent samples by this error, the number that a single run
+    /// needs. It has not if all samples are equal. Runs without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};
@@ -45,15 +53,26 @@ impl Estimate {
             return run;
         }
         let samples: u64 = runs.iter().map(Self::samples).sum();
+        let is_equal =
+            |run: &Self| run.mean() == runs[0].mean() && (run.samples() == 1 || run.standard_error() == 0.0);
+        if samples > 1 && runs.iter().all(is_equal) {
+            return Self::blocked(runs[0].mean(), 0.0, samples, samples as f64, false);
+        }
         let weighted = |value: &dyn Fn(&Self) -> f64| -> f64 {
             runs.iter().map(|run| run.samples() as f64 / samples as f64 * value(run)).sum()
         };
         let mean = weighted(&Self::mean);
         let scatter = weighted(&|run| (run.mean() - mean) * (run.mean() - mean));
-        let between = scatter / (runs.len() as f64 - 1.0);
         let within = weighted(&|run| {
             run.samples() as f64 / samples as f64 * run.standard_error() * run.standard_error()
         });
+        let count = runs.len() as f64;
+        // In this form, runs of equal lengths count exactly.
+        let squares: f64 = runs.iter().map(|run| run.samples() as f64 * run.samples() as f64).sum();
+        let effective = samples as f64 * samples as f64 / squares;
+        let differ = scatter / (count - 1.0) > DIFFERENT * within;
+        let count = if differ { effective } else { count };
+        let between = scatter / (count - 1.0);
         // The error of a run of one sample is NaN, which `max` ignores.
         let error = between.max(within).sqrt();
         // The variance of all samples about their mean is the sum of the variances within the runs and
@@ -63,7 +82,7 @@ impl Estimate {
         let growth = if naive > 0.0 { error / naive } else { 1.0 };
         let correlated = growth * growth;
         let is_long = samples as f64 / correlated.max(1.0) >= FEWEST_INDEPENDENT;
-        let converged = is_long || runs.len() >= ENOUGH || runs.iter().all(Self::is_converged);
+        let converged = is_long || count >= ENOUGH || runs.iter().all(Self::is_converged);
         Self::blocked(mean, error, samples, correlated, converged)
     }
 
