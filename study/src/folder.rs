@@ -28,7 +28,7 @@ const RAMPS: &str = "ramps";
 const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
 const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
-    finish it by version 0.3 (`cargo install granular-edmd@0.3 --features cli`), or take a new folder: its tables stay as they are";
+    finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
 
 /// Mark of an unfinished value, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANPART", 5);

@@ -78,7 +78,7 @@ fn a_new_plan_is_a_plan_and_overwrites_nothing() {
         "{text}"
     );
     let check = scratch.runs(&["check", "mine.toml"]);
-    let listed = "2 ramps of 4 values of 1500 cycles\n  0: inelasticity = 0.0; friction = 0.01, 0.03, 0.06, 0.1\n  \
+    let listed = "2 ramps of 4 values of 3000 cycles\n  0: inelasticity = 0.0; friction = 0.01, 0.03, 0.06, 0.1\n  \
                   1: inelasticity = 0.01; friction = 0.01, 0.03, 0.06, 0.1\n";
     assert_eq!(said(&check), listed);
     let again = scratch.runs(&["new", "mine.toml"]);

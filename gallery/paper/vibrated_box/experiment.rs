@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let seconds = start.elapsed().as_secs_f64();
     let temperature = mean(settled(&series), |(.., energy)| energy.translational).mean();
     let noise = thermal_noise(temperature, 1.0, simulation.disks().len())?;
-    let flow = name_of_flow(settled(&series), noise, profile.densest_layer(), arguments.periodic)?;
+    let flow = name_of_flow(settled(&series), noise, profile.densest_layer(), arguments)?;
     Ok(Outcome { simulation, seconds, series, energy_change, fields, noise, flow })
 }
 
@@ -156,16 +156,17 @@ fn name_of_flow(
     samples: &[Sample],
     noise: f64,
     layer: Option<DenseLayer>,
-    periodic: bool,
+    arguments: &Arguments,
 ) -> Result<String, ParameterError> {
     let order = |(order, ..): &Sample| match order {
         // Without walls, a pair of rolls drifts from one order parameter to the other.
-        _ if periodic => ConvectionOrder::new(0.0, order.one_roll.hypot(order.two_rolls)),
+        _ if arguments.periodic => ConvectionOrder::new(0.0, order.one_roll.hypot(order.two_rolls)),
         _ => *order,
     };
     let order: Vec<_> = samples.iter().map(order).collect();
-    let found = StateCriteria::default().classify(&order, noise, layer)?;
-    Ok(if periodic { found.regime().to_string() } else { found.state().to_string() })
+    let found =
+        StateCriteria::default().with_base_speed(arguments.base_speed())?.classify(&order, noise, layer)?;
+    Ok(if arguments.periodic { found.regime().to_string() } else { found.state().to_string() })
 }
 
 impl Outcome {

@@ -113,7 +113,7 @@ impl StateCriteria {
     /// which rolls have died, 0.03 unless given.
     ///
     /// The bound on $`|\langle\Psi_2\rangle|`$ is a velocity; 0.03 is meant for $`A\omega = 1`$, as in the
-    /// paper.
+    /// paper ([`with_base_speed`](Self::with_base_speed)).
     ///
     /// # Errors
     /// If one is negative or not finite.
@@ -124,6 +124,16 @@ impl StateCriteria {
             collapsed_order: non_negative("order of a collapsed state", order)?,
             ..self
         })
+    }
+
+    /// Multiplies the bound on |⟨Ψ₂⟩| by the speed of the base, $`A\omega`$ (or $`\sqrt{T_0/m}`$ of a thermal
+    /// base), in the units of the samples.
+    ///
+    /// # Errors
+    /// If it is not positive or not finite.
+    pub fn with_base_speed(self, speed: f64) -> Result<Self, ParameterError> {
+        let collapsed_order = self.collapsed_order * positive("speed of the base", speed)?;
+        Ok(Self { collapsed_order, ..self })
     }
 
     /// Sets the ratio |Ψ₂|/|Ψ₁| above which a cluster shows two rolls; 2 unless given.

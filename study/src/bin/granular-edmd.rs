@@ -16,7 +16,7 @@ fn example() -> Result<Plan<VibratedBox>, PlanError> {
         .with_height(80.0)
         .with_gravity(0.015_625)
         .with_contact_duration(1e-4);
-    Plan::new(experiment, Protocol::new(500, 100, 10)?, 1)?
+    Plan::new(experiment, Protocol::new(2000, 100, 10)?, 1)?
         .with_ramp(Ramp::new("friction", [0.01, 0.03, 0.06, 0.1], Course::Up)?)?
         .with_axis(Axis::new("inelasticity", [0.0, 0.01])?)
 }

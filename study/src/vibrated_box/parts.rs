@@ -63,6 +63,15 @@ impl Base {
         BiParabolic::new(1.0, angular_frequency).ok().and_then(|motion| motion.period())
     }
 
+    /// Returns the scale of the speeds that the base gives to disks of mass 1.
+    pub(super) fn speed(&self) -> f64 {
+        match *self {
+            Self::BiParabolic { amplitude, angular_frequency }
+            | Self::Sinusoidal { amplitude, angular_frequency } => amplitude * angular_frequency,
+            Self::Thermal { temperature, .. } => temperature.sqrt(),
+        }
+    }
+
     /// Returns the container over this base.
     pub(super) fn under(&self, container: Container) -> Result<Container, ExperimentError> {
         Ok(match *self {

@@ -172,7 +172,8 @@ impl Record<VibratedBox> {
 /// Returns the name of the convective regime; `None` without samples.
 pub(super) fn regime(record: &Record<VibratedBox>) -> Option<String> {
     let (noise, layer) = (record.thermal_noise(), record.densest_layer());
-    let found = StateCriteria::default().classify(&record.order(), noise, layer);
+    let criteria = StateCriteria::default().with_base_speed(record.experiment().base.speed());
+    let found = criteria.and_then(|criteria| criteria.classify(&record.order(), noise, layer));
     found.ok().map(|found| found.regime().to_string())
 }
 

@@ -129,6 +129,14 @@ fn collapse_needs_a_compact_layer_on_a_gas_without_rolls() -> Outcome {
     let criteria = StateCriteria::default().with_collapse(0.4, 0.01)?;
     let sample = [ConvectionOrder::default()];
     assert_eq!(criteria.classify(&sample, 0.01, Some(layer(0.45, 0.13)))?.regime(), Collapsed);
+    // The same flow over a base that is a hundred times as fast.
+    let fast = StateCriteria::default().with_base_speed(100.0)?;
+    let regime = |two_rolls: f64| -> Result<ConvectiveRegime, ParameterError> {
+        let sample = [ConvectionOrder::new(0.0, two_rolls)];
+        Ok(fast.classify(&sample, 0.67, Some(layer(0.67, 0.13)))?.regime())
+    };
+    assert_eq!([regime(2.0)?, regime(10.5)?], [Collapsed, TwoRolls]);
+    assert!(fast.with_base_speed(0.0).is_err());
     Ok(())
 }
 

@@ -172,7 +172,7 @@ fn a_study_of_version_0_3_is_refused_by_name() -> Result<(), AnyError> {
     for error in [Study::<VibratedBox>::open(&scratch.0), Study::open_or_create(&scratch.0, &small_plan())] {
         let error = error.unwrap_err();
         assert!(matches!(&error, StudyError::Refused { path, .. } if *path == scratch.0), "{error}");
-        assert!(error.to_string().contains("cargo install granular-edmd@0.3"), "{error}");
+        assert!(error.to_string().contains("by the program of version 0.3"), "{error}");
     }
     Ok(())
 }
