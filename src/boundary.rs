@@ -2,7 +2,7 @@
 //!
 //! [`Container`] is the rectangular box of the paper, with variations. It has side walls or periodic sides, a
 //! floor that is fixed, moving or thermal, and a lid or an open top. Each wall can have its own rule. Walls
-//! can slide along themselves, and the box can be shaken as a whole.
+//! can slide tangentially, and the box can be shaken as a whole.
 //!
 //! A [`Vessel`] can have any shape. It is a container with named [`Part`]s in it, and each part consists of
 //! [`Brick`]s.
@@ -164,8 +164,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
-/// `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
+/// [`laws::check`] tests promises 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests
+/// 13; `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
 /// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than 1e-6 of
 /// its radius. Three things therefore end a run with an error: an early or late touch, a disk that has left
 /// the domain, and a disk that overlaps a wall at the end of a search that found no touch. A missed touch
@@ -239,7 +239,7 @@ pub trait Boundary {
 
     /// Returns the rectangle, inside the domain, in which initial states are placed.
     ///
-    /// It leaves out the reach of moving walls.
+    /// It excludes the region that moving walls reach.
     fn interior(&self) -> Domain {
         self.domain()
     }
@@ -272,8 +272,8 @@ pub trait Boundary {
         self.domain()
     }
 
-    /// Returns the displacement of a wall from its position at rest at `time`, and the phase of its motion:
-    /// the time, less whole periods, as [`WallMotion`](crate::wall::WallMotion) takes it.
+    /// Returns, at `time`, the displacement of a wall from its rest position and the phase of its motion: the
+    /// time, less whole periods, as [`WallMotion`](crate::wall::WallMotion) takes it.
     ///
     /// The result is `None` for a wall that does not move, and for a wall that moves together with a wall of
     /// a smaller index, as the bricks of a part do. The phase of a [`Piston`](crate::wall::Piston) is 0. The
@@ -313,7 +313,7 @@ pub trait Boundary {
     /// A wall that lets disks of the probe's kind pass does not count.
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
 
-    /// Returns the walls at `time` as lines of points, for pictures.
+    /// Returns the walls at `time` as polylines, for pictures.
     ///
     /// The edges of the domain are left out, since they are drawn anyway.
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
@@ -380,7 +380,7 @@ pub trait Boundary {
         Vec::new()
     }
 
-    /// Sets the numbers that [`state`](Self::state) returned, at the present time origin.
+    /// Restores a state that [`state`](Self::state) returned. It holds at the present time origin.
     ///
     /// # Errors
     /// If the numbers are not a state of this boundary.

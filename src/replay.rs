@@ -70,7 +70,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Self { states: vec![start], present, interval, most, has_failed: false })
     }
 
-    /// Returns the same replay with another limit on the number of states. The default is 64, and the least
+    /// Returns the same replay with another limit on the number of states. The default is 64, and the minimum
     /// is 2.
     #[must_use]
     pub fn with_most_states(self, most: usize) -> Self {

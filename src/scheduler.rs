@@ -115,8 +115,7 @@ pub trait EventScheduler {
     /// The list is a hint: the engine prefetches the data that these events will need. The call changes
     /// neither the order of events nor the disks that `disks` holds already. Disks may be missing, or be
     /// named twice or in any order. The engine ignores disks that do not exist. The default names no disk. A
-    /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes half as long
-    /// again.
+    /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes 50 % longer.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

@@ -40,8 +40,8 @@
 //! spring.
 //!
 //! [`first_touch`] finds the contact for all of these motions and for custom ones. Apart from position,
-//! velocity and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an
-//! example, and [`laws`] for a check of a custom motion.
+//! velocity and reach, it needs only bounds on the acceleration over intervals of time. See [`WallMotion`]
+//! for an example, and [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
 mod delayed;

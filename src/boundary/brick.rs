@@ -231,8 +231,8 @@ impl Brick {
         let brick = match self.shape {
             Shape::Segment(segment) => {
                 let direction = segment.direction;
-                // Earlier versions had other segments, too. The text keeps their fingerprint of a finite
-                // segment.
+                // Earlier versions had other segments, too. This text keeps the fingerprint of a finite
+                // segment as it was.
                 Fingerprint::of("Segment").number(direction.x).number(direction.y).text("finite")
             }
             Shape::Arc(arc) => arc

@@ -46,9 +46,9 @@ type Moments = [DVec2; MOMENTS];
 /// also with couples that keep the energy.
 /// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
 ///
-/// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
-/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report this lag and the number of
-/// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
+/// Units: mass/time for the viscosities and, with k_B = 1, 1/time for the conductivity. In two dimensions the
+/// slopes grow slowly with the longest lag, so report this lag and the number of disks. Choose lags from a
+/// few mean free times up to the time in which sound crosses the box.
 ///
 /// One observer measures one gas, in one run or in runs that continue each other. The first interval is as
 /// long as the longest lag, and serves only to find the pressure. The errors come from blocks of origins.

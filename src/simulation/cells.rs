@@ -335,8 +335,8 @@ impl Cells {
         let count = self.contents.gather(first, step, found, 0);
         match &self.layers {
             None => count,
-            // The larger disks are few, so it is not worthwhile to leave out disks that were within reach
-            // before.
+            // There are few larger disks, so filtering out those that were already within reach of the
+            // previous cell would not pay.
             Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }

@@ -30,8 +30,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.end_flight(disk);
     }
 
-    /// Finds another partner for a disk whose partner has collided since. The end of the disk's own flight in
-    /// its cell stays the same.
+    /// Finds another partner for a disk whose partner has collided since the prediction. The end of the
+    /// disk's own flight in its cell stays the same.
     #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);

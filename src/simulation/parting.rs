@@ -1,4 +1,4 @@
-//! The parting of partners that still approach each other after a collision, because of rounding.
+//! Separates partners that rounding has left approaching each other after a collision.
 
 use glam::DVec2;
 

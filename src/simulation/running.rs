@@ -145,7 +145,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
     }
 
-    /// Advances from sample to sample until a limit.
+    /// Advances from sample to sample until a limit is reached.
     #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
         let end = watch.end();

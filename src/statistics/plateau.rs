@@ -54,8 +54,8 @@ impl BlockError {
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];
-    // The error is compared with blocks of half and of a quarter of the size. The longer of two correlation
-    // times shows as a slow rise.
+    // The error is compared with the errors from blocks half and a quarter as large. The longer of two
+    // correlation times shows as a slow rise.
     let is_flat = |at: usize| {
         let here = levels[at];
         let tolerances = [1.0, 1.5].map(|factor| 1.0 + factor * here.uncertainty);

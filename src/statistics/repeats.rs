@@ -3,7 +3,7 @@
 use super::Estimate;
 use super::plateau::FEWEST_INDEPENDENT;
 
-/// Smallest number of repeats with a meaningful scatter, as with blocks.
+/// Smallest number of repeats whose scatter is meaningful; the same as `FEWEST_BLOCKS`.
 const ENOUGH: usize = 8;
 
 impl Estimate {

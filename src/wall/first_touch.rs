@@ -66,7 +66,7 @@ impl<T> From<Option<T>> for FirstTouch<T> {
 /// The approach of a surface to a wall: its height above the wall's position at rest, along the wall's
 /// normal.
 ///
-/// Its times are phases of the wall's motion.
+/// Its `time` is a phase of the wall's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     time: f64,
@@ -294,8 +294,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the value below which a gap counts as closed: the rounding of its lengths, and of the time at
-    /// this speed.
+    /// Returns the gap below which it counts as closed: the rounding error of the lengths, plus `rate` times
+    /// the rounding error of `time`.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

@@ -16,8 +16,8 @@ const SAMPLES: u32 = 200;
 /// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
-/// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides the time of
-/// such a touch, or that there is none.
+/// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides when such a
+/// touch happens, and whether it happens.
 const GRAZING: f64 = 1e-2;
 
 /// Largest relative error of a velocity with another time origin.
@@ -134,8 +134,8 @@ fn check_touch(
     Ok(())
 }
 
-/// Returns the distance by which a gap closes in the rounding of an absolute time. A motion without a period
-/// knows its phase no better.
+/// Returns the distance by which a gap closes during the rounding error of an absolute time. A motion without
+/// a period knows its phase no better.
 fn lateness(trial: &Trial<'_>, flight: &Flight, Touch { wall, time, .. }: Touch) -> f64 {
     let surface = trial.boundary.surface(wall, flight.position(time), time);
     let rate = (flight.velocity(time) - surface.velocity).dot(surface.normal);

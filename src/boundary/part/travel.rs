@@ -235,8 +235,8 @@ impl Travel {
         self.reach().1 - self.reach().0
     }
 
-    /// Returns the time, at most `wait`, until a disk on this path in the frame at rest enters the strip that
-    /// a brick of the part sweeps: all positions at which the disk touches the brick at some phase.
+    /// Returns the time, at most `wait`, until the disk enters the brick's strip: all positions at which the
+    /// disk touches the brick at some phase. `path` is in the frame at rest.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         brick: &Brick,

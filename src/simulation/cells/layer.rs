@@ -24,7 +24,7 @@ use crate::boundary::{Boundary, Domain, Region};
 /// Largest number of homes per disk. More would cost time, since searches also visit empty homes.
 const HOMES_PER_DISK: f64 = 4.0;
 
-/// Number of homes that is always allowed.
+/// Number of homes that is allowed however few disks there are.
 const SPARE_HOMES: f64 = 16.0;
 
 /// Largest number of doublings by which cells are finer than homes.

@@ -88,7 +88,7 @@ impl Promises {
 /// page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken.
+/// Returns the first broken promise.
 pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result<(), Violation> {
     let mut make = make;
     let disks = disks().map_err(|error| failed(&error))?;
@@ -215,8 +215,8 @@ fn check_memory<D: Driving>(mut make: impl FnMut() -> D, disks: &[Disk]) -> Resu
     Err(Violation::new(PART, "memory", sentence))
 }
 
-/// Returns the disks after each kick of a driving that gets them in this order: the index of the first of
-/// them in the list, by the number of the kick.
+/// Returns the disks after each kick. For kick `n`, the list is rotated so that it starts with disk
+/// `order(n)`.
 fn kicked<D: Driving>(
     mut driving: D,
     disks: &[Disk],

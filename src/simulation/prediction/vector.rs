@@ -4,8 +4,8 @@
 //! Three differences make this code faster than the plain code:
 //! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read
 //!    only if the write covers all of the read. Otherwise, the read waits about 15 cycles, until the writes
-//!    have reached the cache, and the whole search waits with it. From the plain code, the compiler makes
-//!    such reads: it merges four numbers that lie side by side into one vector. The functions of
+//!    have reached the cache, and the whole search waits with it. The compiler generates such reads from the
+//!    plain code: it merges four numbers that lie side by side into one vector. The functions of
 //!    [`load`](crate::instructions::load) read exactly as many numbers as their names say, and arguments come
 //!    in registers or from tables, never as an array or a rectangle that was just built.
 //! 2. **Two searches in one loop.** After a collision, neither of the two searches depends on the other. The
