@@ -1,7 +1,7 @@
 //! Checks of parameters: the gate that every constructor and every deserialized value passes.
 //!
-//! Each function returns the value that it was given, or the error that names it. Custom types use the same
-//! functions, so that all errors of parameters in a program read alike.
+//! Each function returns the value that it was given, or an error that names the value. Custom types use the
+//! same functions, so that all errors of parameters in a program read alike.
 //!
 //! ```
 //! use granular_edmd::{ParameterError, quantity};

@@ -68,7 +68,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// time, so the engine does not notice a lost event in shorter runs and in single steps within an epoch. Nor
 /// does it notice that two events were swapped, once both have been named. [`laws::check`] finds such faults
 /// if they show within its scripts of up to three million operations; `docs/validation.md` says which planted
-/// faults it finds.
+/// faults the check finds.
 ///
 /// # A pair instead of an `Option`
 /// The engine calls [`earliest`](Self::earliest) at every event. A pair comes back in two registers, and

@@ -36,7 +36,7 @@ pub(super) struct Plane {
     pub(super) slide: Option<Slide>,
 }
 
-/// The motion of a wall along itself: to the right, or up. It sets disks spinning and carries them along, but
+/// The tangential motion of a wall: to the right, or up. It sets disks spinning and carries them along, but
 /// never moves the wall into them.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

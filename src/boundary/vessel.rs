@@ -191,7 +191,7 @@ impl Vessel {
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
     /// walls. Also if the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. Also if it takes out centers and
+    /// both, or its motion is lost in the rounding of its coordinates. Also if the part takes out centers and
     /// either turns or has a motion whose acceleration is not exactly known. The vessel then stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();

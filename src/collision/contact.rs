@@ -184,7 +184,7 @@ impl Contact {
 
     /// Returns the kinetic energy of the relative motion of the surfaces, ½μ v_n² + ½μ_t v_t².
     ///
-    /// A collision without a couple can lose no more than that.
+    /// A collision without a couple can lose no more than this energy.
     #[inline]
     pub const fn available_energy(&self) -> f64 {
         let (closing, slip) = (self.closing_speed, self.slip_speed);

@@ -58,11 +58,11 @@ fn unless(
     Err(Violation::new("collision rule", law, sentence))
 }
 
-/// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it gains no
-/// energy, also by its couple.
+/// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it adds no
+/// energy, even through its couple.
 ///
 /// # Errors
-/// The first law that is broken: "finite", "separation" or "energy".
+/// The first broken law: "finite", "separation" or "energy".
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, laws};

@@ -81,7 +81,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///
 /// # Guarantees of an observer
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
-/// 2. After a sample, `next_sample` names a later time than the sample's.
+/// 2. After a sample, `next_sample` returns a time later than the sample's.
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine calls `next_sample`
 ///    only after these two, and would notice a change at any other time too late.
@@ -91,7 +91,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
 /// breaks another promise, it gets samples at times that it did not intend.
 /// [`SampleTimes`](super::SampleTimes) keeps all five, and [`laws::check`](super::laws::check) tests them;
-/// `docs/validation.md` says which planted faults it finds.
+/// `docs/validation.md` says which planted faults the check finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",

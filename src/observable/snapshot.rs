@@ -246,7 +246,7 @@ impl<'a> Snapshot<'a> {
         self.gravity
     }
 
-    /// Returns the walls as lines of points, without the edges of the domain, for pictures.
+    /// Returns the walls as polylines, without the edges of the domain, for pictures.
     ///
     /// These are the [`wall_lines`](Boundary::wall_lines) of the boundary that the run has at this time. A
     /// snapshot that was not made by a simulation has no walls.

@@ -22,9 +22,9 @@ type Moments = [DVec2; MOMENTS];
 /// An observer of the viscosities and the thermal conductivity of an elastic gas in a periodic box
 /// (Helfand 1960; Alder, Gass and Wainwright 1970).
 ///
-/// The moments describe the transport of momentum and energy, also by collisions: in a collision, the
-/// momentum $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the vector $`\vec
-/// r`$ between the centers.
+/// The moments describe the transport of momentum and energy, including transport by collisions: in a
+/// collision, the momentum $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the
+/// vector $`\vec r`$ between the centers.
 ///
 /// ```math
 /// W_{ab}(t) = \int_0^t \sum_i m_i v_{i,a} v_{i,b}\,dt' + \sum_{\rm collisions}\Delta_a\, r_b ,
@@ -42,9 +42,9 @@ type Moments = [DVec2; MOMENTS];
 /// ```
 ///
 /// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
-/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible,
-/// also with couples that keep the energy.
-/// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
+/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible, even
+/// with couples that conserve the energy. Velocities are relative to the center of mass. All integrals are
+/// exact; samples only set the lags.
 ///
 /// Units: mass/time for the viscosities and, with k_B = 1, 1/time for the conductivity. In two dimensions the
 /// slopes grow slowly with the longest lag, so report this lag and the number of disks. Choose lags from a

@@ -106,8 +106,8 @@ fn middle(low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low)
 }
 
-/// At most five times, in ascending order. At each of them but the first and the last, a polynomial changes
-/// its sign.
+/// At most five times, in ascending order. At each of them except the first and the last, a polynomial
+/// changes its sign.
 #[derive(Clone, Copy)]
 struct Marks {
     times: [f64; 5],

@@ -13,7 +13,7 @@ use script::{Operation, SCRIPTS, Script, Stage};
 
 const PART: &str = "scheduler";
 
-/// Numbers of changes of one disk after which counters of 8 and of 16 bits begin again.
+/// Numbers of changes of one disk after which counters of 8 and of 16 bits wrap around.
 const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
 
 /// Checks that a scheduler keeps the contract of [`EventScheduler`].
@@ -28,7 +28,7 @@ const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
 /// version.
 ///
 /// # Errors
-/// The first law that is broken. A scheduler that panics is not caught.
+/// The first broken law. A scheduler that panics is not caught.
 ///
 /// ```
 /// use granular_edmd::scheduler::{BySize, EventScheduler, laws};

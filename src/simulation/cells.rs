@@ -87,8 +87,8 @@ impl Cells {
         Some(cells)
     }
 
-    /// Creates cells with these layouts, one for each class; there is at least one class. The disks of these
-    /// diameters are yet to be filled in.
+    /// Creates cells with these layouts, one for each class; there is at least one class. The disks, of these
+    /// diameters, are added afterwards.
     pub(super) fn empty<B: Boundary + ?Sized>(
         boundary: &B,
         layouts: &Layouts,

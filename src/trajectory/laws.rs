@@ -25,7 +25,7 @@ const NUMBERS: [usize; 6] = [0, 1, 2, 3, 4, 1_000_000];
 /// writes. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken.
+/// The first broken promise.
 ///
 /// ```
 /// use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, laws};

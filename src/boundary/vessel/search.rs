@@ -197,7 +197,7 @@ impl Vessel {
 /// The search follows the flight in the frame of the part, in which the brick is at rest. On a piece of time
 /// in which the part has constant acceleration, the path in that frame is a parabola like any other, and its
 /// first touch is exact. Otherwise, the path is known up to an error. A disk that grows by this error touches
-/// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
+/// no later than the actual disk. The search advances to the touch of the growing disk, and starts again from
 /// there, until the gap is within rounding. It never steps over a touch.
 ///
 /// A fast part has many pieces of motion during a flight. A disk, however, can touch the part only in the

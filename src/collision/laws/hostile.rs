@@ -74,7 +74,7 @@ pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
 /// Returns contacts of ordinary speeds with mild partners only. The extreme contacts cycle through the
 /// partners, so each pair of partners, mild or not, meets all speeds and masses.
 ///
-/// The disks are rings of mass 1: their tangential mass, 0.25, reads better than a sixth.
+/// The disks are rings of mass 1: their tangential mass, 0.25, is easier to read than one sixth.
 fn mild_contacts() -> impl Iterator<Item = Contact> {
     MILD_SPEEDS.into_iter().flat_map(|(closing, slip)| {
         let contact = Contact::new(closing, slip, 0.5, 0.25);

@@ -131,7 +131,7 @@ impl Promises {
     /// Checks that `impulse` keeps these promises.
     ///
     /// # Errors
-    /// The first promise that is broken.
+    /// The first broken promise.
     pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
         if self.energy_gain { check_separation(contact, impulse) } else { check_impulse(contact, impulse) }?;
         if let Some(static_friction) = self.static_friction {
@@ -193,7 +193,7 @@ impl Promises {
 /// has each pair of kinds below 256. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken, at the simplest contact that the check finds for the same promise.
+/// The first broken promise, at the simplest contact that the check finds for the same promise.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
     let answer = |contact: &Contact| promises.check_answer(rule, contact);
     let simplify = |contact, violation| simplest(contact, violation, |contact| answer(contact).err());
@@ -220,9 +220,9 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
 /// with equal impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint
 /// are not compared.
 ///
-/// Pairs of different kinds are compared up to kind 255, most of them in one contact. Rules that differ only
-/// elsewhere are alike to the check, and if both are of one type, it refuses different fingerprints. Rules of
-/// two types may act alike and have different fingerprints.
+/// Pairs of different kinds are compared up to kind 255, most of them in one contact. The check cannot see
+/// other differences. If two such rules are of one type, it refuses different fingerprints. Rules of two
+/// types may act alike and have different fingerprints.
 ///
 /// # Errors
 /// If the fingerprints contradict the impulses.

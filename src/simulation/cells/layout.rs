@@ -8,7 +8,7 @@ use crate::boundary::Domain;
 /// Largest number of cells per disk. More cells would cost memory and save nothing.
 pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
 
-/// Number of cells that is always allowed.
+/// Number of cells that is allowed however few disks there are.
 pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 
 /// Smallest size of a cell in diameters. It is above 1 by more than rounding.
