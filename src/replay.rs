@@ -111,8 +111,8 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         }
     }
 
-    /// Returns the state at an absolute time, after all events up to and at it; `None` if the run does not
-    /// cover the time.
+    /// Returns the state at an absolute time, after all events up to and including that time; `None` if the
+    /// run does not cover the time.
     ///
     /// # Errors
     /// If the replayed run returns an error, or results that differ from the original run's.
@@ -149,7 +149,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Some(run))
     }
 
-    /// Returns the collisions after the absolute time `from`, up to and at `to`.
+    /// Returns the collisions after the absolute time `from`, up to and including `to`.
     ///
     /// # Errors
     /// If the replayed run returns an error, or results that differ from the original run's.
@@ -208,7 +208,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// `None` if the two runs keep no states at the same times.
     ///
     /// # Errors
-    /// If the parts of a run return other results than the first time.
+    /// If a replayed run returns an error, or results that differ from the original run's.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -10,8 +10,8 @@ use crate::{Disk, Kind};
 ///
 /// A collision with a disk of another kind is one collision, but only one disk of the kind takes part in it:
 /// a rate for each disk, such as [`rate_per_disk`](super::CollisionCounts::rate_per_disk), which takes both
-/// partners for disks of the kind, is then too high. Add up the collisions [between](super::BetweenKinds) each
-/// two kinds instead, with both partners within the kind and with one.
+/// partners for disks of the kind, is then too high. Add up the collisions [between](super::BetweenKinds)
+/// each two kinds instead, with both partners within the kind and with one.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

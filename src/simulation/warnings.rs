@@ -91,7 +91,7 @@ pub enum Warning {
         upwards: f64,
     },
     /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in:
-    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds out.
+    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
     EnergyGained {
         /// Energy when the run was built.
         before: f64,

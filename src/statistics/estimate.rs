@@ -117,7 +117,7 @@ impl Estimate {
 
     /// Returns whether the error can be trusted.
     ///
-    /// If it cannot, it is only a lower bound: the series is too short for its correlations
+    /// If not, the error is only a lower bound: the series is too short for its correlations
     /// ([`block_average`](super::block_average) has the numbers), all samples are equal, or there are fewer
     /// than two samples.
     pub const fn is_converged(&self) -> bool {

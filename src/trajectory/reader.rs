@@ -130,7 +130,7 @@ impl Reader {
     ///
     /// This turns states of soft disks, and files with few digits, into initial states for hard disks.
     /// [`State::shrunk`] says by how much. With a [tolerance](Self::with_tolerance), deeper overlaps remain
-    /// an error. Overlaps of more than half the sum of the radii are always an error. Masses stay.
+    /// an error. Overlaps of more than half the sum of the radii are always an error. Masses do not change.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;

@@ -82,7 +82,7 @@ impl State {
     /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. This order is
     /// alphabetical, unless the file numbers the kinds.
     ///
-    /// It is empty if the kinds have only numbers in the file.
+    /// The list is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {
         &self.kind_names
     }

@@ -46,7 +46,7 @@ const STEPS: u32 = 12;
 /// from the disks, and only if the motion declares jumps. The motion must repeat after its period, and return
 /// the same values when it is called again. The check can miss a fault that is narrower than a five-hundredth
 /// of a piece, so check a motion with one long piece in several short intervals. It refuses an interval of
-/// more than ten thousand pieces. The page "Validation" says which planted faults it finds.
+/// more than ten thousand pieces. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first violation that the check finds.

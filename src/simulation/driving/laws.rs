@@ -190,7 +190,8 @@ impl Sums {
     }
 }
 
-/// Checks that kicks do not depend on changes of the order of disks, if they do not depend on the order.
+/// Checks that kicks that do not depend on the order of the disks do not depend on changes of the order
+/// either.
 fn check_memory<D: Driving>(mut make: impl FnMut() -> D, disks: &[Disk]) -> Result<(), Violation> {
     let orders: [fn(usize) -> usize; 3] = [|_| 0, |_| 5, |number| number * (number + 1) / 2];
     let [kept, turned, changing] = orders.map(|order| kicked(make(), disks, order));

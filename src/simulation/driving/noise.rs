@@ -57,8 +57,8 @@ pub struct WhiteNoise {
 }
 
 impl WhiteNoise {
-    /// Creates noise of this strength $`\xi_0^2`$, the variance that a component of a velocity gains in a
-    /// unit of time.
+    /// Creates noise of this strength $`\xi_0^2`$, the variance that a component of a velocity gains per unit
+    /// of time.
     ///
     /// # Errors
     /// If the strength is negative or not finite.
@@ -69,7 +69,7 @@ impl WhiteNoise {
     }
 
     /// Returns the same noise, which also kicks the spins: $`\xi_r^2`$ is the variance that an angular
-    /// velocity gains in a unit of time.
+    /// velocity gains per unit of time.
     ///
     /// # Errors
     /// If the strength is negative or not finite.
