@@ -17,10 +17,10 @@
 //! | conveyor | [`Part::with_surface_speed`] |
 //! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
-//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], also with a motion along a direction |
+//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], with or without a motion along a direction |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
-//! Parts are added, replaced and removed by name, also between runs; this is how a gate opens. With the
+//! Parts are added, replaced and removed by name, even between runs; this is how a gate opens. With the
 //! feature `serde`, bricks, parts, vessels and containers can be written to files, and reading them repeats
 //! their checks. A rule or a custom motion cannot be written.
 //!
@@ -135,8 +135,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    overlaps none, up to the distance that the surfaces close in 16 roundings of the absolute time. On a
 ///    periodic side or end, the overlap is the same for both images of the disk: a wall at one side acts on
 ///    disks at the other.
-/// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
-///    at the same absolute time.
+/// 7. Another origin changes only the numerical values of times: the same flight touches the same wall at the
+///    same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
 ///    wall changes by the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along

@@ -9,8 +9,8 @@ use crate::{Kind, ParameterError};
 /// normal.
 pub(crate) const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Least velocity about a mean, relative to all velocities, that counts as thermal. Below it, differences of
-/// velocities are mostly rounding.
+/// Smallest velocity about a mean that counts as thermal, relative to all velocities. Below it, differences
+/// of velocities are mostly rounding.
 pub(crate) const LEAST_THERMAL: f64 = 1e-10;
 
 /// Largest overlap that still counts as touching, relative to the distance between the centers at a touch.

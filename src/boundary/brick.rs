@@ -166,7 +166,7 @@ impl Brick {
         }
     }
 
-    /// Returns the curves on which the center of a touching disk of this radius lies.
+    /// Returns the curves on which the center of a disk of this radius lies while it touches the brick.
     pub(super) fn curves(&self, radius: f64) -> impl Iterator<Item = Curve> + use<> {
         let shape = self.shape;
         let sides = [radius, -radius].into_iter().take(if radius > 0.0 { 2 } else { 1 });

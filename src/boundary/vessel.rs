@@ -34,7 +34,7 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 /// A disk must be free of the container's walls and of each part: two blocks make a hopper, and a polygon can
 /// have pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
 /// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
-/// added, replaced and removed by name, also between runs
+/// added, replaced and removed by name, even between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
 /// Initial states keep clear of all parts at their positions at time 0. To pack disks densely among parts

@@ -8,7 +8,7 @@ pub struct Seal {
     version: u32,
 }
 
-/// A fault that a seal shows.
+/// A fault that a seal reveals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Damage {

@@ -8,11 +8,11 @@ use crate::quantity::{finite, positive};
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Rounding of a start time and of a sampling time, relative to the interval. Before time 0, for example, the
-/// origin may be far larger than the time, and the time then has the origin's rounding.
+/// origin may be far larger than the time, and the time then has the origin's rounding error.
 const PART: f64 = 1e-9;
 
-/// Smallest ratio of the interval to the time. Rounding then moves a sampling time by a sixteenth of the
-/// interval at most.
+/// Smallest ratio of the interval to the time. Rounding then moves a sampling time by at most a sixteenth of
+/// the interval.
 const COARSEST: f64 = 16.0 * f64::EPSILON;
 
 /// A clock for observers, with equally spaced times of samples.

@@ -67,8 +67,8 @@ pub fn check<S: EventScheduler>(mut make: impl FnMut() -> S) -> Result<(), Viola
     COUNTS.iter().try_for_each(|&count| check_counters(make(), count))
 }
 
-/// Checks that a disk whose event has moved this number of times is not due at its first time, behind another
-/// disk. A scheduler that numbers its entries may give the same number twice.
+/// Checks that a scheduler forgets the first time of a disk after `count` changes, while another disk is due
+/// earlier. A scheduler that numbers its entries may use the same number twice.
 fn check_counters(mut scheduler: impl EventScheduler, count: u32) -> Result<(), Violation> {
     scheduler.reset(&[5.0, 0.5]);
     scheduler.set(0, 1.0);

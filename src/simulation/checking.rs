@@ -90,8 +90,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
         let (now, radius) = (self.clock.now, probe.radius());
         let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
-        // A wall that jumps away from the disks may have jumped within the rounding of the time. The engine
-        // never passes times before the epoch.
+        // A wall that jumps away from the disks may have jumped within the rounding error of the time. The
+        // engine never passes times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);
         if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {
             return Ok(());

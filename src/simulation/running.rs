@@ -1,4 +1,4 @@
-//! Runs: from sample to sample and from collision to collision, until a limit.
+//! Runs: from sample to sample and from collision to collision, until a limit is reached.
 
 use std::ops::ControlFlow;
 

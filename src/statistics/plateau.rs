@@ -15,8 +15,8 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 /// Excess of a trusted error over its blocks' error, times the number of independent samples.
 ///
 /// A series is called converged if its error is small, and some errors are small by chance. Trusted errors
-/// are therefore too small on average, especially those of few samples. With this excess, the true mean lies
-/// within two errors in nine cases of ten or more, at any length. The table of
+/// are therefore too small on average, especially errors from few samples. With this excess, the true mean
+/// lies within two errors in nine cases of ten or more, at any length. The table of
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 

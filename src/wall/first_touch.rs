@@ -3,7 +3,7 @@
 use super::WallMotion;
 use crate::roots::first_descent;
 
-/// Rounding of a gap, relative to the two lengths whose difference is the gap.
+/// Rounding error of a gap, relative to the two lengths whose difference is the gap.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Least room for a step, in units of the rounding. It makes sure that a search ends.
@@ -275,7 +275,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the mean acceleration of the gap while it falls through its rounding, within the piece.
+    /// Returns the mean acceleration of the gap while it falls through its rounding error, within the piece.
     ///
     /// The acceleration comes from the change of the rate, since the motion only gives bounds on the
     /// acceleration.

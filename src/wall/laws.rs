@@ -305,13 +305,15 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Returns the rounding of a displacement: the rounding of its terms, and of the phase at this speed.
+    /// Returns the rounding error of a displacement: the error of its terms, plus the speed times the error
+    /// of the phase.
     fn length_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
         ROUNDING * (self.length() + speed * sample.phase.abs())
     }
 
-    /// Returns the rounding of a velocity: the rounding of its terms, and of the phase at this acceleration.
+    /// Returns the rounding error of a velocity: the error of its terms, plus the acceleration times the
+    /// error of the phase.
     fn speed_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let acceleration = bounds.min.abs().max(bounds.max.abs());
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);

@@ -139,7 +139,7 @@ fn check_touch(
 fn lateness(trial: &Trial<'_>, flight: &Flight, Touch { wall, time, .. }: Touch) -> f64 {
     let surface = trial.boundary.surface(wall, flight.position(time), time);
     let rate = (flight.velocity(time) - surface.velocity).dot(surface.normal);
-    // A rate that is not a number is found by the check of the surface.
+    // The check of the surface finds a rate that is NaN.
     (16.0 * f64::EPSILON * (trial.origin + time) * rate.abs()).max(0.0)
 }
 
@@ -292,7 +292,7 @@ fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
         && one.kind == other.kind
 }
 
-/// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding.
+/// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding error.
 fn slack(trial: &Trial<'_>, meeting: &Meeting) -> f64 {
     4.0 * trial.rounding() / meeting.rate.abs()
 }

@@ -82,7 +82,7 @@ struct Around<'a, 'b> {
 }
 
 impl Around<'_, '_> {
-    /// Returns the overlap of a slightly larger disk that is moved: its depth and its wall.
+    /// Returns the overlap of a slightly larger disk that is displaced by `moved`: its depth and its wall.
     fn at(&self, moved: DVec2, later: f64) -> (f64, usize) {
         let larger = WIDE * self.trial.radius;
         let found = self.trial.depth(self.place + moved, larger, self.time + later);

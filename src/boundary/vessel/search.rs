@@ -285,9 +285,9 @@ impl Search<'_> {
         if brick.wait_for_touch(&at_once, 0.0).is_some() {
             return Step::Touch(time);
         }
-        // In each step the gap may close by its rounding, so that the search advances. Otherwise, the search
-        // would follow a disk that leaves the brick at a speed near rounding in steps too small to change
-        // anything.
+        // In each step the gap may close by its rounding error, so that the search advances. Otherwise, the
+        // search would follow a disk that leaves the brick at a speed near rounding in steps too small to
+        // change anything.
         let smaller = Path { radius: path.radius - rounding, ..path };
         let open = brick.wait_for_touch(&smaller, wait).unwrap_or(wait);
         Step::Open(time + open.max(time_for(&path, rounding)))
