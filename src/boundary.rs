@@ -17,7 +17,8 @@
 //! | conveyor | [`Part::with_surface_speed`] |
 //! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
-//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], with or without a motion along a direction |
+//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], with or without a motion along a direction
+//! |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
 //! Parts are added, replaced and removed by name, even between runs; this is how a gate opens. With the

@@ -30,7 +30,7 @@ use crate::ParameterError;
 /// Returns `value` if it is finite and above zero.
 ///
 /// # Errors
-/// If it is zero, negative, infinite or NaN.
+/// If the value is zero, negative, infinite or NaN.
 pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite() && value > 0.0, name, "finite and positive", value)
 }
@@ -38,7 +38,7 @@ pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, P
 /// Returns `value` if it is finite and not below zero.
 ///
 /// # Errors
-/// If it is negative, infinite or NaN.
+/// If the value is negative, infinite or NaN.
 pub fn non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite() && value >= 0.0, name, "finite and not negative", value)
 }
@@ -46,7 +46,7 @@ pub fn non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f6
 /// Returns `value` if it is neither infinite nor NaN.
 ///
 /// # Errors
-/// If it is infinite or NaN.
+/// If the value is infinite or NaN.
 pub fn finite(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }

@@ -124,9 +124,9 @@ impl AccelerationBounds {
 
     /// Creates bounds from the acceleration at this phase and a bound on the jerk, its rate of change.
     ///
-    /// They hold for a time of this length: $`a\pm|j|\,\mathit{length}`$. A good length is a sixteenth of the
-    /// shortest period in the motion. Shorter pieces cost steps, and so do longer ones, whose bounds are
-    /// wide.
+    /// The bounds hold for a time of this length: $`a\pm|j|\,\mathit{length}`$. A good length is a sixteenth
+    /// of the shortest period in the motion. Shorter pieces cost steps, and so do longer ones, whose bounds
+    /// are wide.
     ///
     /// ```
     /// use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState, laws};

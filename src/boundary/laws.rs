@@ -137,7 +137,7 @@ impl Random {
         low + (high - low) * uniform(&mut self.0)
     }
 
-    /// Returns a time origin, and a flight that begins soon after it at a free position.
+    /// Returns a time origin, and a flight that begins at a free position soon after this time.
     fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
         let late = self.between(-21.0, 3.0).max(0.0);

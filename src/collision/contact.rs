@@ -139,7 +139,8 @@ impl Contact {
         self.radii
     }
 
-    /// Returns the relative spin ω = ω₁ − ω₂. A wall has the spin of its part, which is 0 unless it turns.
+    /// Returns the relative spin ω = ω₁ − ω₂. A wall has the spin of its part, which is 0 unless the part
+    /// turns.
     #[inline]
     pub const fn relative_spin(&self) -> f64 {
         self.relative_spin

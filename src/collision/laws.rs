@@ -39,8 +39,7 @@ use crate::Violation;
 /// Allowed rounding in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
-/// Smallest product whose rounding has a relative bound. Below it, numbers lose digits as they become
-/// smaller.
+/// Smallest product whose relative rounding error is bounded. Smaller numbers have fewer digits.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
 /// Returns the violation of a law by an impulse, unless the condition holds.
@@ -123,7 +122,7 @@ pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Resul
 /// Checks that the impulse lies in the cone of friction, |Δ_t| ≤ κ_s Δ_n.
 ///
 /// # Errors
-/// If it does not.
+/// If the impulse lies outside the cone.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, laws};

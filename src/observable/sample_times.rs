@@ -18,8 +18,8 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 /// A clock for observers, with equally spaced times of samples.
 ///
 /// The sampling times are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
-/// first time ([`Self::starting_at`]). They are multiples, not sums, so the thousandth is as exact as the
-/// first.
+/// first time ([`Self::starting_at`]). Each time is a multiple, not a sum, so the thousandth is as exact as
+/// the first.
 ///
 /// # The start of a run
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
@@ -131,8 +131,8 @@ impl SampleTimes {
     /// Sets the first sampling time of a run that has no sample yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
-            // The cast saturates. Rounding of a large quotient may miss the number by one, which `rounding`
-            // allows for.
+            // The cast saturates. The rounding error of a large quotient may change the number by one, which
+            // `rounding` allows for.
             self.beat = (time / self.interval).floor() as i64;
             return self.advance_past(time + rounding);
         };

@@ -248,8 +248,8 @@ impl<'a> Snapshot<'a> {
 
     /// Returns the walls as polylines, without the edges of the domain, for pictures.
     ///
-    /// These are the [`wall_lines`](Boundary::wall_lines) of the boundary that the run has at this time. A
-    /// snapshot that was not made by a simulation has no walls.
+    /// They come from the [`wall_lines`](Boundary::wall_lines) of the run's boundary at this time. A snapshot
+    /// that was not made by a simulation has no walls.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

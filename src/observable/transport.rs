@@ -11,7 +11,7 @@ use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate, RunningMean};
 use crate::{Disk, ParameterError};
 
-/// Largest rounding of a velocity after many collisions, relative to the speed of sound.
+/// Largest rounding error of a velocity after many collisions, relative to the speed of sound.
 const ROUNDING: f64 = 1e-6;
 
 /// Number of moments: of shear, of compression and of heat. Each has two components.
@@ -243,7 +243,7 @@ impl TransportCoefficients {
     }
 
     /// Stores the motions of this snapshot, and checks that they equal the expected motions up to rounding,
-    /// as they do if only collisions have changed them. Otherwise, it keeps the old motions, so that further
+    /// as they do if only collisions have changed them. Otherwise, keeps the old motions, so that further
     /// runs are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();

@@ -29,7 +29,7 @@ const DEEP: f64 = 1e-6;
 /// Number of times that the search for a wall doubles its reach, in order to report the distance of the wall.
 const MOST_DOUBLINGS: usize = 100;
 
-/// Largest error of a position, in units of its rounding.
+/// Largest error of a position, relative to the coordinates.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {

@@ -183,7 +183,7 @@ impl Checkpoint {
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.
     ///
     /// # Errors
-    /// If it cannot be encoded.
+    /// If the checkpoint cannot be encoded.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
         Ok(SEAL.seal(&postcard::to_stdvec(&self.0).map_err(contents)?))
     }

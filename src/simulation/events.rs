@@ -66,7 +66,7 @@ pub struct Counters {
     /// Passages of disks from one neighbor cell to another.
     pub cell_crossings: u64,
     /// Predicted collisions that were out of date when they came up, since the partner had had another
-    /// collision. They were predicted anew.
+    /// collision. The engine predicted them anew.
     pub repredictions: u64,
     /// Searches for a wall that found no touch up to their horizon, and were continued from there.
     pub horizons: u64,

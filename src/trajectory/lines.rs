@@ -100,7 +100,7 @@ impl Text {
         self.bytes.last().is_some_and(|&last| last != b'\n')
     }
 
-    /// Returns the lines, or an error if they are not text.
+    /// Returns the lines, or an error if the bytes are not text.
     pub(super) fn lines(&self) -> Result<Lines<'_>, ReadError> {
         let text = str::from_utf8(&self.bytes).map_err(|error| {
             let before = &self.bytes[..error.valid_up_to()];

@@ -120,7 +120,7 @@ impl Reader {
     /// A simulation needs disks that do not overlap: see [`with_shrunk_radii`](Self::with_shrunk_radii).
     ///
     /// # Errors
-    /// If it is negative, infinite or NaN.
+    /// If the tolerance is negative, infinite or NaN.
     pub fn with_tolerance(mut self, tolerance: f64) -> Result<Self, ParameterError> {
         self.settings.tolerance = Some(non_negative("tolerance", tolerance)?);
         Ok(self)
@@ -142,7 +142,7 @@ impl Reader {
     /// A GSD file leaves out masses that are all 1; [`State::notes`] says whether the density was used.
     ///
     /// # Errors
-    /// If it is not in `[1e-30, 1e30]`.
+    /// If the density is not in `[1e-30, 1e30]`.
     pub fn with_density(mut self, density: f64) -> Result<Self, ParameterError> {
         self.settings.density = Some(scale("density", density)?);
         Ok(self)
@@ -151,7 +151,7 @@ impl Reader {
     /// Returns the same reader, with this radius for the disks of a file without radii.
     ///
     /// # Errors
-    /// If it is not in `[1e-30, 1e30]`.
+    /// If the radius is not in `[1e-30, 1e30]`.
     pub fn with_radius(mut self, radius: f64) -> Result<Self, ParameterError> {
         self.settings.radius = Some(scale("radius", radius)?);
         Ok(self)

@@ -7,9 +7,9 @@ use crate::{Disk, Gravity};
 
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
-/// A [`Reader`](super::Reader) reads it. No two disks overlap by more than the reader's tolerance, and no
-/// center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks them against the
-/// walls.
+/// A [`Reader`](super::Reader) reads it from a file. No two disks overlap by more than the reader's
+/// tolerance, and no center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks
+/// them against the walls.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

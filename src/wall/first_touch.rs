@@ -6,7 +6,7 @@ use crate::roots::first_descent;
 /// Rounding error of a gap, relative to the two lengths whose difference is the gap.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Least room for a step, in units of the rounding. It makes sure that a search ends.
+/// Smallest room for a step, in units of the rounding error. It makes sure that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
 /// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
@@ -94,7 +94,7 @@ impl Approach {
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
         // Under a downward pull, the surface is lowest at the first or the last of these times, so two tests
-        // are enough. They do not branch, since most flights pass both.
+        // are enough. The tests do not branch, since most flights pass both.
         (self.acceleration <= 0.0) & (self.height > height) & (self.height(until) > height)
     }
 

@@ -245,7 +245,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     }
 
     /// Returns the slope of the velocity at the start of two steps, exact if the acceleration is linear
-    /// there, and its rounding.
+    /// there, and the rounding error of the slope.
     fn slope(&self, place: f64, step: f64, bounds: &AccelerationBounds) -> Result<(f64, f64), Violation> {
         let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
         let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
@@ -277,7 +277,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks that the motion is the same some periods later, at a phase inside a piece of this length.
     fn repeats(&self, phase: f64, length: f64) -> Result<(), Violation> {
         let Some(period) = self.motion.period() else { return Ok(()) };
-        // A piece as short as the rounding of its times may be elsewhere, or missing, in the next period.
+        // A piece as short as the rounding error of its times may be elsewhere, or missing, in the next
+        // period.
         if length < SHORT * (phase.abs() + period) {
             return Ok(());
         }

@@ -182,8 +182,8 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
 }
 
-/// Checks that a flight which ends before the touch finds no touch, a flight that ends just after it finds
-/// it, and a flight that begins at the touch finds it immediately.
+/// Checks that a flight that ends before the touch finds none, that a flight that ends just after the touch
+/// finds it, and that a flight that begins at the touch finds it immediately.
 fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
     let Touch { time, wall, .. } = meeting.touch;
     let half = flight.time() + 0.5 * (time - flight.time());
@@ -227,7 +227,7 @@ fn check_origin(
     let response = |trial: &Trial<'_>, meeting: &Meeting, shift: f64| {
         let Touch { wall, time, .. } = meeting.touch;
         let Surface { response, .. } = trial.boundary.surface(wall, meeting.place, time + shift);
-        // Only rules are compared as text: a temperature that varies with time has rounding.
+        // Only rules are compared as text: a temperature that varies with time has a rounding error.
         match response {
             Response::Thermal(thermal) => {
                 (format!("Thermal, slip {}", thermal.slip()), thermal.temperature())

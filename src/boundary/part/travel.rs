@@ -60,7 +60,7 @@ impl Phase {
         Self { along: self.along - start.along, turning: self.turning - start.turning }
     }
 
-    /// Returns the largest magnitude.
+    /// Returns the larger magnitude of the two phases.
     pub(in crate::boundary) fn size(self) -> f64 {
         self.along.abs().max(self.turning.abs())
     }
@@ -299,8 +299,8 @@ impl Travel {
     }
 }
 
-/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. The
-/// components of the path refer to axes that do not turn.
+/// Returns a path in the frame that turns about the origin, with the largest error of this path in this time.
+/// The components of the path refer to axes that do not turn.
 ///
 /// The third derivative of the path there is $`-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp`$. A bound
 /// on it, times a third of the time, is an acceleration that bounds the error.

@@ -298,8 +298,8 @@ impl Search<'_> {
     fn enters_strip(&self, time: f64) -> Option<f64> {
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
         let (travel, radius) = (self.placed.part.travel(), self.flight.radius());
-        // The margin is far above the rounding of lengths, and far below the stroke of any motion that `put`
-        // accepts: a disk that waits in the margin costs steps.
+        // The margin is far above the rounding error of lengths, and far below the stroke of any motion that
+        // `put` accepts: a disk that waits in the margin costs steps.
         let radius = radius + MARGIN * (radius + place.abs().max_element() + self.placed.size);
         let path = Path::exact(place, velocity, self.flight.acceleration(), radius);
         let wait = (self.until - time).clamp(0.0, LONGEST);

@@ -27,8 +27,8 @@ const KINDS: [Kind; 23] = {
 const STRIDE: usize = 7919;
 
 /// The promises of a rule. Every rule also promises finite impulses that separate the surfaces and repeat to
-/// the bit, and the same physics for partners in either order and for the mirror image, unless it says
-/// otherwise.
+/// the bit, and the same physics for partners in either order and for the mirror image, unless its promises
+/// say otherwise.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check};
@@ -221,8 +221,8 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
 /// are not compared.
 ///
 /// Pairs of different kinds are compared up to kind 255, most of them in one contact. The check cannot see
-/// other differences. If two such rules are of one type, it refuses different fingerprints. Rules of two
-/// types may act alike and have different fingerprints.
+/// other differences. If two such rules are of one type, the check refuses different fingerprints. Rules of
+/// two types may act alike and have different fingerprints.
 ///
 /// # Errors
 /// If the fingerprints contradict the impulses.

@@ -43,7 +43,7 @@ pub(super) struct Packing<'a> {
 }
 
 impl<'a> Packing<'a> {
-    /// Places the disks at random, shrunk so much that they find room.
+    /// Shrinks the disks until there is room for them, and places them at random.
     pub(super) fn begin<B: Boundary + ?Sized>(
         room: &Enclosure<B>,
         full: &'a [Disk],

@@ -72,7 +72,7 @@ fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
 }
 
 /// Returns the largest distance beyond the edges of a cell up to which the cell can keep its disks, so that
-/// they still collide only with disks in the cells around it.
+/// these disks still collide only with disks in the cells around it.
 ///
 /// A disk that turns back soon, or moves back and forth at an edge, then stays in its cell.
 pub(super) fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {

@@ -15,8 +15,8 @@ const PART: &str = "driving";
 const KICKS: usize = 1600;
 const DISKS: usize = 16;
 
-/// Number of kicks after which the check interrupts a run, and after which the disks are again as at first,
-/// so that they become neither too fast nor too slow.
+/// Number of kicks after which the check interrupts a run, and after which it restores the initial disks, so
+/// that the disks become neither too fast nor too slow.
 const CUT: usize = 7;
 const AGAIN: usize = 200;
 
@@ -24,7 +24,7 @@ const AGAIN: usize = 200;
 const ROUNDING: f64 = 1e-13;
 
 /// Smallest and largest mean square of the kicks at a position in the list, relative to the mean of all
-/// positions. If each kick changes one disk at random, they scatter by a tenth.
+/// positions. If each kick changes one disk at random, the mean squares scatter by a tenth.
 const FAIR: [f64; 2] = [0.5, 1.6];
 
 /// Largest correlation of two kicks in a row at a position in the list, beyond the correlation at any other

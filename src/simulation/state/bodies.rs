@@ -166,7 +166,7 @@ impl Bodies {
         self.identities.of(disk)
     }
 
-    /// Returns the speed in the free-fall frame, which is the scale of the rounding of a velocity.
+    /// Returns the speed in the free-fall frame, which is the scale of a velocity's rounding error.
     pub(in crate::simulation) fn speed(&self, disk: usize) -> f64 {
         self.particles[disk].trajectory.velocity.length()
     }

@@ -5,8 +5,8 @@ use crate::simulation::Counters;
 /// Number of events in a window. Progress is judged at its end.
 const WINDOW: u64 = 200_000;
 
-/// Number of additional events in a window for each disk. They are needed since, on a lattice, all disks may
-/// have an event at the same time.
+/// Number of additional events in a window for each disk. On a lattice, all disks may have an event at the
+/// same time.
 const WINDOW_PER_DISK: u64 = 20;
 
 /// Number of additional events for which a search that ended at its horizon counts. A search may take this
