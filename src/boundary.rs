@@ -17,8 +17,7 @@
 //! | conveyor | [`Part::with_surface_speed`] |
 //! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
-//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], with or without a motion along a direction
-//! |
+//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], which combines with a motion |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
 //! Parts are added, replaced and removed by name, even between runs; this is how a gate opens. With the
@@ -258,8 +257,8 @@ pub trait Boundary {
     /// Returns a point that moves with a wall, at its position at `time`, or `None` if the boundary knows no
     /// such point.
     ///
-    /// If other walls are set between two runs, the engine finds out from this point whether a wall of the
-    /// same name has jumped. The default is `None`.
+    /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
+    /// The default is `None`.
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None

@@ -133,7 +133,7 @@ impl Crossings {
 
     /// Ends the flight of a disk at this time, counts its crossings, and begins the next one.
     fn go_on(&mut self, id: u64, next: Free) {
-        // A filter by kind shows collisions with disks of other kinds, which are not watched.
+        // A filter by kind passes on collisions with disks of other kinds, whose flights are not followed.
         if let Some(flight) = self.flights.get_mut(&id) {
             let flight = std::mem::replace(flight, next);
             self.count(&flight, next.time);

@@ -85,7 +85,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Checks that a gap before a wall is only rounding.
+    /// Checks that a gap before a wall is within rounding.
     #[cold]
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
         let (now, radius) = (self.clock.now, probe.radius());

@@ -214,7 +214,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Checks the limits and the progress of the run before the next event. Returns the limit that the run
-    /// has reached, if any.
+    /// has reached, or `None`.
     #[cold]
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {

@@ -17,11 +17,11 @@ impl Estimate {
     /// \quad w_i = n_i/n .
     /// ```
     ///
-    /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
-    /// way. The scatter of two or three runs, however, may be small by chance; the errors of the runs then
-    /// count. The estimate has converged if the estimates of all runs have converged, if there are at least
-    /// eight runs, or if the runs together have 120 independent samples by this error, the number that a
-    /// single run needs. Runs without samples are left out.
+    /// The scatter reveals changes for which a single run is too short, such as the reversal of a roll. The
+    /// scatter of two or three runs, however, may be small by chance; the errors of the runs then count. The
+    /// estimate has converged if the estimates of all runs have converged, if there are at least eight runs,
+    /// or if the runs together have 120 independent samples by this error, the number that a single run
+    /// needs. Runs without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};

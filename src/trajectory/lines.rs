@@ -56,7 +56,8 @@ impl<R: BufRead> Input<R> {
         Ok(text)
     }
 
-    /// Returns the next line without white space around it, and its number, if there is one.
+    /// Returns the next line without white space around it, and its number, or `None` at the end of the
+    /// input.
     pub(super) fn next(&mut self) -> Result<Option<(String, usize)>, ReadError> {
         let mut text = self.text();
         let is_there = self.copy(&mut text)?;

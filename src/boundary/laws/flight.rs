@@ -134,8 +134,8 @@ fn check_touch(
     Ok(())
 }
 
-/// Returns the distance by which a gap closes during the rounding error of an absolute time. A motion without
-/// a period knows its phase no better.
+/// Returns the distance by which a gap closes during the rounding error of an absolute time. The phase of a
+/// motion without a period has this error.
 fn lateness(trial: &Trial<'_>, flight: &Flight, Touch { wall, time, .. }: Touch) -> f64 {
     let surface = trial.boundary.surface(wall, flight.position(time), time);
     let rate = (flight.velocity(time) - surface.velocity).dot(surface.normal);
@@ -218,7 +218,7 @@ fn check_origin(
     let (origin, start) = (trial.origin, flight.time());
     let state = trial.boundary.state();
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
-    // react do not know their past, so the other origin is later for them.
+    // react keep no record of their past, so for them the other origin is later.
     let earlier = origin.min(LATEST * trial.length() / trial.speed);
     let shift = 0.37 * if state.is_empty() { earlier } else { -start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));

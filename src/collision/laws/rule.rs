@@ -80,7 +80,8 @@ impl Promises {
         Self { opposed_slip: true, static_friction: Some(static_friction), ..self }
     }
 
-    /// Returns the same promises, with a tangential impulse that opposes the slip, within a cone or not.
+    /// Returns the same promises, with a tangential impulse that opposes the slip, whether or not it stays
+    /// within a cone.
     pub const fn with_opposed_slip(self) -> Self {
         Self { opposed_slip: true, ..self }
     }

@@ -1,5 +1,5 @@
-//! Predictions in vector instructions. Each function does what the plain function of the same name does, with
-//! the same bits, and has its lines in the same order. The reasons for the arithmetic are given there.
+//! Predictions in vector instructions. Each function computes the same bits as the plain function of the same
+//! name, with its lines in the same order. The reasons for the arithmetic are given there.
 //!
 //! Three differences make this code faster than the plain code:
 //! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read

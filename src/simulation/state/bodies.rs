@@ -142,7 +142,7 @@ impl Bodies {
         self.particles.len()
     }
 
-    /// Returns the next event of a disk, if there is such a disk.
+    /// Returns the next event of a disk, or `None` if there is no such disk.
     #[inline]
     pub(in crate::simulation) fn forecast(&self, disk: usize) -> Option<&Forecast> {
         self.particles.get(disk).map(|particle| &particle.forecast)
