@@ -107,7 +107,7 @@ impl Plane {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
 
-    /// Returns the least distance to a wall that faces this one; `None` for any other wall.
+    /// Returns the smallest distance to a wall that faces this one; `None` for any other wall.
     pub(super) fn least_gap(&self, other: &Self) -> Option<f64> {
         let faces = self.normal == -other.normal;
         faces.then(|| -(self.place + other.place) - self.highest - other.highest)

@@ -25,7 +25,7 @@ const MOST_WALLS: usize = 1 << 16;
 /// part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
-/// Least stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are
+/// Smallest stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are
 /// lost in rounding.
 const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 

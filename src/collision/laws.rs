@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-12;
 /// Smallest product whose relative rounding error is bounded. Smaller numbers have fewer digits.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
-/// Returns the violation of a law by an impulse, unless the condition holds.
+/// Returns the violation of a law by an impulse if the condition does not hold.
 fn unless(
     holds: bool,
     law: &'static str,

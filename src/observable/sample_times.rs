@@ -3,12 +3,12 @@
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
 
-/// Relative rounding of the start time of a run, and of a sampling time. Each is the sum of an offset and an
-/// origin, rounded a few times.
+/// Relative rounding error of the start time of a run, and of a sampling time. Each is the sum of an offset
+/// and an origin, rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Rounding of a start time and of a sampling time, relative to the interval. Before time 0, for example, the
-/// origin may be far larger than the time, and the time then has the origin's rounding error.
+/// Rounding error of a start time and of a sampling time, relative to the interval. Before time 0, for
+/// example, the origin may be far larger than the time, and the time then has the origin's rounding error.
 const PART: f64 = 1e-9;
 
 /// Smallest ratio of the interval to the time. Rounding then moves a sampling time by at most a sixteenth of

@@ -9,7 +9,7 @@ use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
-/// Least closing speed, relative to the speed of a typical disk, at which the diagnosis tries the rule.
+/// Smallest closing speed, relative to the speed of a typical disk, at which the diagnosis tries the rule.
 const SLOW: f64 = 1e-9;
 
 /// Number of windows in which a run without losses may hardly advance.

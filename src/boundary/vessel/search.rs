@@ -42,8 +42,8 @@ const CENTER: f64 = 1e-7;
 /// Longest flight for which entries into the strip are computed. Squares of longer times would overflow.
 const LONGEST: f64 = 1e150;
 
-/// Least period of a part, in units of the distance between two floating-point times. Floating-point times do
-/// not determine the position of a faster part.
+/// Smallest period of a part, in units of the distance between two floating-point times. Floating-point times
+/// do not determine the position of a faster part.
 const LEAST_PERIOD: f64 = 64.0;
 
 impl Vessel {

@@ -28,7 +28,7 @@ const COLLISIONS: usize = 4;
 /// Longest time between two steps, in which a disk of the largest size moves by about its radius.
 const LONGEST: f64 = 1.0;
 
-/// Least mass, in units of the largest disk's mass.
+/// Smallest mass, in units of the largest disk's mass.
 const LEAST_MASS: f64 = 1e-20;
 
 /// Fraction of a gap into which a disk may grow, so that it touches nothing.
