@@ -154,8 +154,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// The engine guarantees:
 /// - It sets the origin before any other call except for `state`, and whenever the epoch of the run moves. If
-///   the walls are set during a run and have a state, the first origin is the present time. It never passes a
-///   time before the origin.
+///   the walls are set during a run and have a state, the first origin is the present time. The engine never
+///   passes a time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
 ///   when the disk leaves its cell or reaches a periodic side or end, at the latest two epochs from now. In
 ///   an epoch, a typical disk moves tens of diameters.

@@ -124,9 +124,9 @@ impl Part {
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
     /// same for all kinds. Its vessel then does not know the [`area`](super::Boundary::area), and stresses,
-    /// densities and profiles are refused unless they have a region that no wall reaches. A line of two-sided
-    /// bricks, such as a [`polyline`](Self::polyline), encloses no area, so this restriction does not apply
-    /// to it.
+    /// densities and profiles are refused unless they are restricted to a region that no wall reaches. A line
+    /// of two-sided bricks, such as a [`polyline`](Self::polyline), encloses no area, so this restriction
+    /// does not apply to it.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

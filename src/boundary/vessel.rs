@@ -20,9 +20,8 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest number of periods over which a part may extend in one direction, and largest product of the
-/// numbers in both directions. Each brick has an image for each period, and each image may overlap a large
-/// part of the cells.
+/// Largest number of periods over which a part may extend in one direction, and largest product of both
+/// numbers. Each brick has an image for each period, and each image may overlap a large part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Smallest stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are

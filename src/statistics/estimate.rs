@@ -9,8 +9,8 @@ use std::fmt;
 /// converged: its error is then a lower bound. An estimate from samples that are independent, or are assumed
 /// to be, says so.
 ///
-/// A precision in the format sets the number of decimals of the mean and the error. Without a precision, the
-/// error has two significant digits. A note on the basis of the error follows in words.
+/// A precision in the format string sets the number of decimals of the mean and the error. Without a
+/// precision, the error has two significant digits. A note on the basis of the error follows in words.
 ///
 /// ```
 /// use granular_edmd::statistics::{RunningMean, block_average};

@@ -37,7 +37,8 @@ use crate::quantity::non_negative;
 ///
 /// The letter or number of a component may follow the name of the property, as in `vel_x`, `Position.X` or
 /// `velocity:0`. Two columns of the same quantity must agree. Disks keep the order of the file. They must lie
-/// in one plane; its z is ignored. [`State::notes`] lists everything that the reader ignores or changes.
+/// in one plane; the coordinate z is ignored. [`State::notes`] lists everything that the reader ignores or
+/// changes.
 ///
 /// # Examples
 /// The example turns a state of soft disks, whose contacts overlap, into a start for hard disks:

@@ -275,8 +275,8 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
     bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
 }
 
-/// Returns whether two surfaces are the same up to the rounding of late times: on a wall that moves, an error
-/// of the time is an error of the position.
+/// Returns whether two surfaces are the same up to the rounding error of late times, which shifts a wall that
+/// moves.
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();
     let slack = SAME * (one.velocity.length() + trial.speed * late);

@@ -20,9 +20,10 @@ const CONTACTS: usize = 300;
 /// one type with equal results on a thousand flights have the same fingerprint. Boundaries without a
 /// fingerprint are not compared.
 ///
-/// The flights are as in [`check`](super::check), also in their times and kinds. The check cannot see other
-/// differences, for example walls that begin to move later. If two such boundaries are of one type, the check
-/// refuses different fingerprints. Boundaries of two types may act alike and have different fingerprints.
+/// The flights are as in [`check`](super::check), with the same ranges of times and kinds. The check cannot
+/// see other differences, for example walls that begin to move later. If two such boundaries are of one type,
+/// the check refuses different fingerprints. Boundaries of two types may act alike and have different
+/// fingerprints.
 ///
 /// The check sets the time origins of both boundaries, and gives the second the state of the first.
 ///

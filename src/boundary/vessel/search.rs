@@ -32,7 +32,7 @@ const IN_WALL: f64 = 1e-9;
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
 /// Radius of the point that stands for the center of a disk at a line for centers, relative to the radius of
-/// the disk. It is far above rounding and far below any length that is measured.
+/// the disk. It is far above rounding errors and far below any length that is measured.
 ///
 /// A point without a radius could get through the line, because rounding can put it behind the line as it
 /// arrives. If all events are predicted anew just then, the new search finds a point that flies away from the

@@ -27,8 +27,8 @@ const ROUNDING: f64 = 1e-13;
 /// positions. If each kick changes one disk at random, the mean squares scatter by a tenth.
 const FAIR: [f64; 2] = [0.5, 1.6];
 
-/// Largest correlation of two kicks in a row at a position in the list, beyond the correlation at any other
-/// two positions. Random kicks have a correlation of a hundredth.
+/// Largest correlation of two kicks in a row at a position in the list, beyond the correlation between any
+/// two different positions. Random kicks have a correlation of a hundredth.
 const CORRELATED: f64 = 0.2;
 
 /// Largest change of a velocity that counts as rounding, and smallest one that counts as another kick.
