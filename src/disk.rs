@@ -10,7 +10,7 @@ use crate::{Kind, ParameterError};
 pub(crate) const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Smallest velocity about a mean that counts as thermal, relative to all velocities. Below it, differences
-/// of velocities are mostly rounding.
+/// of velocities are mostly rounding errors.
 pub(crate) const LEAST_THERMAL: f64 = 1e-10;
 
 /// Largest overlap that still counts as touching, relative to the distance between the centers at a touch.

@@ -6,7 +6,7 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | as the faster of the next two | default |
+//! | [`BySize`] | the lower of the next two | default |
 //! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to tens of thousands of disks |
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |

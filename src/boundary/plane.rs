@@ -131,7 +131,7 @@ impl Plane {
         }
     }
 
-    /// Changes the motion of the wall by this impulse. Returns true if the wall has a mass, so that its
+    /// Changes the motion of the wall by this impulse. Returns whether the wall has a mass, so that its
     /// motion has changed.
     pub(super) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
         let Some(stroke) = self.motion.stroke() else { return false };

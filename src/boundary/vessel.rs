@@ -30,8 +30,8 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
-/// A disk must be free of the container's walls and of each part: two blocks make a hopper, and a polygon can
-/// have pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
+/// A disk must clear the container's walls and each part: two blocks make a hopper, and a polygon can have
+/// pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
 /// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
 /// added, replaced and removed by name, even between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).

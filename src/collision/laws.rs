@@ -98,7 +98,8 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 /// Checks that the tangential impulse can be friction: it slows the slip, and at most reverses it.
 ///
 /// A rule may add to the slip and still lose energy, if it takes that energy from the normal direction.
-/// [`check_impulse`] allows this, but friction never does it. A couple, which follows friction, is left out.
+/// [`check_impulse`] allows this, but friction never does it. The check ignores a couple, which acts after
+/// friction.
 ///
 /// # Errors
 /// If the impulse pushes along the slip, or the slip is faster after the collision.

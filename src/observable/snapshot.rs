@@ -11,7 +11,7 @@ use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
 ///
-/// The run does not see changes of these copies. The copies are made on request, so the start of a run costs
+/// Changes of these copies do not affect the run. The copies are made on request, so the start of a run costs
 /// nothing for an observer that only reads the time.
 #[derive(Debug, Clone)]
 pub struct Snapshot<'a> {

@@ -2,7 +2,7 @@
 //!
 //! | driving | change |
 //! |---|---|
-//! | [`WhiteNoise`] | random kicks, which keep the total momentum |
+//! | [`WhiteNoise`] | random kicks, which conserve the total momentum |
 //! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
 //!
 //! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop knows nothing of it.

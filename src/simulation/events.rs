@@ -65,7 +65,7 @@ pub struct Counters {
     pub energy_of_rebounds: f64,
     /// Passages of disks from one neighbor cell to another.
     pub cell_crossings: u64,
-    /// Predicted collisions that were out of date when they came up, since the partner had had another
+    /// Predicted collisions that were out of date when they were due, since the partner had had another
     /// collision. The engine predicted them anew.
     pub repredictions: u64,
     /// Searches for a wall that found no touch up to their horizon, and were continued from there.

@@ -203,8 +203,8 @@ impl Travel {
         along.into_iter().chain(turning).reduce(|a, b| a + b).unwrap_or(DVec2::ZERO)
     }
 
-    /// Returns a flight in the frame of the part, from a time on and for at most `longest`. The phase belongs
-    /// to time 0.
+    /// Returns a flight in the frame of the part, from a time on and for at most `longest`. `phase` is the
+    /// phase at time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
         let path = Path::exact(place, velocity, pull, flight.radius());

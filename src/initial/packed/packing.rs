@@ -14,7 +14,7 @@ use crate::{Disk, ParameterError, Simulation};
 /// mix of radii.
 const START: f64 = 0.35;
 
-/// Factor by which the disks are smaller in the next attempt, if obstacles leave less room than the area
+/// Factor by which the radii shrink for the next attempt, if obstacles leave less room than the area
 /// suggests.
 const SMALLER: f64 = 0.7;
 

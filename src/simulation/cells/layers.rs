@@ -81,7 +81,7 @@ pub(super) fn layouts(
         layout.narrower(widest(domain, &grid, diameter, classes[class].largest))
     };
     // If one class has no room for cells that are narrow enough, no class gets a layer: all disks then share
-    // the cells of the largest, which is slow but right.
+    // the cells of the largest, which is slow but correct.
     let larger: Option<Vec<LayerLayout>> = (1..classes.len()).map(layout).collect();
     Some(Layouts { smallest, larger: larger?, classes: classes.to_vec() })
 }

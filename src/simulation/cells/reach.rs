@@ -6,7 +6,7 @@
 //! the time: a table costs one load, whereas the edges of uneven rows would have to be searched. Homes of a
 //! column lie next to each other in memory, so the reach is traversed in runs of rows.
 //!
-//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back
+//! At periodic sides and ends, the count of homes continues beyond the last one. Columns are brought back
 //! immediately. Rows are kept as they are counted, so that a reach, its hole and the difference of two
 //! reaches are plain intervals. They are brought back only when a run is passed to the caller, then in two
 //! pieces.

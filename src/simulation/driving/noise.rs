@@ -1,4 +1,4 @@
-//! White noise: random kicks that keep the total momentum.
+//! White noise: random kicks that conserve the total momentum.
 
 use glam::DVec2;
 use rand::SeedableRng;
@@ -10,7 +10,7 @@ use crate::quantity::non_negative;
 use crate::random::normal;
 use crate::{Disk, ParameterError};
 
-/// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is kept.
+/// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is conserved.
 ///
 /// Each component of each velocity gains a normal variable of variance $`\xi_0^2 t`$ in a time $`t`$. The
 /// mean of all kicks, weighted by mass, is then subtracted. Thus $`N`$ equal disks of mass $`m`$ gain the

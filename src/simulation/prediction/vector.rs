@@ -32,8 +32,8 @@ mod tests {
     const SIDE: f64 = 9.0;
     const DISKS: usize = 24;
 
-    /// Returns disks of diameter 1. Half of them have coordinates and velocities of few values, so
-    /// that many touch, overlap, rest, move alike, or meet others at the same time.
+    /// Returns disks of diameter 1. Half of them take coordinates and velocities from a few values, so that
+    /// many touch, overlap, rest, move alike, or meet others at the same time.
     fn bodies(generator: &mut Xoshiro256PlusPlus, gravity: f64) -> Bodies {
         let mut number = |few: bool, most: i32| {
             let coarse = f64::from(generator.random_range(-2 * most..=2 * most)) / 2.0;
