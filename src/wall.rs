@@ -11,12 +11,10 @@
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!
-//! Motions combine, and the bounds on their acceleration follow automatically:
-//!
-//! | of motions | displacement |
+//! Motions combine, and the bounds on their acceleration follow automatically: | combination | displacement |
 //! |---|---|
 //! | [`StartingAt`] | phase 0 at another time |
-//! | [`Delayed`] | the same, and at rest before |
+//! | [`Delayed`] | phase 0 at another time, and at rest before it |
 //! | [`Scaled`] | times a factor; −1 mirrors |
 //! | [`Summed`] | the sum of two |
 //!

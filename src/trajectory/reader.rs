@@ -129,7 +129,7 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This turns states of soft disks, and files with few digits, into initial states for hard disks.
+    /// This method turns states of soft disks, and files with few digits, into initial states for hard disks.
     /// [`State::shrunk`] says by how much. With a [tolerance](Self::with_tolerance), deeper overlaps remain
     /// an error. Overlaps of more than half the sum of the radii are always an error. Masses do not change.
     #[must_use]

@@ -109,7 +109,7 @@ impl Approach {
 /// On a piece on which the wall accelerates by at most $`a_{max}`$, the gap is never below the parabola with
 /// that acceleration. The search steps to the root of the parabola, where the gap is still open, and repeats
 /// until the gap is closed. One step is exact if the acceleration is constant. Otherwise, the steps shrink
-/// quadratically, down to the rounding of the gap. The search never steps over a contact. A gap that is
+/// quadratically, down to the rounding error of the gap. The search never steps over a contact. A gap that is
 /// already closed at the start counts only if it closes further.
 ///
 /// The search skips the parts of a flight that are beyond the reach of the wall, at the start and after a
@@ -288,14 +288,14 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
     /// The room is the gap plus its rounding error, so each step advances, and the last step ends where the
-    /// gap is zero within rounding. A gap that is negative by more than its rounding gets almost no room, so
-    /// that no surface goes much deeper into a wall than it already is.
+    /// gap is zero within rounding. A gap that is negative by more than its rounding error gets almost no
+    /// room, so that no surface goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the gap below which it counts as closed: the rounding error of the lengths, plus `rate` times
-    /// the rounding error of `time`.
+    /// Returns the value below which a gap counts as closed: the rounding error of the lengths, plus `rate`
+    /// times the rounding error of `time`.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

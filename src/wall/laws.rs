@@ -220,8 +220,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// The slope of the velocity is measured over ever shorter steps. Where the acceleration is smooth, half
     /// of a step leaves an error a quarter as large, so three slopes in a row show the error of the last: it
     /// is a fifteenth of the sum of their differences. If a step is not short enough for this, or the
-    /// acceleration jumps within it, these differences are large. Twice their sum is allowed, and the
-    /// rounding.
+    /// acceleration jumps within it, these differences are large. Twice their sum is allowed, plus the
+    /// rounding error.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
         if length < SHORT * (1.0 + start.abs()) {
             return Ok(());

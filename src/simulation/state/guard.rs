@@ -9,8 +9,9 @@ const WINDOW: u64 = 200_000;
 /// same time.
 const WINDOW_PER_DISK: u64 = 20;
 
-/// Number of additional events for which a search that ended at its horizon counts. A search may take this
-/// number of steps, each about as long as an event, so the guard bounds the time that searches take, too.
+/// Number of additional events that the guard counts for a search that ended at its horizon. A search may
+/// take this number of steps, each about as long as an event, so the guard bounds the time that searches
+/// take, too.
 pub(in crate::simulation) const EVENTS_PER_HORIZON: u64 = 255;
 
 /// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]
