@@ -115,7 +115,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// run does not cover the time.
     ///
     /// # Errors
-    /// If the replayed run returns an error, or results that differ from the original run's.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
         if time >= self.present.time() {
@@ -135,7 +135,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors
-    /// If the replayed run returns an error, or results that differ from the original run's.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn before_collision(&self, number: u64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         if number > self.present.counters().collisions() + u64::from(self.has_failed) {
             return Ok(None);
@@ -152,7 +152,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns the collisions after the absolute time `from`, up to and including `to`.
     ///
     /// # Errors
-    /// If the replayed run returns an error, or results that differ from the original run's.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
         let start = &self.states[0];
         // Disks that touch at the start collide immediately.
@@ -164,7 +164,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// order. The disk is identified by its [id](crate::Disk::id).
     ///
     /// # Errors
-    /// If the replayed run returns an error, or results that differ from the original run's.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
         for state in self.states.iter().rev().filter(|state| state.time() < until) {
@@ -208,7 +208,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// `None` if the two runs keep no states at the same times.
     ///
     /// # Errors
-    /// If a replayed run returns an error, or results that differ from the original run's.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
