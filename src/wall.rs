@@ -11,7 +11,9 @@
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!
-//! Motions combine, and the bounds on their acceleration follow automatically: | combination | displacement |
+//! Motions combine, and the bounds on their acceleration follow automatically:
+//!
+//! | combination | displacement |
 //! |---|---|
 //! | [`StartingAt`] | phase 0 at another time |
 //! | [`Delayed`] | phase 0 at another time, and at rest before it |
