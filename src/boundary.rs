@@ -2,7 +2,7 @@
 //!
 //! [`Container`] is the rectangular box of the paper, with variations. It has side walls or periodic sides, a
 //! floor that is fixed, moving or thermal, and a lid or an open top. Each wall can have its own rule. Walls
-//! can slide along themselves, and the box can be shaken as a whole.
+//! can slide tangentially, and the box can be shaken as a whole.
 //!
 //! A [`Vessel`] can have any shape. It is a container with named [`Part`]s in it, and each part consists of
 //! [`Brick`]s.
@@ -17,10 +17,10 @@
 //! | conveyor | [`Part::with_surface_speed`] |
 //! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
-//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], also with a motion along a direction |
+//! | part that turns: a drum, a stirrer | [`Part::with_rotation`], which combines with a motion |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
-//! Parts are added, replaced and removed by name, also between runs; this is how a gate opens. With the
+//! Parts are added, replaced and removed by name, even between runs; this is how a gate opens. With the
 //! feature `serde`, bricks, parts, vessels and containers can be written to files, and reading them repeats
 //! their checks. A rule or a custom motion cannot be written.
 //!
@@ -135,8 +135,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    overlaps none, up to the distance that the surfaces close in 16 roundings of the absolute time. On a
 ///    periodic side or end, the overlap is the same for both images of the disk: a wall at one side acts on
 ///    disks at the other.
-/// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
-///    at the same absolute time.
+/// 7. Another origin changes only the numerical values of times: the same flight touches the same wall at the
+///    same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
 ///    wall changes by the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along
@@ -154,8 +154,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///
 /// The engine guarantees:
 /// - It sets the origin before any other call except for `state`, and whenever the epoch of the run moves. If
-///   the walls are set during a run and have a state, the first origin is the present time. It never passes a
-///   time before the origin.
+///   the walls are set during a run and have a state, the first origin is the present time. The engine never
+///   passes a time before the origin.
 /// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends (`until`)
 ///   when the disk leaves its cell or reaches a periodic side or end, at the latest two epochs from now. In
 ///   an epoch, a typical disk moves tens of diameters.
@@ -164,8 +164,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests 13;
-/// `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
+/// [`laws::check`] tests promises 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests
+/// 13; `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
 /// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than 1e-6 of
 /// its radius. Three things therefore end a run with an error: an early or late touch, a disk that has left
 /// the domain, and a disk that overlaps a wall at the end of a search that found no touch. A missed touch
@@ -239,7 +239,7 @@ pub trait Boundary {
 
     /// Returns the rectangle, inside the domain, in which initial states are placed.
     ///
-    /// It leaves out the reach of moving walls.
+    /// It excludes the region that moving walls reach.
     fn interior(&self) -> Domain {
         self.domain()
     }
@@ -257,8 +257,8 @@ pub trait Boundary {
     /// Returns a point that moves with a wall, at its position at `time`, or `None` if the boundary knows no
     /// such point.
     ///
-    /// If other walls are set between two runs, the engine finds out from this point whether a wall of the
-    /// same name has jumped. The default is `None`.
+    /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
+    /// The default is `None`.
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None
@@ -272,8 +272,8 @@ pub trait Boundary {
         self.domain()
     }
 
-    /// Returns the displacement of a wall from its position at rest at `time`, and the phase of its motion:
-    /// the time, less whole periods, as [`WallMotion`](crate::wall::WallMotion) takes it.
+    /// Returns, at `time`, the displacement of a wall from its rest position and the phase of its motion: the
+    /// time, less whole periods, as [`WallMotion`](crate::wall::WallMotion) takes it.
     ///
     /// The result is `None` for a wall that does not move, and for a wall that moves together with a wall of
     /// a smaller index, as the bricks of a part do. The phase of a [`Piston`](crate::wall::Piston) is 0. The
@@ -313,7 +313,7 @@ pub trait Boundary {
     /// A wall that lets disks of the probe's kind pass does not count.
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
 
-    /// Returns the walls at `time` as lines of points, for pictures.
+    /// Returns the walls at `time` as polylines, for pictures.
     ///
     /// The edges of the domain are left out, since they are drawn anyway.
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
@@ -380,7 +380,7 @@ pub trait Boundary {
         Vec::new()
     }
 
-    /// Sets the numbers that [`state`](Self::state) returned, at the present time origin.
+    /// Restores a state that [`state`](Self::state) returned. It holds at the present time origin.
     ///
     /// # Errors
     /// If the numbers are not a state of this boundary.

@@ -123,7 +123,7 @@ use crate::forward::forward;
 /// All of this holds up to rounding: a relative error of $`10^{-12}`$ of the speeds and energies.
 /// [`laws::check`] tests it. Its `promises` say which of promises 4 to 6 a rule does not keep, and which
 /// additional promises it keeps: friction and rolling friction within their limits. `docs/validation.md` says
-/// which planted faults it finds.
+/// which planted faults the check finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",
     label = "the trait `CollisionRule` is not implemented for `{Self}`",

@@ -9,8 +9,8 @@ use crate::{Kind, ParameterError};
 /// normal.
 pub(crate) const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Least velocity about a mean, relative to all velocities, that counts as thermal. Below it, differences of
-/// velocities are mostly rounding.
+/// Smallest velocity about a mean that counts as thermal, relative to all velocities. Below it, differences
+/// of velocities are mostly rounding errors.
 pub(crate) const LEAST_THERMAL: f64 = 1e-10;
 
 /// Largest overlap that still counts as touching, relative to the distance between the centers at a touch.
@@ -94,7 +94,7 @@ impl Disk {
     /// Returns the same disk turned to this angle, in radians, counterclockwise.
     ///
     /// # Errors
-    /// If the angle is not finite. It may be of any magnitude, since it grows in a long run.
+    /// If the angle is not finite. The angle may have any magnitude, since it grows during a run.
     pub fn with_angle(self, angle: f64) -> Result<Self, ParameterError> {
         Ok(Self { angle: finite("angle", angle)?, ..self })
     }
@@ -102,7 +102,7 @@ impl Disk {
     /// Returns the same disk with this angular velocity, in radians per time, counterclockwise.
     ///
     /// # Errors
-    /// If it is not finite, or above 1e60 in magnitude.
+    /// If the angular velocity is not finite, or above 1e60 in magnitude.
     pub fn with_angular_velocity(self, angular_velocity: f64) -> Result<Self, ParameterError> {
         Ok(Self { angular_velocity: bounded("angular velocity", angular_velocity)?, ..self })
     }
@@ -110,7 +110,7 @@ impl Disk {
     /// Returns the same disk with this mass.
     ///
     /// # Errors
-    /// If it is not in `[1e-30, 1e30]`.
+    /// If the mass is not in `[1e-30, 1e30]`.
     pub fn with_mass(self, mass: f64) -> Result<Self, ParameterError> {
         Ok(Self { mass: scale("mass", mass)?, ..self })
     }
@@ -119,7 +119,7 @@ impl Disk {
     /// disk, 1 for a ring.
     ///
     /// # Errors
-    /// If it is not in `[1e-6, 1]`.
+    /// If the factor is not in `[1e-6, 1]`.
     pub fn with_inertia_factor(self, inertia_factor: f64) -> Result<Self, ParameterError> {
         let valid = (1e-6..=1.0).contains(&inertia_factor);
         let inertia_factor = accept(valid, "inertia factor", "in [1e-6, 1]", inertia_factor)?;
@@ -142,7 +142,7 @@ impl Disk {
     /// 0 means that the disk has no id yet.
     ///
     /// # Errors
-    /// If it is above 2^53. Ids stay exact in programs that read tables as floating-point numbers.
+    /// If the id is above 2^53. Ids stay exact in programs that read tables as floating-point numbers.
     pub fn with_id(self, id: u64) -> Result<Self, ParameterError> {
         accept(id <= LARGEST_ID, "id of a disk", "at most 2^53", id as f64)?;
         Ok(Self { id, ..self })

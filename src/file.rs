@@ -1,5 +1,5 @@
-//! Files that are complete or absent, and locks. Checkpoints and studies consist of these, and other packages
-//! can use them for their stores.
+//! Files that are complete or absent, and locks. Checkpoints and studies consist of such files, and other
+//! packages can use them for their stores.
 //!
 //! ```
 //! # #[cfg(feature = "serde")] {

@@ -14,8 +14,8 @@ use crate::violation::require;
 /// cannot be distinguished. The checks of fingerprints, such as
 /// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare the
 /// fingerprints of two parts with their results: parts with different results must have different
-/// fingerprints, and parts of one type that are alike in every probe equal ones. The hash is FNV-1a with 64
-/// bits, over bytes in a fixed order, so it is the same on every platform.
+/// fingerprints, and parts of one type with the same result in every probe must have equal fingerprints. The
+/// hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;

@@ -62,7 +62,7 @@ macro_rules! without_fields {
 
 pub(crate) use without_fields;
 
-/// Writes a number that can be infinite or NaN. Such a number is left out, since not all formats can hold it.
+/// Writes a number, or leaves it out if it is infinite or NaN, which not all formats can represent.
 #[cfg(feature = "serde")]
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 pub(crate) fn if_finite<S: serde::Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {

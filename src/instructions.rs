@@ -121,12 +121,12 @@ fn has(level: Level) -> bool {
 /// Defines a function that runs one of three others, chosen by the [`Instructions`] in its first argument:
 /// the function for any processor, for AVX2, or for AVX-512.
 ///
-/// The three can be copies of a plain function for each level. This and all hot functions that it calls must
-/// then be `#[inline(always)]`, since other code is compiled for the level of the build. A constant
-/// parameter, the number of the copy, makes the copies different functions. The compiler then inlines the
-/// functions that a copy calls as if this copy were their only caller. A function of vector instructions, or
-/// a closure that calls one, can take the place of a copy. [`Instructions::run`] would be slower here, since
-/// its many captures would go through memory.
+/// The three can be copies of a plain function for each level. This function and all hot functions that it
+/// calls must then be `#[inline(always)]`, since other code is compiled for the level of the build. A
+/// constant parameter, the number of the copy, makes the copies different functions. The compiler then
+/// inlines the functions that a copy calls as if this copy were their only caller. A function of vector
+/// instructions, or a closure that calls one, can take the place of a copy. [`Instructions::run`] would be
+/// slower here, since its many captures would go through memory.
 #[cfg(target_arch = "x86_64")]
 macro_rules! compiled_for_each {
     (

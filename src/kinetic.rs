@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | $`\langle dE\rangle`$ of the paper's rule | [`mean_energy_change`] | paper, Fig. 1 |
 //! | cooling, temperatures and cumulants of a gas without correlations | [`DirectSimulation`] | Bird 1994 |
-//! | the share of its collisions that stick | [`sticking_fraction`] | paper, section II |
+//! | the share of collisions that stick, under the paper's rule | [`sticking_fraction`] | paper, section II |
 //! | $`\langle dE\rangle`$ of any rule | [`MonteCarlo`] | paper, section II |
 //! | friction with the largest loss | [`friction_of_largest_loss`] | paper, $`\kappa\approx0.3`$ |
 //! | one coefficient for inelasticity and friction | [`effective_inelasticity`] | paper, Eq. (9) |

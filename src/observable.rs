@@ -86,7 +86,7 @@
 //! errors. A [`Series`] is a table if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Errors
-//! These errors do not assume that samples are independent. They come from blocks of consecutive samples or
+//! Errors do not assume that samples are independent. They come from blocks of consecutive samples or
 //! collisions, as [`block_average`](crate::statistics::block_average) takes them, and an
 //! [`Estimate`](crate::statistics::Estimate) says how many independent samples there were. [`Fields`],
 //! [`HeightProfile`] and [`CollisionCounts`] have no errors: repeat the run with other seeds, or keep a

@@ -1,7 +1,7 @@
 //! Checks of parameters: the gate that every constructor and every deserialized value passes.
 //!
-//! Each function returns the value that it was given, or the error that names it. Custom types use the same
-//! functions, so that all errors of parameters in a program read alike.
+//! Each function returns the value that it was given, or an error that names the value. Custom types use the
+//! same functions, so that all errors of parameters in a program read alike.
 //!
 //! ```
 //! use granular_edmd::{ParameterError, quantity};
@@ -30,7 +30,7 @@ use crate::ParameterError;
 /// Returns `value` if it is finite and above zero.
 ///
 /// # Errors
-/// If it is zero, negative, infinite or NaN.
+/// If the value is zero, negative, infinite or NaN.
 pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite() && value > 0.0, name, "finite and positive", value)
 }
@@ -38,7 +38,7 @@ pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, P
 /// Returns `value` if it is finite and not below zero.
 ///
 /// # Errors
-/// If it is negative, infinite or NaN.
+/// If the value is negative, infinite or NaN.
 pub fn non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite() && value >= 0.0, name, "finite and not negative", value)
 }
@@ -46,7 +46,7 @@ pub fn non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f6
 /// Returns `value` if it is neither infinite nor NaN.
 ///
 /// # Errors
-/// If it is infinite or NaN.
+/// If the value is infinite or NaN.
 pub fn finite(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }

@@ -70,7 +70,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Self { states: vec![start], present, interval, most, has_failed: false })
     }
 
-    /// Returns the same replay with another limit on the number of states. The default is 64, and the least
+    /// Returns the same replay with another limit on the number of states. The default is 64, and the minimum
     /// is 2.
     #[must_use]
     pub fn with_most_states(self, most: usize) -> Self {
@@ -111,11 +111,11 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         }
     }
 
-    /// Returns the state at an absolute time, after all events up to and at it; `None` if the run does not
-    /// cover the time.
+    /// Returns the state at an absolute time, after all events up to and including that time; `None` if the
+    /// run does not cover the time.
     ///
     /// # Errors
-    /// If the parts of the run return other results than the first time.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
         if time >= self.present.time() {
@@ -135,7 +135,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors
-    /// If the parts of the run return other results than the first time.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn before_collision(&self, number: u64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         if number > self.present.counters().collisions() + u64::from(self.has_failed) {
             return Ok(None);
@@ -149,10 +149,10 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Some(run))
     }
 
-    /// Returns the collisions after the absolute time `from`, up to and at `to`.
+    /// Returns the collisions after the absolute time `from`, up to and including `to`.
     ///
     /// # Errors
-    /// If the parts of the run return other results than the first time.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
         let start = &self.states[0];
         // Disks that touch at the start collide immediately.
@@ -160,11 +160,11 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         run.filter(|run| run.time() <= to).map_or(Ok(Vec::new()), |run| self.played(run, to))
     }
 
-    /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in
-    /// their order. The disk is identified by its [id](crate::Disk::id).
+    /// Returns a disk's last collisions up to and including an absolute time, at most `count` of them, in
+    /// order. The disk is identified by its [id](crate::Disk::id).
     ///
     /// # Errors
-    /// If the parts of the run return other results than the first time.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
         for state in self.states.iter().rev().filter(|state| state.time() < until) {
@@ -208,7 +208,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// `None` if the two runs keep no states at the same times.
     ///
     /// # Errors
-    /// If the parts of a run return other results than the first time.
+    /// If the replay fails where the run did not: a part then returns other results than in the run.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -6,7 +6,7 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | as the faster of the next two | default |
+//! | [`BySize`] | the lower of the next two | default |
 //! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to tens of thousands of disks |
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |
@@ -68,7 +68,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// time, so the engine does not notice a lost event in shorter runs and in single steps within an epoch. Nor
 /// does it notice that two events were swapped, once both have been named. [`laws::check`] finds such faults
 /// if they show within its scripts of up to three million operations; `docs/validation.md` says which planted
-/// faults it finds.
+/// faults the check finds.
 ///
 /// # A pair instead of an `Option`
 /// The engine calls [`earliest`](Self::earliest) at every event. A pair comes back in two registers, and
@@ -115,8 +115,7 @@ pub trait EventScheduler {
     /// The list is a hint: the engine prefetches the data that these events will need. The call changes
     /// neither the order of events nor the disks that `disks` holds already. Disks may be missing, or be
     /// named twice or in any order. The engine ignores disks that do not exist. The default names no disk. A
-    /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes half as long
-    /// again.
+    /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes 50 % longer.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

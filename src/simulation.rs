@@ -11,14 +11,14 @@
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls. Inlets come after all events of disks, in the order in which they were added.
-//! 3. A sample at time $`t`$ includes all events up to and at $`t`$.
+//! 3. A sample at time $`t`$ includes all events up to and including $`t`$.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
 //!    the caller gives again. If they have fingerprints, the checkpoint notices when others are given.
 //! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
-//!    error that names the result. It never makes the engine go back in time, or name a disk or wall that
+//!    error that names the result. No part can make the engine go back in time, or name a disk or wall that
 //!    does not exist. A collision that is carried out happens at the surface of the partner, up to rounding.
 //!    The sections of [`Boundary`] and [`EventScheduler`] on broken contracts say which faults go unnoticed.
 
@@ -101,7 +101,7 @@ use state::{Bodies, Clock, Ledger};
 pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     rule: R,
     boundary: B,
-    /// Number of walls of the boundary. The results of the boundary are checked against it.
+    /// Number of walls of the boundary. The results of the boundary are checked against this number.
     wall_count: usize,
     scheduler: S,
     bodies: Bodies,

@@ -1,12 +1,12 @@
 //! The speed of runs, and the cost of their parts.
 //!
 //! A [`Meter`] is started before a run and makes a [`RunReport`] after it. [`dilute`], [`dense`], [`gas`],
-//! [`mixture`] and [`vessel`] are standard states, in which a custom part is measured beside the built-in
-//! one: [`Simulation::with_rule`](crate::Simulation::with_rule),
-//! [`with_boundary`](crate::Simulation::with_boundary) and
-//! [`with_scheduler`](crate::Simulation::with_scheduler) insert it, and a [`Comparison`] distinguishes a
-//! difference from noise. For benchmarks with criterion, [`stretch`] measures one run alone instead of two
-//! runs alternately.
+//! [`mixture`] and [`vessel`] are standard states in which to compare a custom part with the built-in one.
+//! Insert the part with [`Simulation::with_rule`](crate::Simulation::with_rule),
+//! [`with_boundary`](crate::Simulation::with_boundary) or
+//! [`with_scheduler`](crate::Simulation::with_scheduler); a [`Comparison`] shows whether a difference exceeds
+//! the noise. For benchmarks with criterion, [`stretch`] measures one run alone instead of two runs
+//! alternately.
 //!
 //! All times are processor times ([`Stopwatch`]). Measure builds with `--release` only.
 //!

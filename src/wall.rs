@@ -13,10 +13,10 @@
 //!
 //! Motions combine, and the bounds on their acceleration follow automatically:
 //!
-//! | of motions | displacement |
+//! | combination | displacement |
 //! |---|---|
 //! | [`StartingAt`] | phase 0 at another time |
-//! | [`Delayed`] | the same, and at rest before |
+//! | [`Delayed`] | phase 0 at another time, and at rest before it |
 //! | [`Scaled`] | times a factor; −1 mirrors |
 //! | [`Summed`] | the sum of two |
 //!
@@ -40,8 +40,8 @@
 //! spring.
 //!
 //! [`first_touch`] finds the contact for all of these motions and for custom ones. Apart from position,
-//! velocity and reach, it needs only bounds on the acceleration in pieces of time. See [`WallMotion`] for an
-//! example, and [`laws`] for a check of a custom motion.
+//! velocity and reach, it needs only bounds on the acceleration over intervals of time. See [`WallMotion`]
+//! for an example, and [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
 mod delayed;
@@ -124,9 +124,9 @@ impl AccelerationBounds {
 
     /// Creates bounds from the acceleration at this phase and a bound on the jerk, its rate of change.
     ///
-    /// They hold for a time of this length: $`a\pm|j|\,\mathit{length}`$. A good length is a sixteenth of the
-    /// shortest period in the motion. Shorter pieces cost steps, and so do longer ones, whose bounds are
-    /// wide.
+    /// The bounds hold for a time of this length: $`a\pm|j|\,\mathit{length}`$. A good length is a sixteenth
+    /// of the shortest period in the motion. Shorter pieces cost steps, and so do longer ones, whose bounds
+    /// are wide.
     ///
     /// ```
     /// use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState, laws};

@@ -1,10 +1,10 @@
 //! Areas in which the centers of disks are free, as integrals over horizontal lines.
 //!
-//! A horizontal line crosses the curves at which the freedom of a center may change: the surfaces of bricks,
-//! moved outward by the radius. Between two crossings, a center is free everywhere or nowhere. Between the
-//! heights at which curves end, turn or cross, the free length of a line is a smooth function of its height,
-//! except for square roots at these heights, which a substitution removes. Gaussian quadrature is then exact
-//! to rounding on most pieces; the other pieces are halved.
+//! A horizontal line crosses the curves at which a center may change between free and occupied: the surfaces
+//! of bricks, moved outward by the radius. Between two crossings, a center is free everywhere or nowhere.
+//! Between the heights at which curves end, turn or cross, the free length of a line is a smooth function of
+//! its height, except for square roots at these heights, which a substitution removes. Gaussian quadrature is
+//! then exact to rounding on most pieces; the other pieces are halved.
 
 use glam::DVec2;
 
@@ -102,7 +102,7 @@ impl Curve {
     }
 }
 
-/// Returns the root of a square, or 0 if the square is 0 up to rounding, as it is where curves are tangent.
+/// Returns the square root of a number, or 0 if the number is 0 up to rounding, as where curves are tangent.
 fn root(square: f64) -> f64 {
     const ROUNDING: f64 = 1e-13;
     if square.abs() < ROUNDING { 0.0 } else { square.sqrt() }
@@ -116,7 +116,7 @@ pub(super) fn meet(one: &Region, other: &Region) -> bool {
 /// A region, with a test of whether a center in it is free.
 pub(super) struct Field<'a> {
     pub(super) region: Region,
-    /// The curves at which freedom may change.
+    /// The curves that may separate free positions from occupied ones.
     pub(super) curves: Vec<Curve>,
     /// Number of points between two crossings at which a line is examined: 1 if all curves are known.
     pub(super) looks: u32,
@@ -215,8 +215,8 @@ impl Field<'_> {
         ends.windows(2).map(|ends| self.free_between(ends[0], ends[1], height)).sum()
     }
 
-    /// Returns the free length between two crossings. Changes of freedom at unknown curves are found by
-    /// bisection.
+    /// Returns the free length between two crossings. Bisection finds the ends of free intervals at unknown
+    /// curves.
     fn free_between(&self, low: f64, high: f64, height: f64) -> f64 {
         if low == high {
             return 0.0;

@@ -166,7 +166,7 @@ impl Brick {
         }
     }
 
-    /// Returns the curves on which the center of a touching disk of this radius lies.
+    /// Returns the curves on which the center of a disk of this radius lies while it touches the brick.
     pub(super) fn curves(&self, radius: f64) -> impl Iterator<Item = Curve> + use<> {
         let shape = self.shape;
         let sides = [radius, -radius].into_iter().take(if radius > 0.0 { 2 } else { 1 });
@@ -231,8 +231,8 @@ impl Brick {
         let brick = match self.shape {
             Shape::Segment(segment) => {
                 let direction = segment.direction;
-                // Earlier versions had other segments, too. The text keeps their fingerprint of a finite
-                // segment.
+                // Earlier versions had other segments, too. This text keeps the fingerprint of a finite
+                // segment as it was.
                 Fingerprint::of("Segment").number(direction.x).number(direction.y).text("finite")
             }
             Shape::Arc(arc) => arc

@@ -80,8 +80,8 @@ impl Container {
 
     /// Creates a container without walls, which is periodic in both directions.
     ///
-    /// A disk that leaves on one side enters on the other, and one that leaves above enters below, and vice
-    /// versa. A simulation needs a width and a height of more than four diameters of the largest disk.
+    /// A disk that leaves on one side enters on the other, and a disk that leaves above enters below, and
+    /// vice versa. A simulation needs a width and a height of more than four diameters of the largest disk.
     ///
     /// # Errors
     /// If the width or the height is not finite and positive.

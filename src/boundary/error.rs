@@ -89,7 +89,7 @@ pub enum VesselError {
         name: String,
         /// Distance between the ends of the motion.
         stroke: f64,
-        /// Least distance.
+        /// Smallest distance.
         least: f64,
     },
 }

@@ -59,15 +59,15 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface
 ///   with the same response.
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it. An
-///   impact on a wall of infinite masses moves no wall. Other walls may move with the one that is hit, as
-///   parts of one body do.
+///   impact on a wall whose normal and tangential masses are infinite does not move any wall. Other walls may
+///   move with the one that is hit, as parts of one body do.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
 ///   a periodic seam, a disk overlaps the same wall.
 ///
 /// If the boundary knows its free `area`, the check computes the same area from the gaps to the walls, which
-/// overlaps of larger disks show. Both areas must agree to 2e-5 of the region, for centers of disks and for
-/// matter (radius 0). Along thin walls, which leave no gap behind them, the area of matter may be too large
-/// by about 1e-3 of the region.
+/// it measures by the overlaps of larger disks. Both areas must agree to 2e-5 of the region, for centers of
+/// disks and for matter (radius 0). Along thin walls, which leave no gap behind them, the area of matter may
+/// be too large by about 1e-3 of the region.
 ///
 /// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check changes the boundary's time origin.
@@ -137,7 +137,7 @@ impl Random {
         low + (high - low) * uniform(&mut self.0)
     }
 
-    /// Returns a time origin, and a flight that begins soon after it at a free position.
+    /// Returns a time origin, and a flight that begins at a free position soon after this time.
     fn flight(&mut self, trial: &mut Trial<'_>) -> Result<(f64, Flight), Violation> {
         let crossing = trial.length() / trial.speed;
         let late = self.between(-21.0, 3.0).max(0.0);

@@ -15,7 +15,7 @@ use crate::{Disk, Fingerprint, Flight, ParameterError};
 /// Each obstacle has the position, the radius and the kind of a disk. It follows the rule of the disks, as a
 /// partner of infinite mass at rest. Obstacles may overlap each other and the walls. Among the walls of the
 /// boundary, obstacles come last, in the order in which they are given. Each search for a touch tries all of
-/// them, so hundreds of obstacles are slow.
+/// them, so hundreds of obstacles make a run slow.
 ///
 /// [Initial states](crate::initial) keep clear of obstacles. To place a disk by hand, make it an obstacle
 /// while the others are placed around it.

@@ -124,8 +124,9 @@ impl Part {
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
     /// same for all kinds. Its vessel then does not know the [`area`](super::Boundary::area), and stresses,
-    /// densities and profiles are refused unless they have a region that no wall reaches. A line of two-sided
-    /// bricks, such as a [`polyline`](Self::polyline), takes no area.
+    /// densities and profiles are refused unless they are restricted to a region that no wall reaches. A line
+    /// of two-sided bricks, such as a [`polyline`](Self::polyline), encloses no area, so this restriction
+    /// does not apply to it.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -149,7 +150,7 @@ impl Part {
         Self { kinds, ..self }
     }
 
-    /// Returns the same part with a surface that moves along itself at this speed, like a conveyor belt.
+    /// Returns the same part with a surface that moves tangentially at this speed, like a conveyor belt.
     ///
     /// At a positive speed, the surface moves in the direction that has the free side on its left: from left
     /// to right on the upper side of a floor, counterclockwise inside a polygon or a drum, clockwise around a

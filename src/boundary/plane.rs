@@ -36,7 +36,7 @@ pub(super) struct Plane {
     pub(super) slide: Option<Slide>,
 }
 
-/// The motion of a wall along itself: to the right, or up. It sets disks spinning and carries them along, but
+/// The tangential motion of a wall: to the right, or up. It sets disks spinning and carries them along, but
 /// never moves the wall into them.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -107,7 +107,7 @@ impl Plane {
         if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
 
-    /// Returns the least distance to a wall that faces this one; `None` for any other wall.
+    /// Returns the smallest distance to a wall that faces this one; `None` for any other wall.
     pub(super) fn least_gap(&self, other: &Self) -> Option<f64> {
         let faces = self.normal == -other.normal;
         faces.then(|| -(self.place + other.place) - self.highest - other.highest)
@@ -131,7 +131,7 @@ impl Plane {
         }
     }
 
-    /// Changes the motion of the wall by this impulse. Returns true if the wall has a mass, so that its
+    /// Changes the motion of the wall by this impulse. Returns whether the wall has a mass, so that its
     /// motion has changed.
     pub(super) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
         let Some(stroke) = self.motion.stroke() else { return false };

@@ -21,7 +21,7 @@ impl Touch {
 }
 
 impl FirstTouch<Touch> {
-    /// Returns the time up to which there is no touch: the time of the touch, if there is one.
+    /// Returns the time of the touch or, if none was found, the time up to which there is none.
     #[inline]
     pub fn time(&self) -> f64 {
         match self {

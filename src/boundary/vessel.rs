@@ -20,21 +20,20 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest number of periods over which a part may extend in one direction, and largest product of the
-/// numbers in both directions. Each brick has an image for each period, and each image may overlap a large
-/// part of the cells.
+/// Largest number of periods over which a part may extend in one direction, and largest product of both
+/// numbers. Each brick has an image for each period, and each image may overlap a large part of the cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
-/// Least stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are
+/// Smallest stroke of a part, relative to its coordinates. The positions of a part with a smaller stroke are
 /// lost in rounding.
 const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
-/// A disk must be free of the container's walls and of each part: two blocks make a hopper, and a polygon can
-/// have pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
+/// A disk must clear the container's walls and each part: two blocks make a hopper, and a polygon can have
+/// pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
 /// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
-/// added, replaced and removed by name, also between runs
+/// added, replaced and removed by name, even between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
 /// Initial states keep clear of all parts at their positions at time 0. To pack disks densely among parts
@@ -191,7 +190,7 @@ impl Vessel {
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
     /// walls. Also if the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. Also if it takes out centers and
+    /// both, or its motion is lost in the rounding of its coordinates. Also if the part takes out centers and
     /// either turns or has a motion whose acceleration is not exactly known. The vessel then stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();

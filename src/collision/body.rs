@@ -67,8 +67,8 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
     let approach = second.0.velocity - first.0.velocity;
     let closing = approach.dot(normal);
     // Bodies that touch may be parting, by rounding or because the caller did not check. A rule must not get
-    // a negative speed, since it may take a root of it. The comparison is also false for NaN, and the result
-    // is never −0; `f64::max` may return either zero, depending on the processor.
+    // a negative speed, of which it may take a root. The comparison is also false for NaN, and the result is
+    // never −0; `f64::max` may return either zero, depending on the processor.
     let closing = if closing > 0.0 { closing } else { 0.0 };
     let surface = second.1.arm * second.0.angular_velocity + first.1.arm * first.0.angular_velocity;
     let (normal_mass, tangential_mass) = (

@@ -139,7 +139,8 @@ impl Contact {
         self.radii
     }
 
-    /// Returns the relative spin ω = ω₁ − ω₂. A wall has the spin of its part, which is 0 unless it turns.
+    /// Returns the relative spin ω = ω₁ − ω₂. A wall has the spin of its part, which is 0 unless the part
+    /// turns.
     #[inline]
     pub const fn relative_spin(&self) -> f64 {
         self.relative_spin
@@ -184,7 +185,7 @@ impl Contact {
 
     /// Returns the kinetic energy of the relative motion of the surfaces, ½μ v_n² + ½μ_t v_t².
     ///
-    /// A collision without a couple can lose no more than that.
+    /// A collision without a couple can lose no more than this energy.
     #[inline]
     pub const fn available_energy(&self) -> f64 {
         let (closing, slip) = (self.closing_speed, self.slip_speed);

@@ -4,8 +4,8 @@ use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialRespon
 use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
-/// A rule whose slow collisions are elastic: surfaces part at the speed v_c or faster; if they closed more
-/// slowly, they part as fast as they closed.
+/// A rule whose slow collisions are elastic: surfaces part at least at the speed v_c or, if they closed more
+/// slowly, as fast as they closed.
 ///
 /// ```math
 /// v_n' = \max\left(r_n v_n,\ \min(v_n, v_c)\right)
@@ -16,7 +16,7 @@ use crate::{Fingerprint, ParameterError};
 /// granular temperature stays constant. This temperature may be far below $`m v_c^2`$, and the lower it is,
 /// the more often disks collide. [`LeastRebound`](super::LeastRebound) bounds the number of collisions. In a
 /// gas of temperature $`T`$, the remedy removes the share $`1 - (1 + x)\,e^{-x} \approx x^2/2`$ of the normal
-/// dissipation, with $`x = m v_c^2/4T`$: the share of the collisions below $`v_c`$. The page `docs/rest.md`
+/// dissipation, with $`x = m v_c^2/4T`$: the dissipation in collisions below $`v_c`$. The page `docs/rest.md`
 /// of the repository compares the remedies.
 ///
 /// ```

@@ -72,8 +72,8 @@ impl Friction {
     /// Returns the same friction with a smaller dynamic coefficient κ_d.
     ///
     /// # Errors
-    /// If it is negative or not finite, or exceeds the static coefficient, because sliding could then gain
-    /// energy.
+    /// If the coefficient is negative or not finite, or exceeds the static one, because sliding could then
+    /// gain energy.
     pub fn with_dynamic_friction(self, dynamic_friction: f64) -> Result<Self, ParameterError> {
         non_negative("dynamic friction", dynamic_friction)?;
         let ordered = dynamic_friction <= self.static_friction;

@@ -80,8 +80,8 @@ impl Frictional {
     /// Returns the same rule with a smaller coefficient of dynamic friction κ_d.
     ///
     /// # Errors
-    /// If it is negative or not finite, or exceeds the static coefficient, because sliding could then gain
-    /// energy.
+    /// If the coefficient is negative or not finite, or exceeds the static one, because sliding could then
+    /// gain energy.
     pub fn with_dynamic_friction(self, dynamic_friction: f64) -> Result<Self, ParameterError> {
         Ok(Self { friction: self.friction.with_dynamic_friction(dynamic_friction)?, ..self })
     }

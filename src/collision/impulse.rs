@@ -52,7 +52,7 @@ impl Impulse {
     /// have the same sign.
     ///
     /// Partner 1 loses this angular momentum about its center, and partner 2 receives it, so the total is
-    /// conserved. A couple models rolling friction: it needs a contact that is not a point.
+    /// conserved. A couple models rolling friction, which needs a contact of finite width.
     #[inline]
     pub const fn with_couple(self, couple: f64) -> Self {
         Self { couple, ..self }

@@ -39,11 +39,10 @@ use crate::Violation;
 /// Allowed rounding in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
-/// Smallest product whose rounding has a relative bound. Below it, numbers lose digits as they become
-/// smaller.
+/// Smallest product whose relative rounding error is bounded. Smaller numbers have fewer digits.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
-/// Returns the violation of a law by an impulse, unless the condition holds.
+/// Returns the violation of a law by an impulse if the condition does not hold.
 fn unless(
     holds: bool,
     law: &'static str,
@@ -58,11 +57,11 @@ fn unless(
     Err(Violation::new("collision rule", law, sentence))
 }
 
-/// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it gains no
-/// energy, also by its couple.
+/// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it adds no
+/// energy, even through its couple.
 ///
 /// # Errors
-/// The first law that is broken: "finite", "separation" or "energy".
+/// The first broken law: "finite", "separation" or "energy".
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, laws};
@@ -99,7 +98,8 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 /// Checks that the tangential impulse can be friction: it slows the slip, and at most reverses it.
 ///
 /// A rule may add to the slip and still lose energy, if it takes that energy from the normal direction.
-/// [`check_impulse`] allows this, but friction never does it. A couple, which follows friction, is left out.
+/// [`check_impulse`] allows this, but friction never does it. The check ignores a couple, which acts after
+/// friction.
 ///
 /// # Errors
 /// If the impulse pushes along the slip, or the slip is faster after the collision.
@@ -123,7 +123,7 @@ pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Resul
 /// Checks that the impulse lies in the cone of friction, |Δ_t| ≤ κ_s Δ_n.
 ///
 /// # Errors
-/// If it does not.
+/// If the impulse lies outside the cone.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, laws};

@@ -12,7 +12,7 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// A grain at rest then bounces at $`v_c`$, as if the ground trembled. Each collision transfers at least the
 /// momentum $`\mu v_c`$, so a contact that carries the mean force $`F`$ has at most $`F/\mu v_c`$ collisions
-/// in a unit of time, however much the rule loses. The cost of matter at rest is therefore known beforehand,
+/// per unit of time, however much the rule loses. The cost of matter at rest is therefore known beforehand,
 /// and friction stays unchanged.
 ///
 /// **The rule gains energy** where surfaces close more slowly than they part, at most

@@ -16,7 +16,7 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// This is Coulomb's law of rolling resistance with impulses in place of forces: a lasting contact resists
 /// rolling by a torque of at most $`\mu_r F_n R`$ (Iwashita and Oda 1998, without their spring). The couple
-/// gives no momentum, so disks in translation alone do not feel it.
+/// transfers no momentum, so it does not act on disks that only translate.
 ///
 /// The couple acts after the tangential impulse, on the spins that friction has left. Friction is thus the
 /// same with and without rolling friction, and the couple never gains energy, whatever the inner rule does:

@@ -29,7 +29,7 @@ impl Rough {
     /// Creates a rule with the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`.
     ///
     /// # Errors
-    /// If one is out of range.
+    /// If an inelasticity is out of range.
     pub fn from_inelasticity(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             normal_inelasticity: inelasticity::normal(normal)?,
@@ -40,7 +40,7 @@ impl Rough {
     /// Creates a rule with the restitution coefficients r_n, in `[0, 1]`, and r_t, in `[-1, 1]`.
     ///
     /// # Errors
-    /// If one is out of range.
+    /// If a restitution is out of range.
     pub fn from_restitution(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             normal_inelasticity: inelasticity::of_normal_restitution(normal)?,

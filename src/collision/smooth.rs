@@ -25,7 +25,7 @@ impl Smooth {
     /// Creates a rule with the normal inelasticity q_n, in `[0, 1/2]`.
     ///
     /// # Errors
-    /// If it is out of range.
+    /// If the inelasticity is out of range.
     pub fn from_inelasticity(normal: f64) -> Result<Self, ParameterError> {
         Ok(Self { normal_inelasticity: inelasticity::normal(normal)? })
     }
@@ -33,7 +33,7 @@ impl Smooth {
     /// Creates a rule with the normal restitution r_n, in `[0, 1]`.
     ///
     /// # Errors
-    /// If it is out of range.
+    /// If the restitution is out of range.
     pub fn from_restitution(normal: f64) -> Result<Self, ParameterError> {
         Ok(Self { normal_inelasticity: inelasticity::of_normal_restitution(normal)? })
     }

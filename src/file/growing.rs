@@ -97,8 +97,9 @@ mod tests {
         }
     }
 
-    /// Writes pieces of ten bytes, each with an ending of two that names the piece, to drives of many sizes.
-    /// After a failure the medium is unchanged, and once there is room the same piece can be written.
+    /// Writes pieces of ten bytes, each with an ending of two bytes that identifies the piece, to drives of
+    /// many sizes. After a failure the medium is unchanged, and once there is room the same piece can be
+    /// written.
     #[test]
     fn a_full_disk_keeps_whole_pieces() {
         for room in 0..60 {

@@ -8,7 +8,7 @@ pub struct Seal {
     version: u32,
 }
 
-/// A fault that a seal shows.
+/// A fault that a seal reveals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Damage {
@@ -56,7 +56,7 @@ impl Seal {
     /// Checks the seal of these bytes, and returns the contents after it.
     ///
     /// # Errors
-    /// If they are of another format or version, or were cut or changed.
+    /// If the bytes are of another format or version, or were truncated or altered.
     pub fn open(self, bytes: &[u8]) -> Result<&[u8], Damage> {
         let rest = bytes.strip_prefix(&self.magic).ok_or(Damage::Foreign)?;
         let (version, rest) = rest.split_first_chunk::<4>().ok_or(Damage::Cut)?;

@@ -18,7 +18,7 @@ const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 /// and the last one to rename it wins.
 ///
 /// # Errors
-/// If the system cannot write it.
+/// If the system cannot write the file.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut draft = Draft::of(path)?;
     draft.write_all(bytes)?;

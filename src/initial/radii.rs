@@ -85,9 +85,9 @@ impl Radii {
         Self::within(Law::Power { exponent }, smallest, largest)
     }
 
-    /// Creates a distribution of two radii, in which exactly this fraction of all disks is large.
+    /// Creates a distribution of two radii, in which this fraction of all disks is large.
     ///
-    /// The number of large disks is this fraction of all disks, rounded to a whole number.
+    /// Each draw has exactly this fraction of large disks, up to rounding to a whole number.
     ///
     /// # Errors
     /// If a radius is not finite and positive, the large one is below the small one, or the share is not in
@@ -133,7 +133,7 @@ impl Radii {
             Law::LogNormal { median, deviation } => self.log_normal_radius(median, deviation, uniform),
             Law::Power { exponent: 1.0 } => self.smallest * libm::exp(span * uniform()),
             Law::Power { exponent } => {
-                // The distribution function, inverted in logarithms, which do not overflow.
+                // The inverse of the distribution function, in logarithms, which do not overflow.
                 let power = 1.0 - exponent;
                 let share = libm::log1p(uniform() * libm::expm1(power * span));
                 self.smallest * libm::exp(share / power)

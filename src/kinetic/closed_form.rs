@@ -33,7 +33,7 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
     let (normal, tangential) = (rule.normal_inelasticity(), rule.tangential_inelasticity());
     let sector = sector(rule, gas);
     // Friction can grow without bound, and the cosine of the sector then falls as the inverse of the
-    // friction. Only the product of both stays finite.
+    // friction. Only their product stays finite.
     let friction = rule.dynamic_friction() * sector.cosine * (1.0 - normal);
     let sticking = tangential * (1.0 - tangential) * slip_ratio_squared / mass_ratio * sector.sticking_slip();
     let sliding = friction

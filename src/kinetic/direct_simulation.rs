@@ -88,7 +88,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
         &self.disks
     }
 
-    /// Returns the disks so that they can be changed, for example by the driving of a simulation.
+    /// Returns mutable access to the disks, for example for the driving of a simulation.
     pub fn disks_mut(&mut self) -> &mut [Disk] {
         &mut self.disks
     }

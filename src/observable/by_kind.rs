@@ -8,10 +8,10 @@ use crate::{Disk, Kind};
 /// Its snapshots hold only these disks, in their order. It passes on the collisions in which a disk of the
 /// kind takes part. The snapshots at the start and at the end of a run hold only disks of the kind, too.
 ///
-/// A collision with a disk of another kind is one collision, but only one disk of the kind takes part in it:
-/// a rate for each disk, such as [`rate_per_disk`](super::CollisionCounts::rate_per_disk), which takes both
-/// partners for disks of the kind, is then too high. Add up the collisions [between](super::BetweenKinds) each
-/// two kinds instead, with both partners within the kind and with one.
+/// In a collision with a disk of another kind, only one disk of the kind takes part. A rate per disk, such as
+/// [`rate_per_disk`](super::CollisionCounts::rate_per_disk), counts both partners as disks of the kind, and
+/// is then too high. Instead, add up the collisions [between](super::BetweenKinds) each pair of kinds: two
+/// disks for a collision within the kind, one for any other.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -72,8 +72,9 @@ impl CollisionCounts {
     /// Returns the rate of disk–disk collisions per disk, if all counted collisions happened within this
     /// duration.
     ///
-    /// Each collision counts for both partners: among the collisions [of a kind](super::OfKind), those with
-    /// another kind would count twice.
+    /// Each collision counts once for each partner. Do not use this method within an
+    /// [`OfKind`](super::OfKind): a collision with another kind has only one partner of the kind, but would
+    /// count as two.
     pub fn rate_per_disk(&self, disks: usize, duration: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * duration)
     }

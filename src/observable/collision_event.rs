@@ -16,7 +16,7 @@ pub enum Partner {
 /// A collision that has just happened.
 ///
 /// At a thermal wall, the contact describes the arriving disk, and the impulse is the whole impulse on that
-/// disk. The wall also draws a new rotation for the disk, which only [`Self::energy_change`] contains.
+/// disk. The wall also draws a new spin for the disk; only [`Self::energy_change`] includes its energy.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};

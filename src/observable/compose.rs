@@ -1,8 +1,8 @@
 //! Compositions of observers and observables.
 //!
 //! A composed observer passes all messages on to all its parts, but passes a sample only to the parts that
-//! requested it. Its verdict is the first failure of a part. If no part fails, it stops the run as soon as
-//! one of its parts does.
+//! requested it. It fails if a part fails, with the first failure. Otherwise, it stops the run as soon as one
+//! of its parts does.
 
 use std::ops::ControlFlow;
 

@@ -66,7 +66,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    `on_end` before it and `on_start` after it.
 /// 2. `on_collision` is called once for each collision, in the order of time, after the disks have changed.
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
-///    run. The sample includes all events up to and at its time. A time before the start of the run is
+///    run. The sample includes all events up to and including its time. A time before the start of the run is
 ///    sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
 ///    or fails the run, no further event happens.
@@ -81,17 +81,17 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///
 /// # Guarantees of an observer
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
-/// 2. After a sample, `next_sample` names a later time than the sample's.
+/// 2. After a sample, `next_sample` returns a time later than the sample's.
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine calls `next_sample`
-///    after these calls, and would notice another change too late.
+///    only after these two, and would notice a change at any other time too late.
 /// 5. Samples do not depend on how a run is cut into pieces: if a run starts at the time at which the
 ///    previous one ended, `next_sample` keeps its value.
 ///
 /// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
 /// breaks another promise, it gets samples at times that it did not intend.
 /// [`SampleTimes`](super::SampleTimes) keeps all five, and [`laws::check`](super::laws::check) tests them;
-/// `docs/validation.md` says which planted faults it finds.
+/// `docs/validation.md` says which planted faults the check finds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",

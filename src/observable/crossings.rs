@@ -19,8 +19,8 @@ use crate::{Disk, ParameterError};
 /// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
 /// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
 /// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count. A run ends with
-/// an error if disks change in other ways than by the collisions that the observer receives, as they do in a
-/// [`BetweenKinds`](super::BetweenKinds), or by the driving of a study.
+/// an error if disks change other than by the collisions that the observer receives: in a
+/// [`BetweenKinds`](super::BetweenKinds), which hides other collisions, or under the driving of a study.
 ///
 /// A disk that a wall [absorbs](crate::boundary::Part::absorbing_centers) at the segment has not crossed it:
 /// count such disks by [`Arrivals`](super::Arrivals).
@@ -133,7 +133,7 @@ impl Crossings {
 
     /// Ends the flight of a disk at this time, counts its crossings, and begins the next one.
     fn go_on(&mut self, id: u64, next: Free) {
-        // A filter by kind shows collisions with disks of other kinds, which are not watched.
+        // A filter by kind passes on collisions with disks of other kinds, whose flights are not followed.
         if let Some(flight) = self.flights.get_mut(&id) {
             let flight = std::mem::replace(flight, next);
             self.count(&flight, next.time);

@@ -13,8 +13,8 @@ use crate::statistics::BlockedMean;
 /// each wall.
 ///
 /// Collisions of one run are correlated, since the gas heats and cools. [`BlockedMean::estimate`] gives a
-/// mean whose error accounts for that. At a moving or thermal wall, the energy change is the change of the
-/// disk's energy, including the work of the wall.
+/// mean whose error accounts for these correlations. At a moving or thermal wall, the energy change is the
+/// change of the disk's energy, including the work of the wall.
 ///
 /// A run ends with an error if it belongs to another system than the previous run, goes back in time, or has
 /// other walls at the indices of walls that were hit. Clear the observer before such a run, or use another

@@ -40,8 +40,8 @@ impl EnergyChangeLayer {
 /// this center.
 ///
 /// The profile allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on
-/// average. Errors come from blocks of the collisions and of the disks in a layer, in the order in which they
-/// are seen, and do not assume that these are independent.
+/// average. Errors are computed from blocks of consecutive collisions, and of consecutive disks in a layer,
+/// so neither needs to be independent.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChangeProfile;

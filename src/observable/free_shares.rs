@@ -1,4 +1,4 @@
-//! The shares of the areas of regions that walls leave free.
+//! The shares of regions that walls leave free.
 
 use glam::DVec2;
 

@@ -12,7 +12,7 @@ use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::statistics::Bins;
 
-/// The bin with the largest packing fraction, and the least packing fraction below it; made by
+/// The bin with the largest packing fraction, and the smallest packing fraction below it; made by
 /// [`HeightProfile::densest_layer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -21,12 +21,12 @@ pub struct DenseLayer {
     pub height: f64,
     /// Packing fraction in the bin.
     pub packing_fraction: f64,
-    /// Least packing fraction of the bins below, or of the bin itself if it is the lowest.
+    /// Smallest packing fraction of the bins below, or of the bin itself if it is the lowest.
     pub least_below: f64,
 }
 
 impl DenseLayer {
-    /// Creates a layer from its height, its packing fraction, and the least packing fraction below it.
+    /// Creates a layer from its height, its packing fraction, and the smallest packing fraction below it.
     pub const fn new(height: f64, packing_fraction: f64, least_below: f64) -> Self {
         Self { height, packing_fraction, least_below }
     }

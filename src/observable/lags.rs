@@ -47,8 +47,8 @@ impl<V> Lags<V> {
         self.means.len() - 1
     }
 
-    /// Notes the start of a run. If a disk is no longer where the previous run left it, it was put elsewhere,
-    /// and the samples so far are forgotten.
+    /// Notes the start of a run. If a disk is no longer where the previous run left it, the samples so far
+    /// are forgotten.
     pub(super) fn begin(&mut self, start: &Snapshot<'_>) {
         self.sample_times.start_at(start.time());
         let Some(places) = self.places.take() else { return };

@@ -1,7 +1,7 @@
 //! Checks of an observer's contract, for custom observers.
 //!
-//! An observer can never change a trajectory, since the engine shows it copies, but the observer is
-//! responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
+//! An observer can never change a trajectory, since the engine gives it copies of the disks, but the observer
+//! is responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
 
 use glam::DVec2;
 
@@ -37,7 +37,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// make a new one for a measurement. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken.
+/// The first broken promise.
 ///
 /// ```
 /// use granular_edmd::observable::laws::check;

@@ -13,8 +13,8 @@ pub struct Neighbors<'a> {
     domain: Domain,
     squares: Squares,
     range: f64,
-    /// Half of each period; infinite where there is none. A vector with smaller components is shorter than
-    /// the vectors to all images.
+    /// Half of each period; infinite where there is none. A vector with smaller components already leads to
+    /// the nearest image.
     half: DVec2,
 }
 

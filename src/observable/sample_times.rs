@@ -3,23 +3,23 @@
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
 
-/// Relative rounding of the start time of a run, and of a sampling time. Each is the sum of an offset and an
-/// origin, rounded a few times.
+/// Relative rounding error of the start time of a run, and of a sampling time. Each is the sum of an offset
+/// and an origin, rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Rounding of a start time and of a sampling time, relative to the interval. Before time 0, for example, the
-/// origin may be far larger than the time, and the time then has the origin's rounding.
+/// Rounding error of a start time and of a sampling time, relative to the interval. Before time 0, for
+/// example, the origin may be far larger than the time, and the time then has the origin's rounding error.
 const PART: f64 = 1e-9;
 
-/// Smallest ratio of the interval to the time. Rounding then moves a sampling time by a sixteenth of the
-/// interval at most.
+/// Smallest ratio of the interval to the time. Rounding then moves a sampling time by at most a sixteenth of
+/// the interval.
 const COARSEST: f64 = 16.0 * f64::EPSILON;
 
 /// A clock for observers, with equally spaced times of samples.
 ///
 /// The sampling times are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
-/// first time ([`Self::starting_at`]). They are multiples, not sums, so the thousandth is as exact as the
-/// first.
+/// first time ([`Self::starting_at`]). Each time is a multiple, not a sum, so the thousandth is as exact as
+/// the first.
 ///
 /// # The start of a run
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
@@ -131,8 +131,8 @@ impl SampleTimes {
     /// Sets the first sampling time of a run that has no sample yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
-            // The cast saturates. Rounding of a large quotient may miss the number by one, which `rounding`
-            // allows for.
+            // The cast saturates. The rounding error of a large quotient may change the number by one, which
+            // `rounding` allows for.
             self.beat = (time / self.interval).floor() as i64;
             return self.advance_past(time + rounding);
         };

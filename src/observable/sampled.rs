@@ -51,8 +51,8 @@ pub trait Accumulator {
     /// Checks, at the start of a run, whether its snapshots can be measured.
     ///
     /// # Errors
-    /// If they cannot be measured, for example because a region is not inside the domain. The run then ends
-    /// with this error.
+    /// If the snapshots cannot be measured, for example because a region is not inside the domain. The run
+    /// then ends with this error.
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         let _ = start;
         Ok(())

@@ -11,7 +11,7 @@ use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
 ///
-/// The run does not see changes of these copies. The copies are made on request, so the start of a run costs
+/// Changes of these copies do not affect the run. The copies are made on request, so the start of a run costs
 /// nothing for an observer that only reads the time.
 #[derive(Debug, Clone)]
 pub struct Snapshot<'a> {
@@ -246,10 +246,10 @@ impl<'a> Snapshot<'a> {
         self.gravity
     }
 
-    /// Returns the walls as lines of points, without the edges of the domain, for pictures.
+    /// Returns the walls as polylines, without the edges of the domain, for pictures.
     ///
-    /// These are the [`wall_lines`](Boundary::wall_lines) of the boundary that the run has at this time. A
-    /// snapshot that was not made by a simulation has no walls.
+    /// They come from the [`wall_lines`](Boundary::wall_lines) of the run's boundary at this time. A snapshot
+    /// that was not made by a simulation has no walls.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

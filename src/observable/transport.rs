@@ -11,7 +11,7 @@ use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate, RunningMean};
 use crate::{Disk, ParameterError};
 
-/// Largest rounding of a velocity after many collisions, relative to the speed of sound.
+/// Largest rounding error of a velocity after many collisions, relative to the speed of sound.
 const ROUNDING: f64 = 1e-6;
 
 /// Number of moments: of shear, of compression and of heat. Each has two components.
@@ -22,9 +22,9 @@ type Moments = [DVec2; MOMENTS];
 /// An observer of the viscosities and the thermal conductivity of an elastic gas in a periodic box
 /// (Helfand 1960; Alder, Gass and Wainwright 1970).
 ///
-/// The moments describe the transport of momentum and energy, also by collisions: in a collision, the
-/// momentum $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the vector $`\vec
-/// r`$ between the centers.
+/// The moments describe the transport of momentum and energy, including transport by collisions: in a
+/// collision, the momentum $`\vec\Delta`$ and the energy $`\Delta e`$ are carried instantaneously along the
+/// vector $`\vec r`$ between the centers.
 ///
 /// ```math
 /// W_{ab}(t) = \int_0^t \sum_i m_i v_{i,a} v_{i,b}\,dt' + \sum_{\rm collisions}\Delta_a\, r_b ,
@@ -42,13 +42,13 @@ type Moments = [DVec2; MOMENTS];
 /// ```
 ///
 /// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
-/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible,
-/// also with couples that keep the energy.
-/// Velocities are relative to the center of mass. All integrals are exact; samples only set the lags.
+/// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible, even
+/// with couples that conserve the energy. Velocities are relative to the center of mass. All integrals are
+/// exact; samples only set the lags.
 ///
-/// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
-/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report this lag and the number of
-/// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
+/// Units: mass/time for the viscosities and, with k_B = 1, 1/time for the conductivity. In two dimensions the
+/// slopes grow slowly with the longest lag, so report this lag and the number of disks. Choose lags from a
+/// few mean free times up to the time in which sound crosses the box.
 ///
 /// One observer measures one gas, in one run or in runs that continue each other. The first interval is as
 /// long as the longest lag, and serves only to find the pressure. The errors come from blocks of origins.
@@ -243,7 +243,7 @@ impl TransportCoefficients {
     }
 
     /// Stores the motions of this snapshot, and checks that they equal the expected motions up to rounding,
-    /// as they do if only collisions have changed them. Otherwise, it keeps the old motions, so that further
+    /// as they do if only collisions have changed them. Otherwise, keeps the old motions, so that further
     /// runs are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();

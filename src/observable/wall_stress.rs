@@ -18,7 +18,7 @@ use crate::statistics::{BlockedMean, Estimate};
 ///
 /// in units of energy per area, for a wall of length $`L`$ over a time $`t`$. $`\Delta_n`$ and $`\Delta_t`$
 /// are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so $`p`$ is positive
-/// where disks push the wall. The shear stress $`\tau`$ is positive where they drag the wall along the
+/// where disks push the wall. The shear stress $`\tau`$ is positive where disks drag the wall along the
 /// tangent, which is the normal turned counterclockwise (to the left on a floor). Each interval between two
 /// samples gives one value, and the errors come from blocks of these values. A disk comes back to a wall that
 /// it has hit, so the values of short intervals are anticorrelated, and their errors are up to three times

@@ -20,7 +20,7 @@ pub struct Differences {
     /// The first collision of a disk with other partners; `None` if all partners are the same.
     pub partners: Option<OtherPartner>,
     /// The first time at which a disk is farther from its position in the other run than the tolerance;
-    /// `None` if no disk is at the end of any interval.
+    /// `None` if no disk is farther away than that at the end of any interval.
     pub apart: Option<TooFarApart>,
 }
 

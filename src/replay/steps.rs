@@ -49,8 +49,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
         &self.run
     }
 
-    /// Advances to the next collision, or to the absolute time `end` if no collision happens up to and at
-    /// that time; the result is then `None`.
+    /// Advances to the next collision, or to the absolute time `end` if no collision happens up to and
+    /// including that time; the result is then `None`.
     ///
     /// # Errors
     /// The same as for [`Simulation::step_until`].

@@ -5,8 +5,9 @@
 ///
 /// The time $`t \ge 0`$ is counted from the time at which value and rate are given. The result is infinite
 /// only if it overflows.
-/// - For an open gap, the result is the first zero at which the gap is falling, if there is one. Rounding
-///   decides whether a gap counts if it closes only for an instant and opens again, as at a double root.
+/// - For an open gap, the result is the first zero at which the gap is falling, or `None` if there is no such
+///   zero. Rounding decides whether a gap counts if it closes only for an instant and opens again, as at a
+///   double root.
 /// - A gap that is closed and closes further counts immediately, at time 0.
 /// - A gap that is closed but rises counts when it closes next. If it never rises to zero, it counts when it
 ///   is back at its first value.

@@ -106,8 +106,8 @@ fn middle(low: f64, high: f64) -> f64 {
     low + 0.5 * (high - low)
 }
 
-/// At most five times, in ascending order. At each of them but the first and the last, a polynomial changes
-/// its sign.
+/// At most five times, in ascending order. At each of them except the first and the last, a polynomial
+/// changes its sign.
 #[derive(Clone, Copy)]
 struct Marks {
     times: [f64; 5],
@@ -156,8 +156,9 @@ fn turns(polynomial: &Coefficients, end: f64) -> Marks {
 /// Returns the first number beyond a change of sign between `low` and `high`.
 ///
 /// The search halves the interval, and each step decides one bit. Newton's method would need fewer steps, but
-/// at a double zero its slope is pure rounding, and it would leave the interval. The function returns the far
-/// side of the change, so that a search that ends at this time finds the change again.
+/// at a double zero, the slope is only a rounding error, and the next step would leave the interval. The
+/// function returns the far side of the change, so that a search that ends at this time finds the change
+/// again.
 fn change_of_sign(polynomial: &Coefficients, mut low: f64, mut high: f64) -> f64 {
     let positive = value(polynomial, low) > 0.0;
     loop {

@@ -32,7 +32,7 @@ const SIGHT: usize = 48;
 
 /// A calendar: a page of equally wide buckets of time.
 ///
-/// Each bucket holds, in no order, the disks that are due in it.
+/// Each bucket holds, in no particular order, the disks that are due in it.
 ///
 /// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
 ///   it is.
@@ -49,7 +49,7 @@ pub struct BucketQueue {
     due: Vec<f64>,
     /// The disks of each bucket of the page.
     buckets: Piles,
-    /// Number of opened buckets, all of them at the start of the page.
+    /// Number of buckets opened so far; these are the first ones of the page.
     opened: usize,
     /// The events of the open buckets, in order.
     open: Vec<Entry>,

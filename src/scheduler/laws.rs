@@ -13,7 +13,7 @@ use script::{Operation, SCRIPTS, Script, Stage};
 
 const PART: &str = "scheduler";
 
-/// Numbers of changes of one disk after which counters of 8 and of 16 bits begin again.
+/// Numbers of changes of one disk after which counters of 8 and of 16 bits wrap around.
 const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
 
 /// Checks that a scheduler keeps the contract of [`EventScheduler`].
@@ -28,7 +28,7 @@ const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
 /// version.
 ///
 /// # Errors
-/// The first law that is broken. A scheduler that panics is not caught.
+/// The first broken law. A scheduler that panics is not caught.
 ///
 /// ```
 /// use granular_edmd::scheduler::{BySize, EventScheduler, laws};
@@ -67,8 +67,8 @@ pub fn check<S: EventScheduler>(mut make: impl FnMut() -> S) -> Result<(), Viola
     COUNTS.iter().try_for_each(|&count| check_counters(make(), count))
 }
 
-/// Checks that a disk whose event has moved this number of times is not due at its first time, behind another
-/// disk. A scheduler that numbers its entries may give the same number twice.
+/// Checks that a scheduler forgets the first time of a disk after `count` changes, while another disk is due
+/// earlier. A scheduler that numbers its entries may use the same number twice.
 fn check_counters(mut scheduler: impl EventScheduler, count: u32) -> Result<(), Violation> {
     scheduler.reset(&[5.0, 0.5]);
     scheduler.set(0, 1.0);

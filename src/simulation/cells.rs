@@ -87,8 +87,8 @@ impl Cells {
         Some(cells)
     }
 
-    /// Creates cells with these layouts, one for each class; there is at least one class. The disks of these
-    /// diameters are yet to be filled in.
+    /// Creates cells with these layouts, one for each class; there is at least one class. The disks, of these
+    /// diameters, are added afterwards.
     pub(super) fn empty<B: Boundary + ?Sized>(
         boundary: &B,
         layouts: &Layouts,
@@ -335,8 +335,8 @@ impl Cells {
         let count = self.contents.gather(first, step, found, 0);
         match &self.layers {
             None => count,
-            // The larger disks are few, so it is not worthwhile to leave out disks that were within reach
-            // before.
+            // There are few larger disks, so filtering out those that were already within reach of the
+            // previous cell would not pay.
             Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }

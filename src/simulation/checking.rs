@@ -22,14 +22,14 @@ use crate::scheduler::EventScheduler;
 /// enlarged radius loses no digits for usual radii.
 const NEAR: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Largest overlap at a collision, relative to the radius. Ordinary runs have 1e-13. Disks with speeds in the
-/// thousands that bounce a hundred thousand times in a closing corner reach 1e-8.
+/// Largest overlap at a collision, relative to the radius. In ordinary runs, overlaps are about 1e-13. Disks
+/// with speeds in the thousands that bounce a hundred thousand times in a closing corner reach 1e-8.
 const DEEP: f64 = 1e-6;
 
 /// Number of times that the search for a wall doubles its reach, in order to report the distance of the wall.
 const MOST_DOUBLINGS: usize = 100;
 
-/// Largest error of a position, in units of its rounding.
+/// Largest error of a position, relative to the coordinates.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -85,13 +85,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Checks that a gap before a wall is only rounding.
+    /// Checks that a gap before a wall is within rounding.
     #[cold]
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
         let (now, radius) = (self.clock.now, probe.radius());
         let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
-        // A wall that jumps away from the disks may have jumped within the rounding of the time. The engine
-        // never passes times before the epoch.
+        // A wall that jumps away from the disks may have jumped within the rounding error of the time. The
+        // engine never passes times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);
         if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {
             return Ok(());
@@ -106,7 +106,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// Positions are rounded relative to their distance from the origin, and to the distance traveled since
     /// the epoch. The time of a touch is rounded as absolute times are, since some walls know only absolute
-    /// times. Meanwhile, both the disk and the wall move.
+    /// times. During this error of the time, both the disk and the wall move.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);

@@ -32,10 +32,10 @@ const SEAL: Seal = Seal::new(*b"GRANEDMD", 9);
 /// A saved run: everything on which its future depends, except its rule and its boundary. The state of walls
 /// that [react](Boundary::react) is kept.
 ///
-/// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
-/// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
-/// made by another version are refused and never read as data. A checkpoint keeps the fingerprints of its
-/// rule and its boundary, and refuses others unless the caller allows them.
+/// A resumed run continues bit for bit, even under another scheduler. A checkpoint is kept as bytes with a
+/// version and a checksum, in its own files and inside any format of serde. Bytes that were truncated,
+/// altered or written by another version are refused and never read as data. A checkpoint keeps the
+/// fingerprints of its rule and its boundary, and refuses others unless the caller allows them.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -126,7 +126,7 @@ pub enum CheckpointError {
         /// The version that this crate reads.
         known: u32,
     },
-    /// The file was cut or changed.
+    /// The file was truncated or altered.
     #[error("the checkpoint is damaged: its checksum does not match")]
     Damaged,
     /// The contents cannot be decoded or encoded.
@@ -183,7 +183,7 @@ impl Checkpoint {
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.
     ///
     /// # Errors
-    /// If it cannot be encoded.
+    /// If the checkpoint cannot be encoded.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
         Ok(SEAL.seal(&postcard::to_stdvec(&self.0).map_err(contents)?))
     }
@@ -191,7 +191,7 @@ impl Checkpoint {
     /// Reads a checkpoint from bytes.
     ///
     /// # Errors
-    /// If the bytes are not a checkpoint, are of another version, or were cut or changed.
+    /// If the bytes are not a checkpoint, are of another version, or were truncated or altered.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         decoded(opened(SEAL, bytes)?).map(Self)
     }

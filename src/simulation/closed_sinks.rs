@@ -20,7 +20,8 @@ const FAST: f64 = 1e3;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the first sink that no disk can touch now, because its walls lie in or beside other walls.
     ///
-    /// The smallest disk of each kind flies from both sides to positions all along the walls.
+    /// To find it, the smallest disk of each kind is sent from both sides to closely spaced positions along
+    /// all walls.
     #[cold]
     pub(super) fn closed_sink(&self) -> Option<usize> {
         let now = self.clock.now;
@@ -54,8 +55,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         smallest
     }
 
-    /// Returns positions on all walls and on the edges of the domain, a diameter apart at most, each with a
-    /// unit vector across the wall or edge.
+    /// Returns positions on all walls and on the edges of the domain, at most one diameter apart, each with a
+    /// unit vector normal to the wall or edge.
     fn places_at_walls(&self, radius: f64) -> impl Iterator<Item = (DVec2, DVec2)> {
         let inside = self.boundary.interior();
         let top = inside.top.min(inside.bottom + inside.width());

@@ -2,7 +2,7 @@
 //!
 //! | driving | change |
 //! |---|---|
-//! | [`WhiteNoise`] | random kicks, which keep the total momentum |
+//! | [`WhiteNoise`] | random kicks, which conserve the total momentum |
 //! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
 //!
 //! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop knows nothing of it.
@@ -42,10 +42,10 @@ use crate::{Disk, ParameterError};
 ///    the next kick. A run that is cut into pieces has the same kicks.
 /// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
-/// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults it finds. If a driving
-/// draws random numbers in the order of the list, the check finds a memory by the position in the list only
-/// if each kick there resembles the previous one. The engine refuses disks that overlap, a change of their
-/// number, and a clock that stands still.
+/// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults the check finds. If a
+/// driving draws random numbers in the order of the list, the check finds a memory by the position in the
+/// list only if each kick there resembles the previous one. The engine refuses disks that overlap, a change
+/// of their number, and a clock that stands still.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -88,11 +88,11 @@ pub trait Driving {
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Runs up to the first of the `limits`, as [`Self::run`] does, with kicks at the times of `driving`.
     ///
-    /// A kick comes after all events and samples of its time, also at the end of the run. The bits do not
+    /// A kick comes after all events and samples of its time, even at the end of the run. The bits do not
     /// depend on how a run is cut into pieces.
     ///
     /// The observer watches a run from each kick to the next, with `on_start` and `on_end`, and thus sees the
-    /// velocities on both sides of a kick. Its samples are those of one run.
+    /// velocities on both sides of a kick. The observer gets the samples of a single run.
     ///
     /// # Errors
     /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].

@@ -29,8 +29,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         self.scratch.seats = due.len();
         self.scheduler.reset(&due);
-        // The memory is kept, so that nothing is allocated again. In large systems it is given back, since
-        // there the memory itself counts for more.
+        // The memory is kept, so that nothing is allocated again. In large systems, the memory is freed,
+        // since its size matters more there.
         if due.len() < LARGE_SYSTEM {
             self.scratch.due = due;
         }

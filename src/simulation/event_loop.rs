@@ -136,8 +136,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }
         // Because of rounding, the disk may already be leaving the wall in the engine's arithmetic. The rule
-        // then gets no closing speed and may change nothing, and the boundary would find the same touch
-        // again.
+        // then receives a closing speed of zero and may change nothing, and the boundary would find the same
+        // touch again.
         let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (mut collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);

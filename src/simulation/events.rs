@@ -61,12 +61,12 @@ pub struct Counters {
     /// Collisions whose surfaces parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound).
     pub least_rebound_collisions: u64,
-    /// Energy added by the collisions that gained energy.
+    /// Energy added in these collisions; losses are not subtracted.
     pub energy_of_rebounds: f64,
     /// Passages of disks from one neighbor cell to another.
     pub cell_crossings: u64,
-    /// Predicted collisions that were out of date when they came up, since the partner had had another
-    /// collision. They were predicted anew.
+    /// Predicted collisions that were out of date when they were due, since the partner had had another
+    /// collision. The engine predicted them anew.
     pub repredictions: u64,
     /// Searches for a wall that found no touch up to their horizon, and were continued from there.
     pub horizons: u64,

@@ -12,7 +12,7 @@ use crate::scheduler::EventScheduler;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the same simulation with another rule, which may be of another type.
     ///
-    /// It continues as after [`set_rule`](Self::set_rule).
+    /// The run continues as after [`set_rule`](Self::set_rule).
     ///
     /// ```
     /// # use granular_edmd::{Simulation, boundary::Container, initial};
@@ -40,7 +40,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns the same simulation with other walls, which may be of another type.
     ///
-    /// It continues as after [`set_boundary`](Self::set_boundary).
+    /// The run continues as after [`set_boundary`](Self::set_boundary).
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls.

@@ -30,8 +30,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.end_flight(disk);
     }
 
-    /// Finds another partner for a disk whose partner has collided since. The end of the disk's own flight in
-    /// its cell stays the same.
+    /// Finds another partner for a disk whose partner has collided since the prediction. The end of the
+    /// disk's own flight in its cell stays the same.
     #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
@@ -84,7 +84,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets `earliest` as the next collision of a disk whose next collision was `known` before.
     ///
-    /// The code does not branch on whether they are the same. The result is known last of all, and a
+    /// The code does not branch on whether the two are the same. The result is known last of all, and a
     /// misprediction would undo much work.
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {

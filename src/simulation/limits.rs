@@ -139,7 +139,7 @@ impl<'a> Watch<'a> {
         self.limits.end
     }
 
-    /// Returns the limit that the run has reached, if any.
+    /// Returns the limit that the run has reached, or `None`.
     pub(super) fn reached(&self, counters: &Counters) -> Option<RunEnd> {
         if counters.collisions() >= self.last_collision {
             return Some(RunEnd::Collisions);

@@ -11,7 +11,7 @@ use crate::{Disk, ParameterError};
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Replaces each disk by the result of `change` for its index and its present state.
     ///
-    /// The order, the [ids](Disk::id) and the times of the last collisions stay. All events are predicted
+    /// The order, the [ids](Disk::id) and the times of the last collisions are kept. All events are predicted
     /// anew. For the bits, see [`insert`](Self::insert).
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! The parting of partners that still approach each other after a collision, because of rounding.
+//! Separates partners that rounding has left approaching each other after a collision.
 
 use glam::DVec2;
 
@@ -14,8 +14,8 @@ use crate::scheduler::EventScheduler;
 /// these fail, the partners stay unchanged.
 const MOST_NUDGES: u32 = 24;
 
-/// Closing speed after a collision, relative to the speeds of the disks, above which it is not rounding: the
-/// rule leaves the disks approaching on purpose.
+/// Closing speed after a collision, relative to the speeds of the disks, above which it is not a rounding
+/// error: the rule leaves the disks approaching on purpose.
 const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -25,7 +25,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Velocities are rounded relative to themselves, not to their difference. A rule that takes all of the
     /// closing speed leaves about 1e-17 of it, of either sign. Disks that touch and still approach collide
     /// immediately, again and again. Therefore, the speed at which the disks part is raised in steps of its
-    /// rounding, until the prediction sees them part.
+    /// rounding error, until the prediction sees them part.
     #[cold]
     #[inline(never)]
     pub(super) fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {

@@ -67,7 +67,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Removes the disks that `chosen` selects by their index and state, and returns them in their order.
     ///
     /// The other disks stay in their order: the index of each becomes smaller by the number of disks removed
-    /// before it. Their [ids](Disk::id) stay. For the bits, see [`insert`](Self::insert).
+    /// before it. The disks keep their [ids](Disk::id). For the bits, see [`insert`](Self::insert).
     ///
     /// # Errors
     /// If the boundary's domain cannot hold the other disks any more, which happens only if the boundary

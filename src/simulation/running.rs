@@ -1,4 +1,4 @@
-//! Runs: from sample to sample and from collision to collision, until a limit.
+//! Runs: from sample to sample and from collision to collision, until a limit is reached.
 
 use std::ops::ControlFlow;
 
@@ -145,7 +145,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
     }
 
-    /// Advances from sample to sample until a limit.
+    /// Advances from sample to sample until a limit is reached.
     #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
         let end = watch.end();
@@ -214,7 +214,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Checks the limits and the progress of the run before the next event. Returns the limit that the run
-    /// has reached, if any.
+    /// has reached, or `None`.
     #[cold]
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {

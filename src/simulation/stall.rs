@@ -9,7 +9,7 @@ use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
-/// Least closing speed, relative to the speed of a typical disk, at which the diagnosis tries the rule.
+/// Smallest closing speed, relative to the speed of a typical disk, at which the diagnosis tries the rule.
 const SLOW: f64 = 1e-9;
 
 /// Number of windows in which a run without losses may hardly advance.
@@ -129,7 +129,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let typical = self.bodies.typical_diameter / self.clock.epoch_length;
         // The speed is halved, because disks may bounce exactly at the limiting speed of a remedy, where
         // rounding decides whether it applies. It has a lower bound, because the speed of a disk at rest is
-        // nothing but rounding.
+        // only a rounding error.
         let closing = (0.5 * contact.closing_speed()).max(SLOW * typical);
         let slow = Contact::new(closing, 0.0, contact.normal_mass(), contact.tangential_mass())
             .with_time_since_last_collision(contact.time_since_last_collision())

@@ -78,7 +78,7 @@ pub enum Warning {
     },
     /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
     /// them aside. Rows of a lattice over a floor that moves vertically bounce like this forever. Small
-    /// velocities at the start prevent it, for example from
+    /// velocities at the start prevent this, for example from
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.
@@ -91,7 +91,7 @@ pub enum Warning {
         upwards: f64,
     },
     /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in:
-    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds out.
+    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
     EnergyGained {
         /// Energy when the run was built.
         before: f64,

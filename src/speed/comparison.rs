@@ -137,8 +137,8 @@ impl Comparison {
         self.ratio
     }
 
-    /// Returns the 99.8 % confidence interval of the median ratio, whatever the distribution of the ratios,
-    /// if they are independent.
+    /// Returns the 99.8 % confidence interval of the median ratio, for independent ratios of any
+    /// distribution.
     ///
     /// The interval holds for this pair of trajectories only. A rule with other physics leads to another
     /// trajectory, which alone makes a difference of up to 2 % in a dilute gas: compare from several states,

@@ -44,8 +44,8 @@ const LARGEST: f64 = 1e100;
 /// | two times: converged | 40 % | 69 % | 81 % | 92 % | 93 % | 98 % | 99.7 % |
 /// | of these, true mean within two errors | 94 % | 96 % | 96 % | 96 % | 95 % | 95 % | 95 % |
 ///
-/// If all samples are equal, the error is 0, and it is not converged: the series does not show whether the
-/// quantity is constant, or has not changed yet.
+/// If all samples are equal, the error is 0 and not converged: the series does not show whether the quantity
+/// is constant, or has not changed yet.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one of them is not finite or above 1e100 in magnitude.

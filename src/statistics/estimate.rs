@@ -9,8 +9,8 @@ use std::fmt;
 /// converged: its error is then a lower bound. An estimate from samples that are independent, or are assumed
 /// to be, says so.
 ///
-/// A precision in the format sets the number of decimals of the mean and the error. Without a precision, the
-/// error has two significant digits. A note on the basis of the error follows in words.
+/// A precision in the format string sets the number of decimals of the mean and the error. Without a
+/// precision, the error has two significant digits. A note on the basis of the error follows in words.
 ///
 /// ```
 /// use granular_edmd::statistics::{RunningMean, block_average};
@@ -117,7 +117,7 @@ impl Estimate {
 
     /// Returns whether the error can be trusted.
     ///
-    /// If it cannot, it is only a lower bound: the series is too short for its correlations
+    /// If not, the error is only a lower bound: the series is too short for its correlations
     /// ([`block_average`](super::block_average) has the numbers), all samples are equal, or there are fewer
     /// than two samples.
     pub const fn is_converged(&self) -> bool {

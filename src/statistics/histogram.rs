@@ -46,7 +46,7 @@ pub struct HistogramBin {
     /// Density: the fraction of all numbers that are in the bin, over its width; NaN without numbers.
     ///
     /// Before there are two blocks, its error assumes independent numbers: √(p(1 − p)/n)/w for the share p
-    /// and the width w. It is then called a lower bound.
+    /// and the width w. Such an error is reported as a lower bound.
     pub density: Estimate,
 }
 

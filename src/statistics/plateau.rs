@@ -15,8 +15,8 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 /// Excess of a trusted error over its blocks' error, times the number of independent samples.
 ///
 /// A series is called converged if its error is small, and some errors are small by chance. Trusted errors
-/// are therefore too small on average, especially those of few samples. With this excess, the true mean lies
-/// within two errors in nine cases of ten or more, at any length. The table of
+/// are therefore too small on average, especially errors from few samples. With this excess, the true mean
+/// lies within two errors in nine cases of ten or more, at any length. The table of
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 
@@ -54,8 +54,8 @@ impl BlockError {
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];
-    // The error is compared with blocks of half and of a quarter of the size. The longer of two correlation
-    // times shows as a slow rise.
+    // The error is compared with the errors from blocks half and a quarter as large. The longer of two
+    // correlation times shows as a slow rise.
     let is_flat = |at: usize| {
         let here = levels[at];
         let tolerances = [1.0, 1.5].map(|factor| 1.0 + factor * here.uncertainty);

@@ -25,10 +25,10 @@ impl Estimate {
     /// different states, and a long run is worth no more than a short one: $`k`$ is then
     /// $`1/\sum_i w_i^2`$, which is smaller if the lengths differ.
     ///
-    /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
-    /// way. The scatter of two or three runs, however, may be small by chance; the errors of the runs then
-    /// count. The estimate has converged if the estimates of all runs have converged, if $`k`$ is about eight or
-    /// more, or if the runs together have 120 independent samples by this error, the number that a single run
+    /// The scatter reveals changes for which a single run is too short, such as the reversal of a roll. The
+    /// scatter of two or three runs, however, may be small by chance; the errors of the runs then count. The
+    /// estimate has converged if the estimates of all runs have converged, if $`k`$ is about eight or more,
+    /// or if the runs together have 120 independent samples by this error, the number that a single run
     /// needs. It has not if all samples are equal. Runs without samples are left out.
     ///
     /// ```

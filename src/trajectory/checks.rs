@@ -51,8 +51,8 @@ fn advice(share: f64, settings: &Settings) -> &'static str {
     }
 }
 
-/// Checks that no id appears twice. Ids from 0 on become ids from 1 on, since the id 0 means that a disk has
-/// no id.
+/// Checks that no id appears twice. Ids that count from 0 are raised by 1, since the id 0 means that a disk
+/// has no id.
 pub(super) fn number(disks: &mut [Disk], lines: &[usize]) -> Result<bool, ReadError> {
     let mut order: Vec<usize> = (0..disks.len()).collect();
     order.sort_by_key(|&index| disks[index].id());

@@ -1,4 +1,4 @@
-//! The meanings of the columns of a file, under the names of different programs.
+//! The meanings of a file's columns, whose names differ between programs.
 
 /// A property of a disk to which a column can belong. Its number is the slot of its first component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,8 +13,8 @@ const TIME: &str = "time";
 
 /// Reads a table whose first line names the columns.
 ///
-/// Commas, semicolons, tabs or spaces separate the cells; the first line shows which. A line that begins with
-/// `#` is a comment, except before the names.
+/// Commas, semicolons, tabs or spaces separate the cells; the first line shows which. After the names, a line
+/// that begins with `#` is a comment.
 pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut lines = text.lines()?;
     let Some((head, line)) = lines.next_filled() else {

@@ -41,8 +41,8 @@ impl<'a> Frame<'a> {
 /// 3. `skip_frame` returns `None` for a frame that is cut short at any byte, as a process that is killed
 ///    leaves it.
 ///
-/// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults it
-/// finds.
+/// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults the
+/// check finds.
 ///
 /// [`Recorder`](super::Recorder) collects each whole frame in memory, so a format may write in small pieces.
 /// The recorder owns the file, its compression, and the clock.

@@ -35,7 +35,7 @@ const I32: u8 = 7;
 const F32: u8 = 9;
 const F64: u8 = 10;
 
-/// Number of bytes of the name of a kind: its number and a zero.
+/// Length of a kind's name in bytes: its decimal number and a terminating NUL.
 const NAME: usize = 6;
 
 /// The chunks of each frame in their order: name, type, numbers in a row, rows.

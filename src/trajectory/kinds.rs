@@ -20,7 +20,7 @@ pub(super) fn of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     })
 }
 
-/// Returns the names of kinds in order, if they are not all numbers.
+/// Returns the kind names, sorted, or `None` if all of them are numbers.
 pub(super) fn ordered(table: &Table) -> Option<Vec<&str>> {
     let mut names = table.names();
     names.sort_unstable();

@@ -18,14 +18,14 @@ const ROUNDS: usize = 40;
 /// Numbers of the frames.
 const NUMBERS: [usize; 6] = [0, 1, 2, 3, 4, 1_000_000];
 
-/// Checks that a format keeps its contract, with some frames of made-up disks, each of which is written about
-/// sixty times, alternately and twice in a row.
+/// Checks that a format keeps its contract. Writes a few frames of made-up disks about sixty times each: in
+/// alternate rounds, once or twice in a row.
 ///
 /// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked only for the bytes that it
 /// writes. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken.
+/// The first broken promise.
 ///
 /// ```
 /// use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, laws};

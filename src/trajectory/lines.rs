@@ -56,7 +56,8 @@ impl<R: BufRead> Input<R> {
         Ok(text)
     }
 
-    /// Returns the next line without white space around it, and its number, if there is one.
+    /// Returns the next line without white space around it, and its number, or `None` at the end of the
+    /// input.
     pub(super) fn next(&mut self) -> Result<Option<(String, usize)>, ReadError> {
         let mut text = self.text();
         let is_there = self.copy(&mut text)?;
@@ -100,7 +101,7 @@ impl Text {
         self.bytes.last().is_some_and(|&last| last != b'\n')
     }
 
-    /// Returns the lines, or an error if they are not text.
+    /// Returns the lines, or an error if the bytes are not text.
     pub(super) fn lines(&self) -> Result<Lines<'_>, ReadError> {
         let text = str::from_utf8(&self.bytes).map_err(|error| {
             let before = &self.bytes[..error.valid_up_to()];

@@ -108,7 +108,7 @@ impl Packing {
     }
 
     /// Writes the ending again if it was cut off. Without the ending, readers consider the file damaged, and
-    /// it would stay so if the run ended before its next frame.
+    /// the file would stay damaged if the run ended before its next frame.
     fn mend(&self, file: &mut Growing<Locked>) -> io::Result<()> {
         let (ending, mut there, mut medium) = (self.ending(), Vec::new(), file.medium.file());
         medium.seek(SeekFrom::Start(file.length))?;

@@ -66,7 +66,7 @@ pub(super) struct Overlap {
 /// each.
 const MOST: usize = 8;
 
-/// Returns the deepest overlap beyond this share of the sum of radii, if there is one.
+/// Returns the deepest overlap beyond this share of the sum of radii, or `None` if all are smaller.
 ///
 /// The disks are taken in the order of their sizes, the largest first, and each is compared with the disks
 /// before it. As long as these overlap little, a square holds only a few of them.

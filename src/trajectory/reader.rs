@@ -37,7 +37,8 @@ use crate::quantity::non_negative;
 ///
 /// The letter or number of a component may follow the name of the property, as in `vel_x`, `Position.X` or
 /// `velocity:0`. Two columns of the same quantity must agree. Disks keep the order of the file. They must lie
-/// in one plane; its z is ignored. [`State::notes`] lists everything that the reader ignores or changes.
+/// in one plane; the coordinate z is ignored. [`State::notes`] lists everything that the reader ignores or
+/// changes.
 ///
 /// # Examples
 /// The example turns a state of soft disks, whose contacts overlap, into a start for hard disks:
@@ -120,7 +121,7 @@ impl Reader {
     /// A simulation needs disks that do not overlap: see [`with_shrunk_radii`](Self::with_shrunk_radii).
     ///
     /// # Errors
-    /// If it is negative, infinite or NaN.
+    /// If the tolerance is negative, infinite or NaN.
     pub fn with_tolerance(mut self, tolerance: f64) -> Result<Self, ParameterError> {
         self.settings.tolerance = Some(non_negative("tolerance", tolerance)?);
         Ok(self)
@@ -128,9 +129,9 @@ impl Reader {
 
     /// Returns the same reader with all radii shrunk in proportion until no disks overlap.
     ///
-    /// This turns states of soft disks, and files with few digits, into initial states for hard disks.
+    /// This method turns states of soft disks, and files with few digits, into initial states for hard disks.
     /// [`State::shrunk`] says by how much. With a [tolerance](Self::with_tolerance), deeper overlaps remain
-    /// an error. Overlaps of more than half the sum of the radii are always an error. Masses stay.
+    /// an error. Overlaps of more than half the sum of the radii are always an error. Masses do not change.
     #[must_use]
     pub const fn with_shrunk_radii(mut self) -> Self {
         self.settings.shrinks = true;
@@ -142,7 +143,7 @@ impl Reader {
     /// A GSD file leaves out masses that are all 1; [`State::notes`] says whether the density was used.
     ///
     /// # Errors
-    /// If it is not in `[1e-30, 1e30]`.
+    /// If the density is not in `[1e-30, 1e30]`.
     pub fn with_density(mut self, density: f64) -> Result<Self, ParameterError> {
         self.settings.density = Some(scale("density", density)?);
         Ok(self)
@@ -151,7 +152,7 @@ impl Reader {
     /// Returns the same reader, with this radius for the disks of a file without radii.
     ///
     /// # Errors
-    /// If it is not in `[1e-30, 1e30]`.
+    /// If the radius is not in `[1e-30, 1e30]`.
     pub fn with_radius(mut self, radius: f64) -> Result<Self, ParameterError> {
         self.settings.radius = Some(scale("radius", radius)?);
         Ok(self)

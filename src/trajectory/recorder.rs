@@ -20,8 +20,9 @@ use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
 /// # Continuing a file
 /// If the process was killed, resume the run from its checkpoint, and [`append`](Self::append) to its file.
 /// The run makes the frames after the checkpoint again, with the same bits. The recorder compares them with
-/// the frames in the file and does not write them twice. If they differ, the file is of another run, and the
-/// error says so. If the process died in the middle of a frame, the next frame overwrites the incomplete one.
+/// the frames in the file and does not write them twice. If they differ, the file belongs to another run, and
+/// the error says so. If the process died in the middle of a frame, the next frame overwrites the incomplete
+/// one.
 ///
 /// The recorder continues with the first sampling time after the last frame of the file. If the run begins
 /// later than that, for example because its checkpoint is newer than the file, the run ends with an error,

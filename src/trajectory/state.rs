@@ -7,9 +7,9 @@ use crate::{Disk, Gravity};
 
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
-/// A [`Reader`](super::Reader) reads it. No two disks overlap by more than the reader's tolerance, and no
-/// center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks them against the
-/// walls.
+/// A [`Reader`](super::Reader) reads it from a file. No two disks overlap by more than the reader's
+/// tolerance, and no center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks
+/// them against the walls.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
@@ -82,7 +82,7 @@ impl State {
     /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. This order is
     /// alphabetical, unless the file numbers the kinds.
     ///
-    /// It is empty if the kinds have only numbers in the file.
+    /// The list is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {
         &self.kind_names
     }

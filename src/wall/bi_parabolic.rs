@@ -12,8 +12,8 @@ use super::{AccelerationBounds, WallMotion, WallState};
 /// ```
 ///
 /// so it has the amplitude and the period of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and
-/// the acceleration is $`\mp 8A/H^2`$. Every contact is the root of a parabola, which is exact and needs no
-/// iteration.
+/// the acceleration is $`\mp 8A/H^2`$. The time of every contact is the root of a parabola, which is exact
+/// and needs no iteration.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, WallMotion};

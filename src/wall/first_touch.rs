@@ -3,10 +3,10 @@
 use super::WallMotion;
 use crate::roots::first_descent;
 
-/// Rounding of a gap, relative to the two lengths whose difference is the gap.
+/// Rounding error of a gap, relative to the two lengths whose difference is the gap.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Least room for a step, in units of the rounding. It makes sure that a search ends.
+/// Smallest room for a step, in units of the rounding error. It makes sure that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
 /// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
@@ -66,7 +66,7 @@ impl<T> From<Option<T>> for FirstTouch<T> {
 /// The approach of a surface to a wall: its height above the wall's position at rest, along the wall's
 /// normal.
 ///
-/// Its times are phases of the wall's motion.
+/// Its `time` is a phase of the wall's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     time: f64,
@@ -94,7 +94,7 @@ impl Approach {
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
         // Under a downward pull, the surface is lowest at the first or the last of these times, so two tests
-        // are enough. They do not branch, since most flights pass both.
+        // are enough. The tests do not branch, since most flights pass both.
         (self.acceleration <= 0.0) & (self.height > height) & (self.height(until) > height)
     }
 
@@ -109,7 +109,7 @@ impl Approach {
 /// On a piece on which the wall accelerates by at most $`a_{max}`$, the gap is never below the parabola with
 /// that acceleration. The search steps to the root of the parabola, where the gap is still open, and repeats
 /// until the gap is closed. One step is exact if the acceleration is constant. Otherwise, the steps shrink
-/// quadratically, down to the rounding of the gap. The search never steps over a contact. A gap that is
+/// quadratically, down to the rounding error of the gap. The search never steps over a contact. A gap that is
 /// already closed at the start counts only if it closes further.
 ///
 /// The search skips the parts of a flight that are beyond the reach of the wall, at the start and after a
@@ -275,7 +275,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the mean acceleration of the gap while it falls through its rounding, within the piece.
+    /// Returns the mean acceleration of the gap while it falls through its rounding error, within the piece.
     ///
     /// The acceleration comes from the change of the rate, since the motion only gives bounds on the
     /// acceleration.
@@ -288,14 +288,14 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
     /// The room is the gap plus its rounding error, so each step advances, and the last step ends where the
-    /// gap is zero within rounding. A gap that is negative by more than its rounding gets almost no room, so
-    /// that no surface goes much deeper into a wall than it already is.
+    /// gap is zero within rounding. A gap that is negative by more than its rounding error gets almost no
+    /// room, so that no surface goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the value below which a gap counts as closed: the rounding of its lengths, and of the time at
-    /// this speed.
+    /// Returns the value below which a gap counts as closed: the rounding error of the lengths, plus `rate`
+    /// times the rounding error of `time`.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

@@ -46,7 +46,7 @@ const STEPS: u32 = 12;
 /// from the disks, and only if the motion declares jumps. The motion must repeat after its period, and return
 /// the same values when it is called again. The check can miss a fault that is narrower than a five-hundredth
 /// of a piece, so check a motion with one long piece in several short intervals. It refuses an interval of
-/// more than ten thousand pieces. The page "Validation" says which planted faults it finds.
+/// more than ten thousand pieces. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -220,8 +220,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// The slope of the velocity is measured over ever shorter steps. Where the acceleration is smooth, half
     /// of a step leaves an error a quarter as large, so three slopes in a row show the error of the last: it
     /// is a fifteenth of the sum of their differences. If a step is not short enough for this, or the
-    /// acceleration jumps within it, these differences are large. Twice their sum is allowed, and the
-    /// rounding.
+    /// acceleration jumps within it, these differences are large. Twice their sum is allowed, plus the
+    /// rounding error.
     fn strength(&self, start: f64, length: f64, bounds: &AccelerationBounds) -> Result<(), Violation> {
         if length < SHORT * (1.0 + start.abs()) {
             return Ok(());
@@ -245,7 +245,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     }
 
     /// Returns the slope of the velocity at the start of two steps, exact if the acceleration is linear
-    /// there, and its rounding.
+    /// there, and the rounding error of the slope.
     fn slope(&self, place: f64, step: f64, bounds: &AccelerationBounds) -> Result<(f64, f64), Violation> {
         let [now, next, last] = [0.0, 1.0, 2.0].map(|count| place + count * step);
         let [now, next, last] = [self.sample(now)?, self.sample(next)?, self.sample(last)?];
@@ -277,7 +277,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks that the motion is the same some periods later, at a phase inside a piece of this length.
     fn repeats(&self, phase: f64, length: f64) -> Result<(), Violation> {
         let Some(period) = self.motion.period() else { return Ok(()) };
-        // A piece as short as the rounding of its times may be elsewhere, or missing, in the next period.
+        // A piece as short as the rounding error of its times may be elsewhere, or missing, in the next
+        // period.
         if length < SHORT * (phase.abs() + period) {
             return Ok(());
         }
@@ -305,13 +306,15 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Returns the rounding of a displacement: the rounding of its terms, and of the phase at this speed.
+    /// Returns the rounding error of a displacement: the error of its terms, plus the speed times the error
+    /// of the phase.
     fn length_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
         ROUNDING * (self.length() + speed * sample.phase.abs())
     }
 
-    /// Returns the rounding of a velocity: the rounding of its terms, and of the phase at this acceleration.
+    /// Returns the rounding error of a velocity: the error of its terms, plus the acceleration times the
+    /// error of the phase.
     fn speed_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let acceleration = bounds.min.abs().max(bounds.max.abs());
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);

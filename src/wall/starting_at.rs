@@ -83,7 +83,7 @@ crate::gate::from_file! {
     StartingAt { motion: Motion, start: f64 } => Self::of(motion, start)
 }
 
-/// Largest number of pieces that may end in the rounding of one phase.
+/// Largest number of pieces that may end within the rounding error of one phase.
 const PIECES: u32 = 8;
 
 /// Returns the bounds of a motion that is ahead by `lead`, at a phase.

@@ -173,6 +173,6 @@ impl Arc {
 fn distance_to_chord(from: DVec2, to: DVec2) -> f64 {
     let chord = to - from;
     let share = (-from.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
-    // A chord without length gives a share that is not a number.
+    // For a chord of length zero, the share is NaN.
     if share.is_nan() { from.length() } else { (from + share * chord).length() }
 }

@@ -43,7 +43,8 @@ impl Brick {
     }
 
     /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
-    /// If the disk grows, the true disk has no earlier touch, but need not touch at that time either.
+    /// If `path` has an error bound, the disk grows to contain the actual disk. The actual disk then touches
+    /// no earlier, and possibly not at that time.
     ///
     /// The disk can touch only the side of the brick on which its center is. A disk whose center is behind
     /// the brick flies on until it is in front. Only touches beside the brick count. At its ends, the next
@@ -89,7 +90,7 @@ impl Brick {
         if self.free.has(side) {
             let gap = self.gap(&here, side);
             // A gap that rounding has closed counts only while it closes further. A gap that growth has
-            // closed may still be open for the true disk, so the search must look again from here.
+            // closed may still be open for the actual disk, so the search must look again from here.
             if growth > 0.0 && gap[0] <= 0.0 {
                 return Some(from);
             }
@@ -97,7 +98,7 @@ impl Brick {
         }
         let front = if side == Side::Left { Side::Right } else { Side::Left };
         if path.spread > 0.0 {
-            // The true disk appears in front of the brick no earlier than the shrinking disk. The search
+            // The actual disk appears in front of the brick no earlier than the shrinking disk. The search
             // looks again from that time.
             let shrinking = here.shrinking(path.radius);
             let opens = first_descent_of_quartic(&self.gap(&shrinking, front).map(|c| -c), wait)?;

@@ -7,7 +7,7 @@ use crate::Flight;
 /// The path of a disk's center relative to a brick, from a given time on.
 ///
 /// The center is known up to an error that grows with time. To allow for it, the disk grows: its radius is
-/// `radius + widening·t + ½·spread·t²`. A grown disk touches no later than the true one.
+/// `radius + widening·t + ½·spread·t²`. The grown disk touches no later than the actual disk.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::boundary) struct Path {
     pub(in crate::boundary) place: DVec2,

@@ -7,7 +7,7 @@ use crate::quantity::finite;
 use crate::wall::{Motion, Scaled, WallMotion};
 
 impl Container {
-    /// Returns the same container with a wall whose surface moves along itself at this speed, like a conveyor
+    /// Returns the same container with a wall whose surface moves tangentially at this speed, like a conveyor
     /// belt.
     ///
     /// A positive speed moves floor and lid to the right, and the sides up.
@@ -30,7 +30,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall that moves along itself.
+    /// Returns the same container with a wall that slides tangentially.
     ///
     /// A positive displacement moves floor and lid to the right, and the sides up. The wall may also move
     /// along its normal.

@@ -15,12 +15,12 @@ use crate::Violation;
 use crate::boundary::{Boundary, Domain, Probe, Region};
 use crate::violation::require;
 
-/// Least and largest number of times that a region is halved where a wall goes through.
+/// Smallest and largest number of halvings of a region that a wall crosses.
 const FEWEST: u32 = 12;
 const MOST: u32 = 24;
 
-/// Largest half side of a cell in which a wall may count as straight, relative to the radius. A wall has no
-/// details below the radius, as seen by the center of a disk.
+/// Largest half side of a cell in which a wall may count as straight, relative to the radius. The curve that
+/// bounds the centers of disks has no features smaller than the radius.
 const FINE: f64 = 0.125;
 
 /// Largest deviation of a gap from the gap to a straight wall, relative to the half diagonal of the cell.

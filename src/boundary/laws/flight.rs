@@ -16,8 +16,8 @@ const SAMPLES: u32 = 200;
 /// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
-/// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides the time of
-/// such a touch, or that there is none.
+/// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides when such a
+/// touch happens, and whether it happens.
 const GRAZING: f64 = 1e-2;
 
 /// Largest relative error of a velocity with another time origin.
@@ -134,12 +134,12 @@ fn check_touch(
     Ok(())
 }
 
-/// Returns the distance by which a gap closes in the rounding of an absolute time. A motion without a period
-/// knows its phase no better.
+/// Returns the distance by which a gap closes during the rounding error of an absolute time. The phase of a
+/// motion without a period has this error.
 fn lateness(trial: &Trial<'_>, flight: &Flight, Touch { wall, time, .. }: Touch) -> f64 {
     let surface = trial.boundary.surface(wall, flight.position(time), time);
     let rate = (flight.velocity(time) - surface.velocity).dot(surface.normal);
-    // A rate that is not a number is found by the check of the surface.
+    // The check of the surface finds a rate that is NaN.
     (16.0 * f64::EPSILON * (trial.origin + time) * rate.abs()).max(0.0)
 }
 
@@ -182,8 +182,8 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
 }
 
-/// Checks that a flight which ends before the touch finds no touch, a flight that ends just after it finds
-/// it, and a flight that begins at the touch finds it immediately.
+/// Checks that a flight that ends before the touch finds none, that a flight that ends just after the touch
+/// finds it, and that a flight that begins at the touch finds it immediately.
 fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
     let Touch { time, wall, .. } = meeting.touch;
     let half = flight.time() + 0.5 * (time - flight.time());
@@ -218,7 +218,7 @@ fn check_origin(
     let (origin, start) = (trial.origin, flight.time());
     let state = trial.boundary.state();
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
-    // react do not know their past, so the other origin is later for them.
+    // react keep no record of their past, so for them the other origin is later.
     let earlier = origin.min(LATEST * trial.length() / trial.speed);
     let shift = 0.37 * if state.is_empty() { earlier } else { -start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
@@ -227,7 +227,7 @@ fn check_origin(
     let response = |trial: &Trial<'_>, meeting: &Meeting, shift: f64| {
         let Touch { wall, time, .. } = meeting.touch;
         let Surface { response, .. } = trial.boundary.surface(wall, meeting.place, time + shift);
-        // Only rules are compared as text: a temperature that varies with time has rounding.
+        // Only rules are compared as text: a temperature that varies with time has a rounding error.
         match response {
             Response::Thermal(thermal) => {
                 (format!("Thermal, slip {}", thermal.slip()), thermal.temperature())
@@ -275,8 +275,8 @@ fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
     bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
 }
 
-/// Returns whether two surfaces are the same up to the rounding of late times: on a wall that moves, an error
-/// of the time is an error of the position.
+/// Returns whether two surfaces are the same up to the rounding error of late times, which shifts a wall that
+/// moves.
 fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
     let late = 1.0 + trial.origin * trial.speed / trial.length();
     let slack = SAME * (one.velocity.length() + trial.speed * late);
@@ -292,7 +292,7 @@ fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
         && one.kind == other.kind
 }
 
-/// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding.
+/// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding error.
 fn slack(trial: &Trial<'_>, meeting: &Meeting) -> f64 {
     4.0 * trial.rounding() / meeting.rate.abs()
 }

@@ -20,9 +20,9 @@ const CONTACTS: usize = 300;
 /// one type with equal results on a thousand flights have the same fingerprint. Boundaries without a
 /// fingerprint are not compared.
 ///
-/// The flights are as in [`check`](super::check), also in their times and kinds. Boundaries that differ only
-/// elsewhere, for example in walls that begin to move later, are alike to the check, and if both are of one
-/// type, it refuses different fingerprints. Boundaries of two types may act alike and have different
+/// The flights are as in [`check`](super::check), with the same ranges of times and kinds. The check cannot
+/// see other differences, for example walls that begin to move later. If two such boundaries are of one type,
+/// the check refuses different fingerprints. Boundaries of two types may act alike and have different
 /// fingerprints.
 ///
 /// The check sets the time origins of both boundaries, and gives the second the state of the first.
@@ -75,7 +75,7 @@ where
             return judge(Some(format!("on {flight:?}: {answers:?}")));
         }
     }
-    // Walls that begin otherwise, and then are the same, may or may not have the same fingerprint.
+    // Walls that differ at first and agree later may or may not have the same fingerprint.
     if are_alike { judge(None) } else { Ok(()) }
 }
 

@@ -76,8 +76,8 @@ fn answers(trial: &Trial<'_>, touch: Touch, place: DVec2) -> [f64; 4] {
     [velocity.x, velocity.y, now.map_or(0.0, |found| found.depth), then.map_or(0.0, |found| found.depth)]
 }
 
-/// Checks an impact along the normal and along the surface, and a couple, in units of the speeds that they
-/// give.
+/// Checks an impact along the normal and along the surface, and a couple, each given by the speed that it
+/// adds to the wall.
 fn check_blow(
     trial: &mut Trial<'_>,
     touch: Touch,

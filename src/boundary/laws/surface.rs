@@ -19,7 +19,8 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
-/// Share of a step by which the point of a touch moves at least, unless it is at a tip.
+/// Smallest displacement of the point of contact, as a fraction of the step, for which it does not count as a
+/// tip.
 const TIP: f64 = 0.02;
 
 /// Number of contacts in which the rule of a wall is compared.
@@ -82,7 +83,7 @@ struct Around<'a, 'b> {
 }
 
 impl Around<'_, '_> {
-    /// Returns the overlap of a slightly larger disk that is moved: its depth and its wall.
+    /// Returns the overlap of a slightly larger disk that is displaced by `moved`: its depth and its wall.
     fn at(&self, moved: DVec2, later: f64) -> (f64, usize) {
         let larger = WIDE * self.trial.radius;
         let found = self.trial.depth(self.place + moved, larger, self.time + later);

@@ -19,7 +19,7 @@ const MOST_SEARCHES: u32 = 10_000;
 /// rounding.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
-/// Number of touches of a wall after which overlaps must have named it.
+/// Number of touches of a wall after which at least one overlap must have named the wall.
 const TOUCHES: u32 = 8;
 
 /// A boundary under test, and the numbers of the test.

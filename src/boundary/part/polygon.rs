@@ -72,8 +72,8 @@ fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
 
 /// Returns whether two sides have a point in common, other than the common end of neighbors.
 fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> bool {
-    // Two sides cross if each has its ends on both sides of the other. Signs decide, since the position of
-    // the crossing would need a division, and its rounding.
+    // Two sides cross if each has its ends on both sides of the other. Signs decide: the position of the
+    // crossing would need a division, which rounds.
     let side = |(from, to): (DVec2, DVec2), place: DVec2| (to - from).perp_dot(place - from);
     let within = |(from, to): (DVec2, DVec2), place: DVec2| {
         let (low, high) = (from.min(to), from.max(to));

@@ -60,7 +60,7 @@ impl Phase {
         Self { along: self.along - start.along, turning: self.turning - start.turning }
     }
 
-    /// Returns the largest magnitude.
+    /// Returns the larger magnitude of the two phases.
     pub(in crate::boundary) fn size(self) -> f64 {
         self.along.abs().max(self.turning.abs())
     }
@@ -203,8 +203,8 @@ impl Travel {
         along.into_iter().chain(turning).reduce(|a, b| a + b).unwrap_or(DVec2::ZERO)
     }
 
-    /// Returns a flight in the frame of the part, from a time on and for at most `longest`. The phase belongs
-    /// to time 0.
+    /// Returns a flight in the frame of the part, from a time on and for at most `longest`. `phase` is the
+    /// phase at time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
         let path = Path::exact(place, velocity, pull, flight.radius());
@@ -235,8 +235,8 @@ impl Travel {
         self.reach().1 - self.reach().0
     }
 
-    /// Returns the time, at most `wait`, until a disk on this path in the frame at rest enters the strip that
-    /// a brick of the part sweeps: all positions at which the disk touches the brick at some phase.
+    /// Returns the time, at most `wait`, until the disk enters the brick's strip: all positions at which the
+    /// disk touches the brick at some phase. `path` is in the frame at rest.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         brick: &Brick,
@@ -299,8 +299,8 @@ impl Travel {
     }
 }
 
-/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. The
-/// components of the path refer to axes that do not turn.
+/// Returns a path in the frame that turns about the origin, with the largest error of this path in this time.
+/// The components of the path refer to axes that do not turn.
 ///
 /// The third derivative of the path there is $`-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp`$. A bound
 /// on it, times a third of the time, is an acceleration that bounds the error.

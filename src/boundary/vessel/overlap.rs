@@ -12,7 +12,7 @@ use crate::boundary::part::Sighted;
 use crate::boundary::{Boundary, Overlap, Probe};
 
 impl Vessel {
-    /// Returns the wall of a part into which a disk reaches deepest, and the depth.
+    /// Returns the wall of a part that a disk penetrates most deeply, and the depth.
     pub(super) fn overlap_with_parts(&self, probe: &Probe) -> Option<Overlap> {
         let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
         let filled = self.filled.get(self.index.cell(position)).into_iter().flatten();

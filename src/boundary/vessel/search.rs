@@ -32,7 +32,7 @@ const IN_WALL: f64 = 1e-9;
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
 /// Radius of the point that stands for the center of a disk at a line for centers, relative to the radius of
-/// the disk. It is far above rounding and far below any length that is measured.
+/// the disk. It is far above rounding errors and far below any length that is measured.
 ///
 /// A point without a radius could get through the line, because rounding can put it behind the line as it
 /// arrives. If all events are predicted anew just then, the new search finds a point that flies away from the
@@ -42,8 +42,8 @@ const CENTER: f64 = 1e-7;
 /// Longest flight for which entries into the strip are computed. Squares of longer times would overflow.
 const LONGEST: f64 = 1e150;
 
-/// Least period of a part, in units of the distance between two floating-point times. Floating-point times do
-/// not determine the position of a faster part.
+/// Smallest period of a part, in units of the distance between two floating-point times. Floating-point times
+/// do not determine the position of a faster part.
 const LEAST_PERIOD: f64 = 64.0;
 
 impl Vessel {
@@ -197,7 +197,7 @@ impl Vessel {
 /// The search follows the flight in the frame of the part, in which the brick is at rest. On a piece of time
 /// in which the part has constant acceleration, the path in that frame is a parabola like any other, and its
 /// first touch is exact. Otherwise, the path is known up to an error. A disk that grows by this error touches
-/// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
+/// no later than the actual disk. The search advances to the touch of the growing disk, and starts again from
 /// there, until the gap is within rounding. It never steps over a touch.
 ///
 /// A fast part has many pieces of motion during a flight. A disk, however, can touch the part only in the
@@ -285,9 +285,9 @@ impl Search<'_> {
         if brick.wait_for_touch(&at_once, 0.0).is_some() {
             return Step::Touch(time);
         }
-        // In each step the gap may close by its rounding, so that the search advances. Otherwise, the search
-        // would follow a disk that leaves the brick at a speed near rounding in steps too small to change
-        // anything.
+        // In each step the gap may close by its rounding error, so that the search advances. Otherwise, the
+        // search would follow a disk that leaves the brick at a speed near rounding in steps too small to
+        // change anything.
         let smaller = Path { radius: path.radius - rounding, ..path };
         let open = brick.wait_for_touch(&smaller, wait).unwrap_or(wait);
         Step::Open(time + open.max(time_for(&path, rounding)))
@@ -298,8 +298,8 @@ impl Search<'_> {
     fn enters_strip(&self, time: f64) -> Option<f64> {
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
         let (travel, radius) = (self.placed.part.travel(), self.flight.radius());
-        // The margin is far above the rounding of lengths, and far below the stroke of any motion that `put`
-        // accepts: a disk that waits in the margin costs steps.
+        // The margin is far above the rounding error of lengths, and far below the stroke of any motion that
+        // `put` accepts: a disk that waits in the margin costs steps.
         let radius = radius + MARGIN * (radius + place.abs().max_element() + self.placed.size);
         let path = Path::exact(place, velocity, self.flight.acceleration(), radius);
         let wait = (self.until - time).clamp(0.0, LONGEST);

@@ -74,7 +74,7 @@ pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
 /// Returns contacts of ordinary speeds with mild partners only. The extreme contacts cycle through the
 /// partners, so each pair of partners, mild or not, meets all speeds and masses.
 ///
-/// The disks are rings of mass 1: their tangential mass, 0.25, reads better than a sixth.
+/// The disks are rings of mass 1: their tangential mass, 0.25, is easier to read than one sixth.
 fn mild_contacts() -> impl Iterator<Item = Contact> {
     MILD_SPEEDS.into_iter().flat_map(|(closing, slip)| {
         let contact = Contact::new(closing, slip, 0.5, 0.25);
@@ -82,8 +82,8 @@ fn mild_contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
-/// Returns an ordinary contact of each kind with the same kind, with the default kind, with a wall, and, if
-/// it is below 256, with all smaller kinds.
+/// Returns ordinary contacts of each kind with the same kind, the default kind and a wall and, for kinds
+/// below 256, with all smaller kinds.
 pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
     let contact = Contact::new(1.0, 0.5, 0.5, 0.25);
     (0..u16::MAX).flat_map(move |number| {

@@ -27,8 +27,8 @@ const KINDS: [Kind; 23] = {
 const STRIDE: usize = 7919;
 
 /// The promises of a rule. Every rule also promises finite impulses that separate the surfaces and repeat to
-/// the bit, and the same physics for partners in either order and for the mirror image, unless it says
-/// otherwise.
+/// the bit, and the same physics for partners in either order and for the mirror image, unless its promises
+/// say otherwise.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check};
@@ -80,7 +80,8 @@ impl Promises {
         Self { opposed_slip: true, static_friction: Some(static_friction), ..self }
     }
 
-    /// Returns the same promises, with a tangential impulse that opposes the slip, within a cone or not.
+    /// Returns the same promises, with a tangential impulse that opposes the slip, whether or not it stays
+    /// within a cone.
     pub const fn with_opposed_slip(self) -> Self {
         Self { opposed_slip: true, ..self }
     }
@@ -131,7 +132,7 @@ impl Promises {
     /// Checks that `impulse` keeps these promises.
     ///
     /// # Errors
-    /// The first promise that is broken.
+    /// The first broken promise.
     pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
         if self.energy_gain { check_separation(contact, impulse) } else { check_impulse(contact, impulse) }?;
         if let Some(static_friction) = self.static_friction {
@@ -193,7 +194,7 @@ impl Promises {
 /// has each pair of kinds below 256. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken, at the simplest contact that the check finds for the same promise.
+/// The first broken promise, at the simplest contact that the check finds for the same promise.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
     let answer = |contact: &Contact| promises.check_answer(rule, contact);
     let simplify = |contact, violation| simplest(contact, violation, |contact| answer(contact).err());
@@ -220,8 +221,8 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
 /// with equal impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint
 /// are not compared.
 ///
-/// Pairs of different kinds are compared up to kind 255, most of them in one contact. Rules that differ only
-/// elsewhere are alike to the check, and if both are of one type, it refuses different fingerprints. Rules of
+/// Pairs of different kinds are compared up to kind 255, most of them in one contact. The check cannot see
+/// other differences. If two such rules are of one type, the check refuses different fingerprints. Rules of
 /// two types may act alike and have different fingerprints.
 ///
 /// # Errors

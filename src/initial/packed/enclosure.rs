@@ -34,9 +34,8 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     /// Checks that each wall that reacts stands still until it is hit, and that the reason of a failed run
     /// names no sink.
     ///
-    /// The interior ends at the initial position of a wall that reacts. If that wall moves far, it comes
-    /// among the disks. A line that takes out centers lies among the disks, which it would have to hold back
-    /// here.
+    /// The interior ends at the initial position of a wall that reacts. If that wall moves far, it gets among
+    /// the disks. A line that takes out centers lies among the disks and would have to hold them back here.
     pub(super) fn check_walls(&self, reason: &str) -> Result<(), ParameterError> {
         (0..self.boundary.wall_count()).try_for_each(|wall| stands(self.boundary, wall, &self.room, reason))
     }

@@ -14,7 +14,7 @@ use crate::{Disk, ParameterError, Simulation};
 /// mix of radii.
 const START: f64 = 0.35;
 
-/// Factor by which the disks are smaller in the next attempt, if obstacles leave less room than the area
+/// Factor by which the radii shrink for the next attempt, if obstacles leave less room than the area
 /// suggests.
 const SMALLER: f64 = 0.7;
 
@@ -28,7 +28,7 @@ const COLLISIONS: usize = 4;
 /// Longest time between two steps, in which a disk of the largest size moves by about its radius.
 const LONGEST: f64 = 1.0;
 
-/// Least mass, in units of the largest disk's mass.
+/// Smallest mass, in units of the largest disk's mass.
 const LEAST_MASS: f64 = 1e-20;
 
 /// Fraction of a gap into which a disk may grow, so that it touches nothing.
@@ -43,7 +43,7 @@ pub(super) struct Packing<'a> {
 }
 
 impl<'a> Packing<'a> {
-    /// Places the disks at random, shrunk so much that they find room.
+    /// Shrinks the disks until there is room for them, and places them at random.
     pub(super) fn begin<B: Boundary + ?Sized>(
         room: &Enclosure<B>,
         full: &'a [Disk],

@@ -55,7 +55,7 @@ impl Match {
 
     /// Puts a player into a seat.
     // One number is written, after all have been read. If a whole vector were written back, the compiler
-    // would make it a write by a mask, and the next read of the vector would wait for that.
+    // would make it a write by a mask, and the next read of the vector would wait for this write.
     #[inline(always)]
     fn seat(&mut self, seat: usize, player: Player) {
         self.times.0[seat % PLAYERS] = player.due;

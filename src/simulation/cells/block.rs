@@ -91,7 +91,7 @@ impl Block {
         self.0 = slots;
     }
 
-    /// Replaces a disk by another, if it is in the block and not in the crowd. Returns whether the disk was
+    /// Replaces `disk` with `by` if `disk` is in the block and not in the crowd. Returns whether the disk was
     /// in the block.
     pub(super) fn replace(&mut self, disk: u32, by: u32) -> bool {
         let is_here = self.slots()[..SLOTS - 1].contains(&disk);

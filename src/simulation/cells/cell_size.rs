@@ -1,6 +1,6 @@
 //! Sizes of neighbor cells.
 
-/// Number of cells of the smallest class that is always allowed.
+/// Number of cells of the smallest class that is allowed however few disks there are.
 pub(super) const SPARE_SMALL_CELLS: f64 = 64.0;
 
 /// Width of a cell in free paths, per unit of [`CellSize::pitch`].

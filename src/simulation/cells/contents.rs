@@ -80,8 +80,8 @@ impl Contents {
         }
     }
 
-    /// Returns the room that the disks of `cells` cells need. Even after the largest number of disks, there
-    /// is room for the rest of a window.
+    /// Returns the room that the disks of `cells` cells need. There is room for the rest of a window even
+    /// behind the largest number of disks.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {
         cells * SLOTS + self.crowds.room() + WINDOW

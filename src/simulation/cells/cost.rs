@@ -27,7 +27,7 @@ const EVENT: f64 = 20.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Group {
     pub(super) class: SizeClass,
-    /// Sum of the collisions of all its disks in a unit of time.
+    /// Collisions of all its disks per unit of time.
     collisions: f64,
     /// Sum of the speeds of all its disks.
     speed: f64,
@@ -117,7 +117,7 @@ impl Gridded {
         (LOOP + all * (LOOK * homes + disks), LOOP + fresh * ((LOOK + 2.0 * CHANGE) * homes + disks))
     }
 
-    /// Returns the cost of all events of this group in a unit of time.
+    /// Returns the cost of all events of this group per unit of time.
     fn cost(&self, smaller: &[Self], larger: &[Self]) -> f64 {
         let visitors: f64 = larger.iter().map(|other| other.visitors(self)).sum();
         let common = EVENT + self.among_equals() + LOOK + visitors;
@@ -129,7 +129,7 @@ impl Gridded {
     }
 }
 
-/// Returns the cost of all events in a unit of time, for disks in these groups and a system of this area.
+/// Returns the cost of all events per unit of time, for disks in these groups and a system of this area.
 pub(super) fn cost(groups: &[Group], area: f64) -> f64 {
     let all: Vec<Gridded> = (0..groups.len()).map(|index| Gridded::new(groups, index, area)).collect();
     all.iter().enumerate().map(|(index, group)| group.cost(&all[..index], &all[index + 1..])).sum()

@@ -8,7 +8,7 @@ const SEATS: usize = 6;
 /// Number of parts for which there is room from the start.
 const FEW: usize = 16;
 
-/// Number of cells that share the room for one part.
+/// Number of cells per part for which memory is reserved at the start.
 const CELLS: usize = 1024;
 
 /// No part: the end of a chain.
@@ -71,7 +71,7 @@ impl Crowds {
         (disk, (next != NONE).then_some(next))
     }
 
-    /// Replaces a disk by another, if it is in this crowd.
+    /// Replaces `disk` with `by` if `disk` is in this crowd.
     pub(super) fn replace(&mut self, mut crowd: u32, disk: u32, by: u32) {
         while let Some(part) = self.parts.get_mut(crowd as usize) {
             if let Some(seat) = part.seats[..part.count as usize].iter_mut().find(|seat| **seat == disk) {

@@ -35,7 +35,7 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
     joined
 }
 
-/// Adds, removes or shifts one bound after another as long as this lowers the cost. Returns the least cost,
+/// Adds, removes or shifts one bound after another as long as this lowers the cost. Returns the lowest cost,
 /// and the bounds.
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);

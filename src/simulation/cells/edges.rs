@@ -7,7 +7,8 @@ use crate::boundary::Domain;
 pub(super) fn widen(edges: &mut [f64], margin: f64) {
     // Cells keep their disks up to a margin beyond their edges (`Grid::region`). At periodic sides, the
     // margin would take disks out of the domain. `Grid::new` therefore moves the outermost edges inward by
-    // the margin, so that edge and margin together end at the side, and `Grid::edges` moves them back.
+    // the margin, so that the outermost cells, margin included, end at the side of the domain, and
+    // `Grid::edges` moves them back.
     if let [first, .., last] = edges {
         *first -= margin;
         *last += margin;

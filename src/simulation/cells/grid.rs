@@ -84,7 +84,7 @@ impl Grid {
         [range(&self.column_edges, self.margin.x), range(&self.row_edges, self.margin.y)]
     }
 
-    /// Iterates over all cells outside the ring.
+    /// Iterates over all real cells, without the ring of ghosts.
     pub(in crate::simulation) fn places(&self) -> impl Iterator<Item = Place> + use<> {
         let Layout { columns, rows, .. } = self.layout;
         (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))

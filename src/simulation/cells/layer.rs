@@ -24,13 +24,13 @@ use crate::boundary::{Boundary, Domain, Region};
 /// Largest number of homes per disk. More would cost time, since searches also visit empty homes.
 const HOMES_PER_DISK: f64 = 4.0;
 
-/// Number of homes that is always allowed.
+/// Number of homes that is allowed however few disks there are.
 const SPARE_HOMES: f64 = 16.0;
 
 /// Largest number of doublings by which cells are finer than homes.
 const FINEST: u32 = 10;
 
-/// Number of columns or rows at which cells are not made finer any more.
+/// Number of columns or rows from which on cells are not made finer.
 const MOST_LINES: u32 = 1 << 20;
 
 /// The layout of the cells of a class, and the number of cells that make up a home.

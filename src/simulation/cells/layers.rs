@@ -81,7 +81,7 @@ pub(super) fn layouts(
         layout.narrower(widest(domain, &grid, diameter, classes[class].largest))
     };
     // If one class has no room for cells that are narrow enough, no class gets a layer: all disks then share
-    // the cells of the largest, which is slow but right.
+    // the cells of the largest, which is slow but correct.
     let larger: Option<Vec<LayerLayout>> = (1..classes.len()).map(layout).collect();
     Some(Layouts { smallest, larger: larger?, classes: classes.to_vec() })
 }
@@ -98,8 +98,8 @@ impl Layers {
         let mut larger: Vec<Layer> = layouts.iter().map(|&layout| Layer::empty(domain, layout)).collect();
         let distances = |a: usize, b: usize| Distances {
             most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
-            // The least distance is below the distance of a touch, with room for overlaps by rounding. Within
-            // a class there is no hole, since a home is too large to fit inside a disk.
+            // The smallest distance is below the distance of a touch, with an allowance for overlaps by
+            // rounding. Within a class there is no hole, since a home is too large to fit inside a disk.
             least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
         let homes = |class: usize| match class {

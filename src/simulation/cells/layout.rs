@@ -8,7 +8,7 @@ use crate::boundary::Domain;
 /// Largest number of cells per disk. More cells would cost memory and save nothing.
 pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
 
-/// Number of cells that is always allowed.
+/// Number of cells that is allowed however few disks there are.
 pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 
 /// Smallest size of a cell in diameters. It is above 1 by more than rounding.
@@ -72,7 +72,7 @@ fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
 }
 
 /// Returns the largest distance beyond the edges of a cell up to which the cell can keep its disks, so that
-/// they still collide only with disks in the cells around it.
+/// these disks still collide only with disks in the cells around it.
 ///
 /// A disk that turns back soon, or moves back and forth at an edge, then stays in its cell.
 pub(super) fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {

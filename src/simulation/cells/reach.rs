@@ -1,12 +1,12 @@
 //! The homes of another class of disks that a disk may touch from anywhere in its own cell.
 //!
 //! The picture in `layers.rs` shows a reach and its hole. Both are rectangles, so a reach is given by its
-//! columns and its rows, each with the columns or rows of the hole. They are stored in tables with one entry
-//! for each column and row of the disk's own grid. The searches of large disks read them all the time: a
-//! table costs one load, whereas the edges of uneven rows would have to be searched. Homes of a column lie
-//! next to each other in memory, so the reach is traversed in runs of rows.
+//! columns and its rows, each with the columns or rows of the hole. The columns and rows are stored in tables
+//! with one entry for each column and row of the disk's own grid. The searches of large disks read them all
+//! the time: a table costs one load, whereas the edges of uneven rows would have to be searched. Homes of a
+//! column lie next to each other in memory, so the reach is traversed in runs of rows.
 //!
-//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back
+//! At periodic sides and ends, the count of homes continues beyond the last one. Columns are brought back
 //! immediately. Rows are kept as they are counted, so that a reach, its hole and the difference of two
 //! reaches are plain intervals. They are brought back only when a run is passed to the caller, then in two
 //! pieces.

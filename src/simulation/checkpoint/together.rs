@@ -62,8 +62,8 @@ impl Checkpoint {
     /// wrote.
     ///
     /// # Errors
-    /// If the file cannot be read, is not such a file, is of another version, was cut or changed, or has
-    /// other observers. The error names the file.
+    /// If the file cannot be read, is not such a file, is of another version, was truncated or altered, or
+    /// has other observers. The error names the file.
     pub fn read_with<O: DeserializeOwned>(path: impl AsRef<Path>) -> Result<(Self, O), CheckpointError> {
         read(path.as_ref(), |bytes| decoded(opened(SEAL, bytes)?))
     }

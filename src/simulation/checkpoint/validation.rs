@@ -18,7 +18,7 @@ use glam::DVec2;
 /// Number of events that no run reaches.
 const MOST_COUNTED: u64 = 1 << 60;
 
-/// Room for rounding, in sizes of a cell, of the grid or of a disk. It is much more than rounding needs.
+/// Allowance for rounding, in sizes of a cell, of the grid or of a disk. It is much more than rounding needs.
 const SLACK: f64 = 1e-3;
 
 /// Number of epochs ahead within which a touch with a wall, or the horizon of its search, must lie. It is

@@ -15,8 +15,8 @@ const PART: &str = "driving";
 const KICKS: usize = 1600;
 const DISKS: usize = 16;
 
-/// Number of kicks after which the check interrupts a run, and after which the disks are again as at first,
-/// so that they become neither too fast nor too slow.
+/// Number of kicks after which the check interrupts a run, and after which it restores the initial disks, so
+/// that the disks become neither too fast nor too slow.
 const CUT: usize = 7;
 const AGAIN: usize = 200;
 
@@ -24,11 +24,11 @@ const AGAIN: usize = 200;
 const ROUNDING: f64 = 1e-13;
 
 /// Smallest and largest mean square of the kicks at a position in the list, relative to the mean of all
-/// positions. If each kick changes one disk at random, they scatter by a tenth.
+/// positions. If each kick changes one disk at random, the mean squares scatter by a tenth.
 const FAIR: [f64; 2] = [0.5, 1.6];
 
-/// Largest correlation of two kicks in a row at a position in the list, beyond the correlation at any other
-/// two positions. Random kicks have a correlation of a hundredth.
+/// Largest correlation of two kicks in a row at a position in the list, beyond the correlation between any
+/// two different positions. Random kicks have a correlation of a hundredth.
 const CORRELATED: f64 = 0.2;
 
 /// Largest change of a velocity that counts as rounding, and smallest one that counts as another kick.
@@ -83,12 +83,12 @@ impl Promises {
 /// one in a run that is cut into two. The order of the disks changes from kick to kick.
 ///
 /// Three more drivings show a memory by the position in the list. If the kicks are the same in two orders
-/// that never change, they must also be the same in an order that changes. Otherwise, since random numbers
-/// may be drawn in the order of the list, a kick must only not resemble the previous one at its position. The
-/// page "Validation" says which planted faults the check finds.
+/// that never change, they must also be the same in an order that changes. Otherwise, random numbers may be
+/// drawn in the order of the list, and the check only requires that a kick does not resemble the previous one
+/// at its position. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first promise that is broken.
+/// Returns the first broken promise.
 pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result<(), Violation> {
     let mut make = make;
     let disks = disks().map_err(|error| failed(&error))?;
@@ -190,7 +190,8 @@ impl Sums {
     }
 }
 
-/// Checks that kicks do not depend on changes of the order of disks, if they do not depend on the order.
+/// Checks that kicks that do not depend on the order of the disks do not depend on changes of the order
+/// either.
 fn check_memory<D: Driving>(mut make: impl FnMut() -> D, disks: &[Disk]) -> Result<(), Violation> {
     let orders: [fn(usize) -> usize; 3] = [|_| 0, |_| 5, |number| number * (number + 1) / 2];
     let [kept, turned, changing] = orders.map(|order| kicked(make(), disks, order));
@@ -215,8 +216,8 @@ fn check_memory<D: Driving>(mut make: impl FnMut() -> D, disks: &[Disk]) -> Resu
     Err(Violation::new(PART, "memory", sentence))
 }
 
-/// Returns the disks after each kick of a driving that gets them in this order: the index of the first of
-/// them in the list, by the number of the kick.
+/// Returns the disks after each kick. For kick `n`, the list is rotated so that it starts with disk
+/// `order(n)`.
 fn kicked<D: Driving>(
     mut driving: D,
     disks: &[Disk],

@@ -1,4 +1,4 @@
-//! White noise: random kicks that keep the total momentum.
+//! White noise: random kicks that conserve the total momentum.
 
 use glam::DVec2;
 use rand::SeedableRng;
@@ -10,7 +10,7 @@ use crate::quantity::non_negative;
 use crate::random::normal;
 use crate::{Disk, ParameterError};
 
-/// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is kept.
+/// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is conserved.
 ///
 /// Each component of each velocity gains a normal variable of variance $`\xi_0^2 t`$ in a time $`t`$. The
 /// mean of all kicks, weighted by mass, is then subtracted. Thus $`N`$ equal disks of mass $`m`$ gain the
@@ -57,8 +57,8 @@ pub struct WhiteNoise {
 }
 
 impl WhiteNoise {
-    /// Creates noise of this strength $`\xi_0^2`$, the variance that a component of a velocity gains in a
-    /// unit of time.
+    /// Creates noise of this strength $`\xi_0^2`$, the variance that a component of a velocity gains per unit
+    /// of time.
     ///
     /// # Errors
     /// If the strength is negative or not finite.
@@ -69,7 +69,7 @@ impl WhiteNoise {
     }
 
     /// Returns the same noise, which also kicks the spins: $`\xi_r^2`$ is the variance that an angular
-    /// velocity gains in a unit of time.
+    /// velocity gains per unit of time.
     ///
     /// # Errors
     /// If the strength is negative or not finite.

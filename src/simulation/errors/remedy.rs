@@ -10,8 +10,8 @@ use std::fmt;
 #[non_exhaustive]
 pub enum Remedy {
     /// Slow collisions lose energy, so disks that come to rest collide ever more often. The remedy is to make
-    /// collisions elastic that are slow or follow each other quickly, or to set a least speed at which
-    /// surfaces part.
+    /// slow collisions, or collisions in quick succession, elastic, or to set a least speed at which surfaces
+    /// part.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,

@@ -77,7 +77,7 @@ pub enum RunError {
         disk: usize,
         /// The offset that the scheduler named.
         due: f64,
-        /// The offset that was last set for this disk, if there is such a disk.
+        /// The offset that was last set for this disk, or `None` if there is no such disk.
         expected: Option<f64>,
         /// The present.
         time: f64,

@@ -61,7 +61,7 @@ fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, E
         let (left, right) = (position.x - region.min.x, region.max.x - position.x);
         exit_sideways(left, right, velocity.x, bodies.gravity.rightward())
     };
-    // For a disk at rest that reaches no edge, the result is 0/0 or inf/inf, which means never.
+    // For a disk at rest that reaches no edge, the result is NaN, from 0/0 or inf/inf, which means never.
     let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
     let level = vertical < sideways;
     // Rounding may have put the disk beyond its edge. It leaves now, and not in the past.

@@ -1,11 +1,11 @@
-//! Predictions in vector instructions. Each function does what the plain function of the same name does, with
-//! the same bits, and has its lines in the same order. The reasons for the arithmetic are given there.
+//! Predictions in vector instructions. Each function computes the same bits as the plain function of the same
+//! name, with its lines in the same order. The reasons for the arithmetic are given there.
 //!
 //! Three differences make this code faster than the plain code:
 //! 1. **No read covers several recent writes.** The processor can pass a number on from a write to a read
 //!    only if the write covers all of the read. Otherwise, the read waits about 15 cycles, until the writes
-//!    have reached the cache, and the whole search waits with it. From the plain code, the compiler makes
-//!    such reads: it merges four numbers that lie side by side into one vector. The functions of
+//!    have reached the cache, and the whole search waits with it. The compiler generates such reads from the
+//!    plain code: it merges four numbers that lie side by side into one vector. The functions of
 //!    [`load`](crate::instructions::load) read exactly as many numbers as their names say, and arguments come
 //!    in registers or from tables, never as an array or a rectangle that was just built.
 //! 2. **Two searches in one loop.** After a collision, neither of the two searches depends on the other. The
@@ -32,8 +32,8 @@ mod tests {
     const SIDE: f64 = 9.0;
     const DISKS: usize = 24;
 
-    /// Returns disks of diameter 1. Half of them have coordinates and velocities of few values, so
-    /// that many touch, overlap, rest, move alike, or meet others at the same time.
+    /// Returns disks of diameter 1. Half of them take coordinates and velocities from a few values, so that
+    /// many touch, overlap, rest, move alike, or meet others at the same time.
     fn bodies(generator: &mut Xoshiro256PlusPlus, gravity: f64) -> Bodies {
         let mut number = |few: bool, most: i32| {
             let coarse = f64::from(generator.random_range(-2 * most..=2 * most)) / 2.0;

@@ -86,8 +86,8 @@ pub(in crate::simulation) struct Bodies {
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
     pub(in crate::simulation) identities: Identities,
-    /// Initial count of collisions of the next new disk. It is larger than the count of any disk whose index
-    /// the new disk may get.
+    /// Initial count of collisions of the next new disk. It is larger than the count of any disk that has
+    /// held an index the new disk may get, so old predictions are recognized as outdated.
     pub(in crate::simulation) fresh_count: u32,
     /// True if disks were added or removed since the typical diameter was measured.
     pub(super) has_changed: bool,
@@ -142,7 +142,7 @@ impl Bodies {
         self.particles.len()
     }
 
-    /// Returns the next event of a disk, if there is such a disk.
+    /// Returns the next event of a disk, or `None` if there is no such disk.
     #[inline]
     pub(in crate::simulation) fn forecast(&self, disk: usize) -> Option<&Forecast> {
         self.particles.get(disk).map(|particle| &particle.forecast)
@@ -166,7 +166,7 @@ impl Bodies {
         self.identities.of(disk)
     }
 
-    /// Returns the speed in the free-fall frame, which is the scale of the rounding of a velocity.
+    /// Returns the speed in the free-fall frame, which is the scale of a velocity's rounding error.
     pub(in crate::simulation) fn speed(&self, disk: usize) -> f64 {
         self.particles[disk].trajectory.velocity.length()
     }
@@ -299,8 +299,8 @@ impl Bodies {
         }
     }
 
-    /// Replaces the present disks by the given ones, with their states at this time offset. Their ids and the
-    /// times of their last collisions stay.
+    /// Replaces the present disks by the given ones, with their states at this time offset. The ids and
+    /// last-collision times of the present disks are kept.
     pub(in crate::simulation) fn replace(&mut self, disks: &[Disk], offset: f64) {
         self.properties = Properties::of(disks);
         self.typical_diameter = self.properties.typical_diameter();

@@ -3,8 +3,8 @@
 use super::guard::{EVENTS_PER_HORIZON, Guard};
 use crate::simulation::errors::{Outcome, RunError};
 
-/// Least number of floating-point times in an epoch. Between two such times, a typical disk then moves by at
-/// most about a diameter.
+/// Smallest number of floating-point times in an epoch. Between two such times, a typical disk then moves by
+/// at most about a diameter.
 ///
 /// These few times are enough, because epochs are powers of two, and so are the distances between these
 /// times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.

@@ -5,12 +5,13 @@ use crate::simulation::Counters;
 /// Number of events in a window. Progress is judged at its end.
 const WINDOW: u64 = 200_000;
 
-/// Number of additional events in a window for each disk. They are needed since, on a lattice, all disks may
-/// have an event at the same time.
+/// Number of additional events in a window for each disk. On a lattice, all disks may have an event at the
+/// same time.
 const WINDOW_PER_DISK: u64 = 20;
 
-/// Number of additional events for which a search that ended at its horizon counts. A search may take this
-/// number of steps, each about as long as an event, so the guard bounds the time that searches take, too.
+/// Number of additional events that the guard counts for a search that ended at its horizon. A search may
+/// take this number of steps, each about as long as an event, so the guard bounds the time that searches
+/// take, too.
 pub(in crate::simulation) const EVENTS_PER_HORIZON: u64 = 255;
 
 /// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]

@@ -1,6 +1,6 @@
 //! The energy at the start of a run, and whether anything may have added energy since.
 
-/// The energy balance of a run, which shows a rule or a wall that gains energy.
+/// The energy balance of a run. It reveals a rule or a wall that adds energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Ledger {

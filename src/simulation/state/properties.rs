@@ -61,8 +61,8 @@ impl Properties {
         }
     }
 
-    /// Adds a disk after `count` others. Only the first disk that differs from the others costs a time that
-    /// grows with the number of disks.
+    /// Adds a disk after `count` others. The time grows with the number of disks only for the first disk that
+    /// differs from the others.
     pub(super) fn push(&mut self, count: usize, disk: &Disk) {
         if let Self::Same { model, .. } = *self {
             if is_alike(disk, &model) {

@@ -232,8 +232,8 @@ impl<R: Read + Seek> View<'_, R> {
         Ok(())
     }
 
-    /// Returns the diameters of the disks. They come from the shapes if the file has shapes, or else from its
-    /// diameters, or else from the settings. Without any of these, they are 1.
+    /// Returns the diameters of the disks. The diameters come from the shapes if the file has shapes, or else
+    /// from its diameters, or else from the settings. Otherwise, all are 1.
     fn diameters(&mut self, count: usize) -> Result<Vec<f64>, ReadError> {
         let state = self.archive.names.iter().find(|name| name.starts_with("state/hpmc/"));
         if let Some(state) = state.cloned() {
@@ -291,7 +291,7 @@ impl Values {
     }
 }
 
-/// Returns the largest rounding of positions in single precision.
+/// Returns the largest rounding error of positions in single precision.
 fn rounding(position: &Chunk, center: DVec2) -> f64 {
     let places = (0..position.rows).flat_map(|row| [0, 1].map(|axis| position.number(row, axis).abs()));
     let largest = places.fold(center.abs().max_element() * 1e-9, f64::max);

@@ -68,7 +68,7 @@ pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
 }
 
 impl<'a> Sections<'a> {
-    /// Reads a section, and returns the name of the next one, if there is one.
+    /// Reads a section, and returns the name of the next section, or `None` after the last one.
     fn read(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<Option<&'a str>, ReadError> {
         let Self { atoms, labels, .. } = self;
         match words(name)[..] {
@@ -155,7 +155,7 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// Reads the rows of a section, and returns the name of the next one, if there is one.
+/// Reads the rows of a section, and returns the name of the next section, or `None` after the last one.
 fn read_section<'a>(
     lines: &mut Lines<'a>,
     mut take: impl FnMut(&'a str, usize) -> Result<(), ReadError>,

@@ -22,9 +22,9 @@ const PIECES: usize = 1000;
 /// are not compared.
 ///
 /// The motions are compared at four thousand phases from −1 to 399, at forty later phases up to 490 000, and
-/// in the first thousand pieces of both from −1 on. Motions that differ only elsewhere are alike to the
-/// check, and if both are of one type, it refuses different fingerprints. Motions of two types may move alike
-/// and have different fingerprints.
+/// in the first thousand pieces of both from −1 on. The check cannot see other differences. If two such
+/// motions are of one type, the check refuses different fingerprints. Motions of two types may move alike and
+/// have different fingerprints.
 ///
 /// # Errors
 /// If the fingerprints contradict the values.

@@ -253,8 +253,8 @@ fn piece(piston: &Piston, start: f64, displacement: f64, velocity: f64) -> Piece
 /// Returns the time until a piece that is not held comes to a stop.
 ///
 /// A piston that turns at a stop, up to rounding, does not reach the stop. Otherwise, rounding would decide
-/// whether it does, and the square root of the rounding would enter the time of the arrival and all later
-/// times.
+/// whether it does, and the square root of the rounding error would enter the time of the arrival and all
+/// later times.
 fn wait(piston: &Piston, piece: &Piece) -> f64 {
     let Piece { displacement, velocity, .. } = *piece;
     let (above, below) = (piston.highest - displacement, displacement - piston.lowest);
