@@ -1,5 +1,5 @@
-//! Input and output of the commands; the display of progress, as a bar on a terminal or else in lines, and the
-//! signals that stop a command.
+//! Input and output of the commands; the display of progress, as a bar on a terminal or else in lines, and
+//! the signals that stop a command.
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
