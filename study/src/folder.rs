@@ -95,7 +95,8 @@ impl Folder {
         Ok(lock)
     }
 
-    /// Writes those of the plan, its provenance and the README that are missing. The caller holds the lock.
+    /// Writes the plan, its provenance and the README, except for files that exist already. The caller holds
+    /// the lock.
     pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
         if !self.plan().exists() {
             write(&self.plan(), plan.as_bytes())?;
