@@ -116,7 +116,7 @@ impl<E: Experiment> Column<E> {
         !matches!(self.kind, Kind::Record(_))
     }
 
-    /// Returns the value for a sample, or `None` if the column is not in the table of samples.
+    /// Returns the value for a sample, or `None` if the column is not computed from samples.
     pub(crate) fn of(&self, sample: &E::Sample) -> Option<Scalar> {
         match &self.kind {
             Kind::Sample(value) => Some(value(sample)),
