@@ -12,9 +12,10 @@ pub enum RampStatus {
     Done,
     /// A process is running the ramp.
     Running,
-    /// Some values of the ramp are finished, and no process is known to be running the ramp.
+    /// Some work on the ramp is saved, but the ramp is not finished, and no process is known to be running
+    /// it.
     Begun,
-    /// No value of the ramp is finished, and no process is known to be running the ramp.
+    /// No work on the ramp is saved, and no process is known to be running the ramp.
     Waiting,
 }
 
