@@ -64,7 +64,8 @@ impl<E: Experiment> Study<E> {
                 seen.push(self.plan.seen(&record));
                 finished += 1;
             }
-            // A missing record is an error, since a table that lacks a row must not look complete.
+            // In a complete or damaged study, a missing record is an error: a table that lacks a row must not
+            // look complete.
             if !entries.is_done(ramp) && (self.folder.is_complete() || self.store.damage().is_some()) {
                 let missing =
                     || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));

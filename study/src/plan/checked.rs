@@ -80,7 +80,8 @@ impl<E: Experiment> Plan<E> {
         Ok(plan)
     }
 
-    /// Reads a plan without checking its experiments: they were checked when the plan was first used.
+    /// Reads a plan without checking its experiments: they were checked when the plan was written to its
+    /// folder.
     pub(crate) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
         let parts: Parts<E> = toml::from_str(text).map_err(|error| PlanError::toml(&error))?;
         parts.consistent()

@@ -163,7 +163,7 @@ impl Values {
         }
     }
 
-    /// Turns the values of a list into the type of another value.
+    /// Converts the values of a list to the type of `kind`.
     pub(super) fn set_kind(&mut self, kind: &Scalar) {
         if let Self::List(list) = self {
             for value in list {
