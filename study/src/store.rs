@@ -23,7 +23,7 @@ use log::{HEAD, Log, Piece, pieces, read_piece};
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
 
-/// Most seconds of work that a power failure may cost a process.
+/// Most seconds of work on finished values that a power failure may cost a process.
 const AT_RISK: f32 = 0.1;
 
 /// The logs in the folder of a study.
