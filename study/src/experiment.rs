@@ -37,8 +37,8 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 /// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
 ///    that [`build`](Self::build) makes, since a run is resumed with this rule and these walls.
 /// 3. Samples and the observer must read back as they were written. The format is binary, without names of
-///    fields, so their types must not have `#[serde(untagged)]`, `flatten`, `skip` or `skip_serializing_if`.
-///    Otherwise, the run of the study ends with an error.
+///    fields, so their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study
+///    that cannot read them back ends with an error.
 ///
 /// A *value* is the run at one value of the parameters. A study guarantees that it calls `sample` at the
 /// times of the protocol, in order, and that the observer has by then seen everything since the end of
@@ -152,7 +152,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// allocate a vector for it.
     ///
     /// # Errors
-    /// If they do not fit.
+    /// If the disks do not fit.
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError>;
 
     /// Returns gravity. `into` converts a number into gravity that points down.
@@ -228,7 +228,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 
     /// Returns the walls in a step, as [`prepare`](Self::prepare) has set them. A value that was interrupted
-    /// in the step continues with these walls. The next value begins with the walls of the last step.
+    /// in the step continues with these walls. The next value starts from the walls of the last step, which
+    /// [`change`](Self::change) may then replace.
     ///
     /// # Errors
     /// If the parameters do not give walls.

@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 use super::errors::{Difference, PlanError, shortened};
 
-/// A single value of a parameter that varies, or of a cell in a table.
+/// A single value: of a parameter that varies, or in a cell of a table.
 ///
 /// ```
 /// use granular_edmd_study::Scalar;

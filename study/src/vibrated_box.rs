@@ -224,7 +224,7 @@ impl Experiment for VibratedBox {
         self.gravity.into()
     }
 
-    /// Returns a period of the base, or 1 if it does not oscillate.
+    /// Returns the period of the base, or 1 if the base does not oscillate.
     fn cycle(&self) -> f64 {
         self.base.period().unwrap_or(1.0)
     }

@@ -20,8 +20,9 @@ const SEED: u64 = 0;
 /// ```
 ///
 /// for $`N`$ disks of mass $`m`$ at the vertical temperature $`T_y = m\langle v_y^2\rangle`$. The formula
-/// holds for independent velocities and for disks spread evenly over the width, where $`\langle\sin^2\rangle
-/// = 1/2`$. Just below the onset of convection, the slow mode $`\Psi_1`$ fluctuates more than this deviation.
+/// holds for independent velocities and for disks spread evenly over the width, where
+/// $`\langle\sin^2\rangle = 1/2`$. Just below the onset of convection, the slow mode $`\Psi_1`$ fluctuates
+/// more than this deviation.
 ///
 /// # Errors
 /// If the temperature is negative, the mass is not positive, either is not finite, or there are no disks.

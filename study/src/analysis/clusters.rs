@@ -156,10 +156,10 @@ impl Clusters {
 /// A k-means search finds as many clusters as requested, so the number must follow from the result itself.
 /// Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each half the
 /// density falls away from the cut. The mean of a half is therefore at most $`\sqrt3`$ standard deviations of
-/// this half away from the cut, with equality for the uniform density. A single cloud thus has $`D \le
-/// 2\sqrt3 = 3.46`$ (2.65 if it is Gaussian), so $`D > 4`$ means two clouds. This bound depends neither on
-/// the width of the cloud nor on the correlation of its samples, as long as the series fills the cloud. A
-/// series of only a few correlation times can look like several clouds.
+/// this half away from the cut, with equality for the uniform density. A single cloud thus has
+/// $`D \le 2\sqrt3 = 3.46`$ (2.65 if it is Gaussian), so $`D > 4`$ means two clouds. This bound depends
+/// neither on the width of the cloud nor on the correlation of its samples, as long as the series fills the
+/// cloud. A series of only a few correlation times can look like several clouds.
 ///
 /// `noise` is the least standard deviation of a single state, such as
 /// [`thermal_noise`](super::thermal_noise). Clusters whose centers are closer than four times this noise are

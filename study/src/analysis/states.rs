@@ -160,8 +160,8 @@ pub struct Transition {
     pub line: TransitionLine,
     /// Midpoint of the neighboring control values on the two sides of the line.
     pub value: f64,
-    /// Half the difference of these control values. The transition lies between `value - error` and `value +
-    /// error`.
+    /// Half the difference of these control values. The transition lies between `value - error` and
+    /// `value + error`.
     pub error: f64,
     /// True if increasing the control value leads to the regime with the larger energy loss. It is false
     /// where the paper finds re-entrance.

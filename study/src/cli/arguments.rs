@@ -51,7 +51,7 @@ pub(super) enum Command {
         /// Folder of the study: empty, or one with this plan.
         #[arg(long)]
         out: PathBuf,
-        /// Index of the only ramp to do, counted from 0.
+        /// Index of the ramp to run, counted from 0; all ramps if not given.
         #[arg(long)]
         ramp: Option<usize>,
         #[command(flatten)]
@@ -235,8 +235,8 @@ pub(super) struct Manner {
     /// axes and at the end of the ramp, more repeats, and more samples. Can be given several times.
     #[arg(long)]
     from: Vec<PathBuf>,
-    /// Runs values that stalled, failed or reached a limit again, and all later values of their ramps. The
-    /// same code fails again.
+    /// Runs again the values that stalled, failed or reached a limit, and all later values of their ramps.
+    /// The same code fails again.
     #[arg(long)]
     pub(super) retry: bool,
     /// Ends as soon as only work of other processes is left.

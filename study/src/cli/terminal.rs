@@ -99,7 +99,8 @@ impl Watch {
         let before = bar.position();
         bar.set_length(progress.total);
         bar.set_position(progress.done);
-        // Several steps at once come from values that were finished earlier, which do not count for the rate.
+        // A jump of several steps comes from values that were finished earlier, and these do not count for
+        // the rate.
         if progress.done > before + 1 {
             bar.reset_eta();
         }

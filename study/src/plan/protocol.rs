@@ -12,7 +12,7 @@ const MOST: u64 = 1 << 40;
 /// The schedule of a value: settle, then sample at equal intervals, always at the same phase of the base.
 ///
 /// All times are in cycles ([`Experiment::cycle`](super::Experiment::cycle)): periods of the base, or units
-/// of time if it does not oscillate.
+/// of time if the base does not oscillate.
 ///
 /// ```
 /// use granular_edmd_study::Protocol;

@@ -227,7 +227,7 @@ pub(crate) struct Steps {
     /// The difference of neighbors, or `None` for equal ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
-    /// The number of values in equal ratios.
+    /// The number of values, if they are in equal ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     log: Option<usize>,
     #[serde(skip)]
