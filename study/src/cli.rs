@@ -26,7 +26,7 @@
 //! | 1 | the command failed; standard error says why |
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | not finished: other processes work on it (`--no-wait`), also from `status` |
-//! | 4 | from `status`: all ramps are done, but there are no tables of them |
+//! | 4 | from `status`: all ramps are done, but the tables are not written |
 //! | 6 | from `diff`: the two runs differ |
 //! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
 //! | 8 | from `status`: not finished, and no process works on it |

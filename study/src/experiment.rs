@@ -123,7 +123,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         &[]
     }
 
-    /// Returns the revision of the code of this type, which a study keeps and compares.
+    /// Returns the revision of this type's code. A study stores the revision, and compares it whenever it is
+    /// opened.
     ///
     /// Values from different code must not be mixed, so a study with another revision is refused.
     /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that contains the experiment,
@@ -134,13 +135,13 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// [`RESULTS`](granular_edmd::RESULTS) of the engine.
     fn revision() -> Fingerprint;
 
-    /// Returns the collision rule of these parameters.
+    /// Returns the collision rule that these parameters define.
     ///
     /// # Errors
     /// If the parameters do not give a rule.
     fn rule(&self) -> Result<Self::Rule, ExperimentError>;
 
-    /// Returns the walls of these parameters.
+    /// Returns the walls that these parameters define.
     ///
     /// # Errors
     /// If the parameters do not give walls.
@@ -263,7 +264,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
             .build()?)
     }
 
-    /// Changes a simulation from the parameters of the previous value to these.
+    /// Changes a simulation from the previous value's parameters to these parameters.
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
     /// fingerprint stay unchanged. Walls that react, such as a [`Piston`](granular_edmd::wall::Piston), keep

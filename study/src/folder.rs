@@ -289,7 +289,7 @@ pub(super) fn if_there<T>(
     }
 }
 
-/// Returns the files in a folder; none if it does not exist.
+/// Returns the files in a folder. The list is empty if the folder does not exist.
 pub(super) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
     let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
     files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))

@@ -224,7 +224,7 @@ impl<E: Experiment> Study<E> {
         &self.plan
     }
 
-    /// Checks that a ramp of this index exists.
+    /// Checks that a ramp with this index exists.
     pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
         let count = self.plan.ramp_count();
         if ramp < count { Ok(()) } else { Err(StudyError::Absent { what: "ramp", index: ramp, count }) }

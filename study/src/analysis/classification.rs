@@ -105,7 +105,7 @@ impl StateCriteria {
     /// Sets the multiple of the thermal noise above which flow counts; 3 unless set.
     ///
     /// # Errors
-    /// If it is negative or not finite.
+    /// If the multiple is negative or not finite.
     pub fn with_noise_multiple(self, multiple: f64) -> Result<Self, ParameterError> {
         Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
     }
@@ -131,7 +131,7 @@ impl StateCriteria {
     /// base), in the units of the samples.
     ///
     /// # Errors
-    /// If it is not positive or not finite.
+    /// If the speed is not positive or not finite.
     pub fn with_base_speed(self, speed: f64) -> Result<Self, ParameterError> {
         let collapsed_order = self.collapsed_order * positive("speed of the base", speed)?;
         Ok(Self { collapsed_order, ..self })
@@ -150,7 +150,7 @@ impl StateCriteria {
     /// ```
     ///
     /// # Errors
-    /// If it is not positive or not finite.
+    /// If the ratio is not positive or not finite.
     pub fn with_two_rolls(self, ratio: f64) -> Result<Self, ParameterError> {
         Ok(Self { two_rolls: positive("ratio of two rolls to one", ratio)?, ..self })
     }
@@ -159,7 +159,7 @@ impl StateCriteria {
     /// unless set.
     ///
     /// # Errors
-    /// If it is not in `[0, 0.5]`.
+    /// If the weight is not in `[0, 0.5]`.
     pub fn with_least_weight(self, weight: f64) -> Result<Self, ParameterError> {
         let valid = (0.0..=0.5).contains(&weight);
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })

@@ -12,7 +12,7 @@ use crate::parameters;
 use crate::plan::values::Steps;
 use crate::{Column, Experiment, Plan, PlanError, Table};
 
-/// The keys that every plan has, whatever its experiment, by section.
+/// The keys that the plans of all experiments have, by section.
 static OF_PLANS: Meanings = LazyLock::new(|| meanings(include_str!("keys.txt")));
 
 /// Examples of optional sections, which a new plan shows as comments if it lacks the section.

@@ -75,10 +75,10 @@ pub enum Width {
 }
 
 impl Ramp {
-    /// Creates a ramp of the parameter of this name through these values, which must increase.
+    /// Creates a ramp that takes the parameter with this name through the given values, which must increase.
     ///
     /// # Errors
-    /// If there are no values, or they are not finite or do not increase.
+    /// If there are no values, a value is not finite, or the values do not increase.
     pub fn new(
         parameter: impl Into<String>,
         values: impl IntoIterator<Item = f64>,

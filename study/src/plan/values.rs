@@ -54,7 +54,7 @@ from_file! {
 
 #[expect(clippy::len_without_is_empty, reason = "an axis has at least one value")]
 impl Axis {
-    /// Creates an axis of the parameter of this name with these values, in any order.
+    /// Creates an axis on which the parameter with this name takes the given values, in any order.
     ///
     /// # Errors
     /// If there are no values, a value is not finite, or a value occurs twice.

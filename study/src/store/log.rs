@@ -35,7 +35,7 @@ pub(crate) struct Log {
 
 /// The header of a piece, and the position of its contents.
 ///
-/// A million of these may be in memory, so it is as small as possible.
+/// A million pieces may be in memory, so this type is as small as possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Piece {
     /// The header, for an index.

@@ -161,7 +161,7 @@ impl Record<VibratedBox> {
         self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 
-    /// Returns the standard deviation of $`\Psi_1`$ and $`\Psi_2`$ in a gas at rest of this temperature,
+    /// Returns the standard deviation of $`\Psi_1`$ and $`\Psi_2`$ in a gas at rest with this temperature,
     /// $`\sqrt{T_y/2N}`$.
     pub fn thermal_noise(&self) -> f64 {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean();
