@@ -159,7 +159,8 @@ pub enum StudyError {
         /// The description of the damage.
         reason: String,
     },
-    /// The study was begun by code with other results, or with another revision of the experiment.
+    /// The code that may continue the study has other results or another revision of the experiment than this
+    /// program.
     #[error(
         "{} holds a study of other code: {}; take a new folder, or accept the change if its values can be compared",
         path.display(), listed(differences)

@@ -27,7 +27,7 @@ pub struct Study<E> {
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// The code that began the study, and the makers whose records the study accepts.
+    /// The code that may continue the study, and the makers whose records the study accepts.
     provenance: Option<Provenance>,
     /// The maker of this program's records.
     maker: Maker,
@@ -152,7 +152,7 @@ impl<E: Experiment> Study<E> {
         Ok(self)
     }
 
-    /// Returns the provenance of a study that this program begins.
+    /// Returns the provenance that this program gives to a study.
     fn ours(&self) -> Provenance {
         let (experiment, maker) = (&self.plan.parts.experiment, &self.maker);
         let program = std::env::current_exe().ok();
@@ -262,7 +262,8 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// The file `provenance.json`: the code that may continue a study, and the program that began it.
+/// The file `provenance.json`: the code that may continue a study, which is the code that began the study or
+/// was accepted last, and the code that was accepted earlier.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Provenance {
     results: String,
@@ -286,7 +287,7 @@ impl Provenance {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// Returns the deciding fields in which this program differs from the program that began the study.
+    /// Returns the deciding fields in which this provenance differs from the provenance in the folder.
     fn differences(&self, there: Option<&Self>) -> Vec<Difference> {
         let all = self.deciding().into_iter().enumerate().map(|(place, (name, ours))| Difference {
             field: name.to_owned(),
