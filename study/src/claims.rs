@@ -14,14 +14,14 @@ use super::folder::{files_in, open_lock};
 /// Number of lock files.
 const LOCKS: usize = 256;
 
-/// Largest number of blocks of ramps. A process claims whole blocks. Sixty-four processes then lose a few
-/// percent at the end, when some of them have a block left and the others none.
+/// Largest number of blocks of ramps. A process claims whole blocks. With 64 processes, a few percent of the
+/// time is lost at the end, when some processes have a block left and the others none.
 const BLOCKS: usize = 2048;
 
-/// The right to run a block of ramps. It ends with the process, even if that is killed.
+/// The right to run a block of ramps. The claim ends with the process, even if the process is killed.
 ///
-/// The file of the lock stays. If it were removed, two processes could hold the locks of two different files
-/// of the same name.
+/// The lock file is never deleted. Otherwise, two processes could hold locks on two different files of the
+/// same name.
 #[derive(Debug)]
 pub(super) struct Claim(Locked);
 
@@ -32,7 +32,7 @@ pub(super) enum Claimed {
     Ours(Claim),
     /// Another process has the ramps.
     Theirs,
-    /// Another process runs other ramps that share the lock of these ramps.
+    /// Another process runs other ramps, whose lock file is the same.
     Collision,
 }
 
@@ -86,7 +86,7 @@ impl Claims {
     }
 }
 
-/// Returns whether a process has the lock of a file.
+/// Returns whether a process holds the lock on a file.
 fn is_taken(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };
     let locked = file.try_lock_shared();
@@ -100,7 +100,7 @@ impl Drop for Claim {
     }
 }
 
-/// Writes to the file of a lock which ramps it protects.
+/// Writes to a lock file the ramps that it protects.
 fn tell(lock: &Locked, text: &str) -> io::Result<()> {
     let mut file = lock.file();
     file.set_len(0)?;
@@ -108,7 +108,7 @@ fn tell(lock: &Locked, text: &str) -> io::Result<()> {
     file.write_all(text.as_bytes())
 }
 
-/// Returns the ramps for which a lock is held, or `None` if its file names none.
+/// Returns the ramps that a lock file names, or `None` if it names none.
 fn held(path: &Path) -> Option<Range<usize>> {
     // The holder may be about to write the ramps.
     (0..20).find_map(|_| {

@@ -15,10 +15,10 @@
 //! ```
 //!
 //! `status --json` prints one object: the number of ramps; the indices of the ramps that are done, running,
-//! begun and waiting; the ramp and the index of each value that was not finished; whether there are tables of
-//! all values; and about how many seconds of one processor the finished values took and the others will take.
-//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units and the
-//! meanings of all columns.
+//! begun and waiting; the ramp and the index of each value that was not finished; whether tables of all
+//! values exist; and the approximate processor seconds that the finished values took and that the other
+//! values will take. Tables are CSV files whose first line has the names of the columns; `columns.csv` has
+//! the units and the meanings of all columns.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -26,13 +26,13 @@
 //! | 1 | the command failed; standard error says why |
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | not finished: other processes work on it (`--no-wait`), also from `status` |
-//! | 4 | from `status`: all ramps are done, but there are no tables of them |
+//! | 4 | from `status`: all ramps are done, but the tables are not written |
 //! | 6 | from `diff`: the two runs differ |
 //! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
 //! | 8 | from `status`: not finished, and no process works on it |
-//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
+//! | 130 | stopped by Ctrl-C or SIGTERM, with all work saved; the same command continues it |
 //!
-//! `replay` and `diff` have nothing to save: stopped, they leave no file.
+//! `replay` and `diff` have nothing to save: if they are stopped, they leave no file.
 
 mod arguments;
 mod bench;
@@ -58,8 +58,8 @@ use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use terminal::{STOP, Watch, is_stopped, listen, read, refused, say};
 
-/// Largest number of failed values that `status` prints, and of ramps that `check` does; the JSON of `status`
-/// has all.
+/// Largest number of failed values that `status` prints, and of ramps that `check` prints; the JSON of
+/// `status` contains all.
 const LISTED: usize = 8;
 
 /// The outcome of a command, with its exit code.
@@ -68,7 +68,7 @@ enum End {
     Done = 0,
     /// Values are unfinished, and other processes are working on them.
     Elsewhere = 3,
-    /// All values are finished, but not the tables.
+    /// All values are finished, but the tables are not.
     NoTables = 4,
     /// Two runs differ.
     Different = 6,
@@ -82,7 +82,7 @@ enum End {
 /// The reason why a command failed.
 type Failure = Box<dyn Error>;
 
-/// Runs the command line of a program, with plans of this experiment.
+/// Runs the command line of a program for studies of this experiment.
 ///
 /// The command `new` writes the plan that `example` returns. `diff` copies runs, so the rule and the boundary
 /// must be `Clone`.
@@ -111,7 +111,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
     }
 }
 
-/// Prints an error, and returns its exit code: 2 for an unusable plan.
+/// Prints an error, and returns its exit code: 2 if the plan is at fault, and otherwise 1.
 fn report(error: &(dyn Error + 'static)) -> ExitCode {
     let _ = writeln!(io::stderr(), "error: {}", chain(error));
     let of_study = error.downcast_ref::<StudyError>();

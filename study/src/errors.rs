@@ -14,8 +14,8 @@ use thiserror::Error;
 
 /// The error of an experiment that cannot be built or changed.
 ///
-/// `?` makes it from the errors of both packages, of input and output, and from texts;
-/// [`new`](Self::new) from any other. It shows its cause, and `?` converts it into any error type.
+/// `?` converts errors of both packages, I/O errors and texts into this type, and [`new`](Self::new) converts
+/// any other error. The message is the message of the cause.
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;
@@ -68,7 +68,8 @@ pub enum PlanError {
     /// A number of the protocol, or the seed, is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// The text is not a plan, the plan cannot be written as text, or a name or a value in it cannot be used.
+    /// The text is not a plan, the plan cannot be written as text, or the plan has a name or a value that
+    /// cannot be used.
     #[error("{0}")]
     Refused(String),
     /// The experiment rejects the parameters of a value.
@@ -101,8 +102,9 @@ pub enum StudyError {
     /// The path of the folder is empty.
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
-    /// A folder or a file cannot be used for this: for example, the folder holds other files, no study, or a
-    /// study already, the file belongs to another plan, or a record was made by code that has changed.
+    /// A folder or a file cannot be used for this purpose: for example, the folder holds other files, no
+    /// study, or a study already; the file belongs to another plan; or the code that made a record has
+    /// changed since.
     #[error("{} {reason}", path.display())]
     Refused {
         /// The folder or the file.
@@ -110,7 +112,7 @@ pub enum StudyError {
         /// The reason.
         reason: String,
     },
-    /// The study has no such ramp, or its grid no such point.
+    /// The study has no such ramp, or the grid has no such point.
     #[error("there is no {what} {index}: the study has {count}, counted from 0")]
     Absent {
         /// `ramp` or `point`.
@@ -130,7 +132,7 @@ pub enum StudyError {
         /// The error that the system returned.
         source: io::Error,
     },
-    /// A file cannot be locked: some file systems of networks have no locks.
+    /// A file cannot be locked: some network file systems have no locks.
     #[error(
         "cannot lock {}; run the study on a file system with locks, such as a disk of each node, and join the parts",
         path.display()
@@ -149,7 +151,7 @@ pub enum StudyError {
         /// The fields in which the plans differ.
         differences: Vec<Difference>,
     },
-    /// A file was cut or changed, or belongs to another value or study.
+    /// A file was truncated or altered, or belongs to another value or study.
     #[error("{} is damaged: {reason}; run the study with a check of its records to redo it", path.display())]
     Damaged {
         /// The file.
@@ -157,7 +159,8 @@ pub enum StudyError {
         /// The description of the damage.
         reason: String,
     },
-    /// The study was begun by code with other results, or with another revision of the experiment.
+    /// The code that may continue the study has other results or another revision of the experiment than this
+    /// program.
     #[error(
         "{} holds a study of other code: {}; take a new folder, or accept the change if its values can be compared",
         path.display(), listed(differences)
@@ -165,7 +168,8 @@ pub enum StudyError {
     Code {
         /// The folder.
         path: PathBuf,
-        /// The numbers that differ: `results` of this crate, `revision` of the experiment, `columns`.
+        /// The fields that differ, such as `results` (of this crate), `revision` (of the experiment) and
+        /// `columns`.
         differences: Vec<Difference>,
     },
     /// A value cannot be started, or the state from which it starts cannot be resumed.
@@ -195,12 +199,12 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
 }
 
 impl PlanError {
-    /// Returns the error of a parameter that cannot vary, for the given reason.
+    /// Returns the error for a parameter that cannot vary, with the given reason.
     pub(super) fn varied(parameter: &str, reason: impl fmt::Display) -> Self {
         Self::Refused(format!("{parameter} {reason}"))
     }
 
-    /// Returns the error of a text that is not TOML, or not a plan.
+    /// Returns the error for a text that is not TOML, or not a plan.
     pub(super) fn toml(error: &impl fmt::Display) -> Self {
         Self::Refused(shortened(&error.to_string()))
     }
@@ -228,24 +232,24 @@ impl StudyError {
         if differences.is_empty() { Ok(()) } else { Err(Self::Different { path, differences }) }
     }
 
-    /// Returns the error of a folder or a file that cannot be used.
+    /// Returns the error for a folder or a file that cannot be used.
     pub(super) fn refused(path: &Path, reason: impl Into<String>) -> Self {
         Self::Refused { path: path.to_owned(), reason: reason.into() }
     }
 
-    /// Returns the error of a file that was cut or changed.
+    /// Returns the error for a file that was truncated or altered.
     pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> Self {
         Self::Damaged { path: path.to_owned(), reason: reason.into() }
     }
 
-    /// Returns the error of a record that was made with another rule, other walls or another revision than
-    /// the experiment has now: its code changed.
+    /// Returns the error for a record whose rule, walls or revision differ from the experiment's present
+    /// ones, because the code has changed.
     pub(super) fn changed(path: &Path, part: &str) -> Self {
         let now = "than the experiment has now at these parameters; take a new folder for changed code";
         Self::refused(path, format!("was made with another {part} {now}"))
     }
 
-    /// Returns the error of a file that belongs to another plan.
+    /// Returns the error for a file that belongs to another plan.
     pub(super) fn foreign(path: &Path) -> Self {
         Self::refused(path, "is of another plan than that in its folder; take a new folder for a new one")
     }
@@ -257,7 +261,7 @@ impl StudyError {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Difference {
-    /// The name of the field, after the names of the groups that contain it.
+    /// The name of the field, preceded by the names of the groups that contain the field.
     pub field: String,
     /// The field's value in the plan of the folder.
     pub old: Option<String>,

@@ -1,4 +1,4 @@
-//! Runs of a study, which compute the missing values; means to watch and stop them.
+//! Runs of a study, which compute the missing values; and the controls that watch and stop a run.
 
 mod ramp;
 mod session;
@@ -17,8 +17,8 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterato
 use super::{Experiment, Study, StudyError};
 use session::Session;
 
-/// Shortest and longest time between two checks of the work of other processes. It doubles from check to
-/// check, since a process that waits must not burden a file system that others need.
+/// Shortest and longest time between two checks of the work of other processes. The time doubles from check
+/// to check, since a process that waits must not burden a file system that other processes need.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
 
 /// Largest number of blocks of other processes that one check tries to take over.
@@ -34,11 +34,12 @@ pub struct Progress {
     pub value: usize,
     /// Number of finished steps in all ramps; a step is about one sampling interval.
     pub done: u64,
-    /// Number of all steps, finished or not, of the ramps to be run.
+    /// Number of all steps of the ramps to be run, whether finished or not.
     pub total: u64,
 }
 
-/// Means to watch and stop a study. None of them influences results.
+/// Options of a run: how to watch it, stop it, save it and limit it. Only
+/// [`with_most_seconds`](Self::with_most_seconds) influences results.
 ///
 /// ```
 /// use granular_edmd_study::{Control, Progress};
@@ -62,7 +63,7 @@ pub struct Control<'a> {
 }
 
 impl Default for Control<'_> {
-    /// Creates the control of a study that is neither watched nor stopped. The study saves unfinished values
+    /// Creates the control of a run that is neither watched nor stopped. The run saves unfinished values
     /// every minute, and waits for ramps that other processes run.
     fn default() -> Self {
         Self {
@@ -87,19 +88,20 @@ impl<'a> Control<'a> {
     /// Returns the same control, which saves all work and stops within a second after `interrupt` becomes
     /// true, however long a sampling interval takes.
     ///
-    /// A very large system takes longer to be saved, and nothing stops it while it is set up.
+    /// A very large system takes longer to save, and a run cannot be stopped while it sets up a system.
     pub fn with_interrupt(self, interrupt: &'a AtomicBool) -> Self {
         Self { interrupt: Some(interrupt), ..self }
     }
 
-    /// Returns the same control with reuse of the values that earlier studies in these folders have finished.
+    /// Returns the same control, which reuses finished values of the earlier studies in these folders.
     ///
-    /// In this way, a study grows into a new folder, or the parts of a sweep become one study. The plans may
-    /// differ in the values of their axes and in repeats. A ramp may have more values at its end. If this
-    /// plan has more samples, a value continues from its end, provided that its record keeps the state
-    /// ([`Plan::with_end_states`](crate::Plan::with_end_states)). Anything else that differs is an error. The
-    /// study gets the same bytes as without the earlier ones. Values from other code that an earlier study
-    /// accepted are computed again.
+    /// In this way, a larger study in a new folder reuses a smaller one, or the parts of a sweep become one
+    /// study. The plans may differ in the values of their axes and in the number of repeats. Ramps of the new
+    /// plan may have more values at their end. If the new plan has more samples, an old value is continued
+    /// from its end, provided that the value's record keeps the state
+    /// ([`Plan::with_end_states`](crate::Plan::with_end_states)). Any other difference is an error. The files
+    /// of the new study have the same bytes as without the earlier studies. Values that other code made are
+    /// computed again, even if an earlier study accepted this code.
     #[doc(alias("grow", "merge", "extend"))]
     pub fn with_earlier_studies(self, folders: &'a [PathBuf]) -> Self {
         Self { earlier: folders, ..self }
@@ -116,10 +118,10 @@ impl<'a> Control<'a> {
     /// Returns the same control, which ends each value that takes more than this wall-clock time, with
     /// [`Outcome::Limited`](crate::Outcome::Limited).
     ///
-    /// The values that end in this way depend on the machine. Such a value counts as failed: its record stays
-    /// until [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result
-    /// everywhere is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). The time of a
-    /// value that was interrupted counts from its resumption.
+    /// The values that end in this way depend on the machine. Such a value counts as failed, and its record
+    /// stays until [`Study::forget_failed`](crate::Study::forget_failed). A limit that gives the same result
+    /// everywhere is [`Protocol::with_most_collisions`](crate::Protocol::with_most_collisions). After an
+    /// interruption, only the time since the value was resumed counts.
     ///
     /// # Errors
     /// If the time is not positive.
@@ -129,8 +131,8 @@ impl<'a> Control<'a> {
 
     /// Returns the same control without waiting for ramps that other processes run.
     ///
-    /// A run then returns as soon as only such ramps are left. [`Summary::elsewhere`] names them, since their
-    /// processes may yet be killed.
+    /// The run then returns as soon as only ramps of other processes are left. [`Summary::elsewhere`] lists
+    /// these ramps, since the other processes may yet be killed.
     pub fn without_waiting(self) -> Self {
         Self { waits: false, ..self }
     }
@@ -142,8 +144,8 @@ impl<'a> Control<'a> {
         Self { writes_tables: false, ..self }
     }
 
-    /// Returns the same control, which also reads the records of finished ramps, and runs damaged or lost
-    /// ones again. The verification reads the whole study.
+    /// Returns the same control, which also reads the records of finished ramps, and runs the values of
+    /// damaged or lost records again. The verification reads the whole study.
     pub fn with_verification(self) -> Self {
         Self { verifies: true, ..self }
     }
@@ -163,13 +165,13 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
-    /// Number of values that were not finished: they stalled, failed, or reached a limit. They have fewer
-    /// samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
+    /// Number of values that were not finished: they stalled, failed, or reached a limit. Such values have
+    /// fewer samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
-    /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The files
-    /// `logs/*.jsonl` of the study say of what.
+    /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The study's files
+    /// `logs/*.jsonl` contain the warnings.
     pub warned: usize,
-    /// Number of values of the study, or of the ramps to be run.
+    /// Number of values in the ramps to be run: all ramps of the study, or one ramp.
     pub total: usize,
     /// Ramps that other processes are running.
     pub elsewhere: Vec<usize>,
@@ -189,8 +191,9 @@ impl<E: Experiment> Study<E> {
     ///
     /// Any number of processes may call this and [`Self::run_ramp`] at the same time; each ramp is run by one
     /// of them. A run waits for ramps of other processes, and takes over the ramps of a process that was
-    /// killed. It runs ramps in parallel, in the thread pool of `rayon` from which it is called. A run that
-    /// is interrupted returns with all work saved. The next run continues from there, with the same result.
+    /// killed. The run computes ramps in parallel, in the `rayon` thread pool from which this method is
+    /// called. A run that is interrupted returns with all work saved. The next run continues from there, with
+    /// the same result.
     ///
     /// # Errors
     /// If the plan or the code of the study has changed, files cannot be read or written, or a value cannot
@@ -202,8 +205,8 @@ impl<E: Experiment> Study<E> {
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
     /// done.
     ///
-    /// It is for engines that give each ramp to one process: if many of them run at a time, two runs of one
-    /// ramp may both do it, with the same result.
+    /// This method is for batch engines that give each ramp to one process. If several processes run the same
+    /// ramp at the same time, more than one may compute it, with the same result.
     ///
     /// # Errors
     /// The same as for [`Self::run`], and if there is no such ramp.
@@ -233,8 +236,8 @@ impl<E: Experiment> Study<E> {
         Ok(summary)
     }
 
-    /// Writes the tables, unless another process has written them meanwhile. A run of the whole study also
-    /// writes lost tables again. If one of many tasks finds everything done, it leaves the tables unchanged.
+    /// Writes the tables, unless another process has written them in between. A run of the whole study also
+    /// writes lost tables again. A run of one ramp does not, if the study is marked as complete.
     fn write_tables_once(&self, is_whole: bool) -> Result<(), StudyError> {
         let is_there = || if is_whole { self.has_tables() } else { self.folder.is_complete() };
         if is_there() {
@@ -249,8 +252,8 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Runs blocks until each block is finished, in this process or another. If it need not wait, it returns the
-/// ramps of other processes.
+/// Runs blocks until all are finished by this process or others. Returns the ramps of other processes that
+/// are left if the control does not wait, or if the run must stop.
 fn all<E: Experiment>(session: &Session<'_, E>) -> Result<Vec<usize>, StudyError> {
     session.strike_done()?;
     let mut patience = PATIENCE[0];
@@ -264,7 +267,7 @@ fn all<E: Experiment>(session: &Session<'_, E>) -> Result<Vec<usize>, StudyError
         }
         session.sleep(patience);
         patience = PATIENCE[1].min(2 * patience);
-        // The process of these blocks may have been killed.
+        // The processes that run these blocks may have been killed.
         session.queue.retry(TRIED);
     }
 }

@@ -1,5 +1,5 @@
-//! The trait of experiments, which are the systems of studies, and the types in its methods: the records of
-//! an experiment, and the columns of its tables.
+//! The trait `Experiment`, which defines the system of a study; and the types in its methods: records, and
+//! columns of tables.
 
 pub(super) mod columns;
 pub(super) mod record;
@@ -27,22 +27,22 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///
 /// An experiment is your own serializable type. Its fields are the parameters, which a [`Plan`](super::Plan)
 /// sets by name (`"friction"`, `"base.amplitude"`), and its methods say what the parameters mean. With
-/// `#[serde(deny_unknown_fields)]`, any misspelled name in a plan is an error. Without it, only the
-/// misspelled name of a parameter that varies is an error. [`VibratedBox`](super::vibrated_box::VibratedBox)
-/// is one such type.
+/// `#[serde(deny_unknown_fields)]`, any misspelled name in a plan is an error. Without this attribute, a
+/// misspelled name is an error only if it is the name of a parameter that varies.
+/// [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
 ///
 /// # Contract
 /// 1. All methods are functions of the parameters and their arguments: they use no clock and no other random
 ///    numbers. The files of a study therefore have the same bytes, however often it is interrupted.
 /// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
-///    that [`build`](Self::build) makes, since a run is resumed with them.
-/// 3. Samples and observer read back as they were written, in a binary format without names of fields, so
-///    their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study that
-///    cannot read them back ends with an error.
+///    that [`build`](Self::build) makes, since a run is resumed with this rule and these walls.
+/// 3. Samples and the observer must read back as they were written. The format is binary, without names of
+///    fields, so their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study
+///    that cannot read them back ends with an error.
 ///
 /// A *value* is the run at one value of the parameters. A study guarantees that it calls `sample` at the
-/// times of the protocol, in order, and that the observer has seen everything since the value has settled.
-/// When a run is interrupted, the study writes the observer and reads it back.
+/// times of the protocol, in order, and that the observer has by then seen everything since the end of
+/// settling. When a run is interrupted, the study writes the observer and reads it back.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -117,29 +117,31 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the meanings of parameters and columns by name, with units, ranges and defaults.
     ///
-    /// The command `explain` prints them, and a new plan has them as comments. None if not implemented.
+    /// The command `explain` prints the meanings, and a new plan shows them as comments. By default, there
+    /// are none.
     fn meanings() -> &'static [(&'static str, &'static str)] {
         &[]
     }
 
-    /// Returns the revision of the code of this type, which a study keeps and compares.
+    /// Returns the revision of this type's code. A study stores the revision, and compares it whenever it is
+    /// opened.
     ///
-    /// Values of different code must not be mixed, so a study with another revision is refused.
-    /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment, changes
-    /// by itself with every edit of that file, even of a comment. `Fingerprint::of("Cooling 2")` changes when
-    /// you raise the number: do so whenever rule, walls, disks, observer or sample give other numbers than
-    /// before. Code in other files, and in other crates, is covered only if you add it with
-    /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the
-    /// [`RESULTS`](granular_edmd::RESULTS) of this crate.
+    /// Values from different code must not be mixed, so a study with another revision is refused.
+    /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that contains the experiment,
+    /// changes by itself with every edit of the file, even of a comment. `Fingerprint::of("Cooling 2")`
+    /// changes when you raise the number: do so whenever the rule, walls, disks, observer or sample give
+    /// other numbers than before. Code in other files, and in other crates, is covered only if you add it
+    /// with [`Fingerprint::text`]. A study also compares the names and units of all columns, and the number
+    /// [`RESULTS`](granular_edmd::RESULTS) of the engine.
     fn revision() -> Fingerprint;
 
-    /// Returns the collision rule of these parameters.
+    /// Returns the collision rule that these parameters define.
     ///
     /// # Errors
     /// If the parameters do not give a rule.
     fn rule(&self) -> Result<Self::Rule, ExperimentError>;
 
-    /// Returns the walls of these parameters.
+    /// Returns the walls that these parameters define.
     ///
     /// # Errors
     /// If the parameters do not give walls.
@@ -147,14 +149,14 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the disks at the start.
     ///
-    /// A plan can ask for any number of them: refuse a number that does not fit into memory, before you make
-    /// a vector of that length.
+    /// A plan can ask for any number of disks: refuse a number that does not fit into memory before you
+    /// allocate a vector for it.
     ///
     /// # Errors
-    /// If they do not fit.
+    /// If the disks do not fit.
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError>;
 
-    /// Returns gravity. A number becomes gravity that points down, by `into`.
+    /// Returns gravity. `into` converts a number into gravity that points down.
     fn gravity(&self) -> Gravity {
         Gravity::NONE
     }
@@ -162,9 +164,10 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the duration of a cycle, the unit of time of a [`Protocol`](super::Protocol), such as the
     /// period of a vibrating base.
     ///
-    /// The first value of a ramp counts cycles from time 0. A value with another cycle than the one before
-    /// counts them from its own start, where walls are at any phase unless they begin there, too
-    /// ([`StartingAt`](granular_edmd::wall::StartingAt) in [`boundary_in`](Self::boundary_in)).
+    /// The first value of a ramp counts cycles from time 0. A value whose cycle differs from the previous
+    /// value's counts cycles from its own start. At this time, the walls may be at any phase, unless their
+    /// motion begins then, too ([`StartingAt`](granular_edmd::wall::StartingAt) in
+    /// [`boundary_in`](Self::boundary_in)).
     fn cycle(&self) -> f64 {
         1.0
     }
@@ -177,13 +180,14 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns a sample of the present state.
     ///
-    /// It may read the observer, and empty it for the interval until the next sample, or let it add up over
-    /// all samples.
+    /// The method may read the observer. It may also reset the observer for the next interval, or let it
+    /// accumulate over all samples.
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
 
     /// Returns the driving of a value, which kicks all disks at set times, or `None`.
     ///
-    /// Each value has a separate driving, with its seed, which begins with the value and is saved with it.
+    /// Each value has a separate driving with a separate seed. The driving begins with the value and is saved
+    /// with it.
     ///
     /// # Errors
     /// If these parameters do not give one.
@@ -200,7 +204,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// must follow from the run alone.
     ///
     /// # Errors
-    /// If it cannot be made, such as a file that cannot be written.
+    /// If the companion cannot be made: for example, it cannot write its file.
     fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
         let _ = start;
         Ok(None)
@@ -209,8 +213,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Changes a simulation before each step of a value: moves walls, opens gates, adds or removes inlets and
     /// disks.
     ///
-    /// By default it changes nothing. The changes must follow from the arguments alone. The observer may keep
-    /// what [`boundary_in`](Self::boundary_in) needs.
+    /// By default, it changes nothing. The changes must follow from the arguments alone. The observer may
+    /// store the data that [`boundary_in`](Self::boundary_in) needs.
     ///
     /// # Errors
     /// If the simulation cannot be prepared. The value has then failed, and the study continues.
@@ -225,7 +229,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 
     /// Returns the walls in a step, as [`prepare`](Self::prepare) has set them. A value that was interrupted
-    /// in the step continues with these walls, and after the last step the next value does.
+    /// in the step continues with these walls. The next value starts from the walls of the last step, which
+    /// [`change`](Self::change) may then replace.
     ///
     /// # Errors
     /// If the parameters do not give walls.
@@ -241,8 +246,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Returns tables that the study writes besides the tables of values and samples, such as tables of
-    /// profiles.
+    /// Returns additional tables, such as tables of profiles. The study writes them besides the tables of
+    /// values and samples.
     fn tables() -> Vec<Table<Self>> {
         Vec::new()
     }
@@ -259,15 +264,15 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
             .build()?)
     }
 
-    /// Changes a simulation from the parameters of the previous value to these.
+    /// Changes a simulation from the previous value's parameters to these parameters.
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
     /// fingerprint stay unchanged. Walls that react, such as a [`Piston`](granular_edmd::wall::Piston), keep
-    /// their places and velocities at this moment, whatever their start is in these parameters.
+    /// their present positions and velocities, whatever initial ones these parameters give.
     ///
     /// # Errors
-    /// If the disks do not fit into the walls, or the new walls cannot take over the present state of walls
-    /// that react: there are more or fewer, or a piston is beyond its new stops.
+    /// If the disks do not fit into the walls, or the new walls that react cannot take over the present
+    /// state: there are more or fewer of them, or a piston is beyond its new stops.
     fn change(&self, simulation: &mut Run<Self>) -> Result<(), ExperimentError> {
         simulation.set_rule(self.rule()?);
         let mut boundary = self.boundary()?;
@@ -294,7 +299,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// A run calls it for each value that it begins.
     ///
     /// # Errors
-    /// If they are not.
+    /// If the parameters are not valid.
     fn check(&self) -> Result<(), ExperimentError> {
         self.rule()?;
         self.boundary()?;
@@ -305,7 +310,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 
     /// Returns whether this parameter (by its full name, such as `base.amplitude`) may change while the disks
-    /// stay in place. A frequency may not, unless the walls begin anew with each [`cycle`](Self::cycle).
+    /// stay in place. Return false for a frequency, unless the walls begin anew with each
+    /// [`cycle`](Self::cycle).
     fn can_be_ramped(parameter: &str) -> bool {
         let _ = parameter;
         true
@@ -313,11 +319,11 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the contents of a file can belong to these parameters.
     ///
-    /// The study has already checked the checksum, the ramp and the value, and the time. Many records keep no
-    /// state.
+    /// The study has already checked the checksum, the ramp and the value, and the time. `state` is `None` if
+    /// the record keeps no state.
     ///
     /// # Errors
-    /// If they cannot, with the reason.
+    /// If the contents cannot belong to these parameters. The error gives the reason.
     fn check_measured(
         &self,
         samples: &[Self::Sample],
@@ -336,8 +342,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 }
 
-/// Returns the column of this name that has an error. If the tables of samples and of values have a column of
-/// this name each, it is the column of the table of values.
+/// Returns the column of this name that has an error. If each of the tables of samples and values has a
+/// column of this name, the result is the column of the table of values.
 pub(crate) fn with_error<'a, E: Experiment>(columns: &'a [Column<E>], name: &str) -> Option<&'a Column<E>> {
     let named = columns.iter().filter(|column| column.name() == name && column.has_error());
     named.max_by_key(|column| column.in_values)

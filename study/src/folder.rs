@@ -1,8 +1,8 @@
 //! The folder of a study: its plan, its provenance, its unfinished values, and the mark of a complete study.
-//! Each file is complete or absent.
+//! Each of these files is complete or absent.
 //!
-//! A process that writes plan or tables holds the lock of the folder. The next process that holds it knows
-//! that the writer of a temporary file there is dead.
+//! A process that writes the plan or the tables holds the folder's lock. The next process that holds the lock
+//! knows that the writer of any temporary file in the folder is dead.
 
 use std::collections::HashSet;
 use std::fs::{self, DirEntry, File, OpenOptions};
@@ -23,14 +23,15 @@ const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const LOGS: &str = "logs";
 const UNFINISHED: &str = "unfinished";
-/// The folder of the records of version 0.3.
+/// Name of the folder in which version 0.3 kept records.
 const RAMPS: &str = "ramps";
 const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
 const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
     finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
 
-/// Mark of an unfinished value, and the version of the format that this crate writes and reads.
+/// Magic number of the file of an unfinished value, and the version of the format that this crate writes and
+/// reads.
 const SEAL: Seal = Seal::new(*b"GRANPART", 5);
 
 /// The folder of a study.
@@ -77,8 +78,8 @@ impl Folder {
     }
 
     /// Returns whether the folder holds a study. A plan alone is not a study: a user may keep plans there,
-    /// among other files. A study has a lock beside its plan from the beginning, soon a README, and then
-    /// ramps. A copy of a study may lack some of these.
+    /// among other files. A study has a lock file beside its plan from the beginning, soon a README, and then
+    /// records. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(LOCK).metadata().is_ok_and(|lock| is_lock(&lock));
         let has_others = || [README, LOGS, RAMPS].iter().any(|name| self.root.join(name).exists());
@@ -94,7 +95,8 @@ impl Folder {
         Ok(lock)
     }
 
-    /// Writes a plan, its provenance and the README, unless they are there. The caller holds the lock.
+    /// Writes the plan, its provenance and the README, except for files that exist already. The caller holds
+    /// the lock.
     pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
         if !self.plan().exists() {
             write(&self.plan(), plan.as_bytes())?;
@@ -130,7 +132,7 @@ impl Folder {
     /// a plan.
     fn check_free(&self) -> Result<(), StudyError> {
         if !self.root.is_dir() {
-            // The attempt to create it gives the error, if that fails.
+            // If the folder cannot be created, the attempt to create it returns the error.
             return Ok(());
         }
         for entry in files_in(&self.root)? {
@@ -155,13 +157,13 @@ impl Folder {
         self.root.join(COMPLETE).exists()
     }
 
-    /// Removes the mark of a complete study before a value is written that the tables may lack.
+    /// Removes the mark of a complete study. Call this before a value is written that the tables may lack.
     pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
         remove(&self.root.join(COMPLETE))
     }
 
-    /// Marks that all ramps are in the tables, and removes the remaining files of unfinished values. The
-    /// caller holds the lock of the study.
+    /// Writes the mark that all ramps are in the tables, and removes the files of unfinished values that are
+    /// left. The caller holds the lock of the study.
     pub(super) fn mark_complete(&self) -> Result<(), StudyError> {
         for [ramp, value] in self.unfinished()? {
             remove(&self.partial(ramp, value))?;
@@ -191,7 +193,7 @@ impl Folder {
     }
 }
 
-/// Returns whether a file with the name of a lock is a lock, and thus empty.
+/// Returns whether a file with the name of a lock file is one: a lock file is empty.
 fn is_lock(file: &fs::Metadata) -> bool {
     file.is_file() && file.len() == 0
 }
@@ -207,7 +209,7 @@ fn lock_options() -> OpenOptions {
     options
 }
 
-/// Opens the file of a lock, and creates it and its folder if necessary.
+/// Opens a lock file, and creates the file and its folder if necessary.
 pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
     let opened = lock_options().open(path);
     let opened = match (&opened, path.parent()) {
@@ -225,7 +227,7 @@ pub(super) fn create(folder: &Path) -> Result<(), StudyError> {
     fs::create_dir_all(folder).map_err(StudyError::io("create", folder))
 }
 
-/// Returns data for a file as bytes, which read back as they were written.
+/// Encodes data for a file. Checks that decoding and encoding again gives the same bytes.
 pub(super) fn encoded<T: DeserializeOwned + Serialize>(
     path: &Path,
     data: &impl Serialize,
@@ -275,7 +277,7 @@ pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
     if_there("remove", path, fs::remove_file(path)).map(drop)
 }
 
-/// Returns the system's result for a file or folder, or `None` if nothing with this name exists.
+/// Returns the result of a file operation, or `None` if the file or folder does not exist.
 pub(super) fn if_there<T>(
     action: &'static str,
     path: &Path,
@@ -287,7 +289,7 @@ pub(super) fn if_there<T>(
     }
 }
 
-/// Returns the files in a folder; none if it does not exist.
+/// Returns the files in a folder. The list is empty if the folder does not exist.
 pub(super) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
     let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
     files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))

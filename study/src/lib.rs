@@ -3,31 +3,33 @@
 //!
 //! An [`Experiment`] is the system under study. It is your own serializable type: its fields are the
 //! parameters, and its methods define the simulation, the measurements, and the columns of the tables. A
-//! [`Plan`] says what to do with it. A [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
-//! down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of the grid may be
-//! repeated. A [`Study`] is a plan in a folder. [`Study::run`] runs the values that are missing, on all cores
-//! and in any number of processes. It writes each finished value immediately, as a [`Record`].
+//! [`Plan`] says which runs to do with the experiment. A [`Protocol`] says when to sample, a [`Ramp`] takes
+//! one parameter up or down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of
+//! the grid may be repeated. A [`Study`] is a plan in a folder. [`Study::run`] runs the values that are
+//! missing, on all cores and in any number of processes. Each finished value is written immediately, as a
+//! [`Record`].
 //!
 //! The paper's system is an experiment like any other: [`vibrated_box`]. With the feature `cli`, which is on
-//! by default, the command `granular-edmd` runs studies of it, and [`cli`] makes such a command for a custom
-//! experiment. The chapter [`guide::sweep_it`] has all that a study can do.
+//! by default, the command `granular-edmd` runs studies of the vibrated box, and [`cli`] makes such a command
+//! for a custom experiment. The chapter [`guide::sweep_it`] shows all that a study can do.
 //!
 //! # Promises
 //! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed. The
 //!    tables and the records of a complete study have the same bytes for any number of threads and processes,
-//!    however often these were interrupted or killed, and whether it was run in one go or has grown
-//!    ([`Control::with_earlier_studies`]). Only the division of the records into logs differs, and wall-clock
-//!    times. A value that [`Control::with_most_seconds`] ended depends on the machine.
+//!    however often these were interrupted or killed, and whether the study was run in one go or has grown
+//!    ([`Control::with_earlier_studies`]). Only wall-clock times and the division of the records into logs
+//!    differ. A value that [`Control::with_most_seconds`] ended depends on the machine.
 //! 2. A record is complete or absent. A study names damaged records and never reads them as data;
 //!    [`Control::with_verification`] computes their values again.
-//! 3. Any number of processes can run a study at the same time, started at any time; each ramp is run by one
-//!    of them. They need a file system whose locks all of them see, such as a local one, or NFS from version
-//!    4 on. Two runs of the same ramp ([`Study::run_ramp`]) may do it twice, with the same result.
-//! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
-//! 5. All records of a study come from the same code. `provenance.json` keeps the
+//! 3. Any number of processes, started at any time, can run a study at the same time, and each ramp is run by
+//!    one of them. The processes must see each other's file locks, as on a local file system, or on NFS from
+//!    version 4 on. If two processes run the same ramp by [`Study::run_ramp`], both may compute it, with the
+//!    same result.
+//! 4. A study writes only into an empty folder or its own folder, and changes or removes only its own files.
+//! 5. All records of a study come from the same code, unless you accept a change. `provenance.json` keeps the
 //!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the
-//!    experiment, and every operation of other code is refused by name ([`StudyError::Code`]), until
-//!    [`Study::accept_changes`] allows it to continue.
+//!    experiment, and other code gets an error that names the differences ([`StudyError::Code`]), until
+//!    [`Study::accept_changes`] allows this code to continue.
 //! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
 //!
 //! ```

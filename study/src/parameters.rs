@@ -1,5 +1,5 @@
-//! Parameters of any serializable type, by name; their values; the seeds that follow from them, and numbers
-//! that have no influence on results.
+//! Parameters of any serializable type, by name; their values; the seeds that follow from these values; and
+//! random numbers that have no influence on results.
 
 use std::fmt;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 use super::errors::{Difference, PlanError, shortened};
 
-/// A single value of a parameter that varies, or of a cell in a table.
+/// A single value: of a parameter that varies, or in a cell of a table.
 ///
 /// ```
 /// use granular_edmd_study::Scalar;
@@ -33,7 +33,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// The words about a value that is no scalar.
+    /// The message about a value that is not a scalar.
     pub(super) const REFUSED: &str = "a value must be a number, a word or a switch";
 
     /// Returns the number, or `None` for a word or a switch.
@@ -56,8 +56,8 @@ impl Scalar {
         }
     }
 
-    /// Returns the same value in the type of `other`, if nothing is lost: 1.0 becomes the integer 1, for
-    /// example.
+    /// Returns the same value in the type of `other`, if the conversion is exact: for example, 1.0 becomes
+    /// the integer 1.
     pub(super) fn like(self, other: &Self) -> Self {
         /// Largest magnitude up to which a double represents all whole numbers.
         const EXACT: f64 = 9_007_199_254_740_992.0;
@@ -71,15 +71,15 @@ impl Scalar {
     }
 }
 
-/// Derived code would try one kind after another and make an error for each kind that does not fit, which
-/// takes a second for a million values.
+/// Derived code would try one kind after another, and would create an error for each kind that does not fit.
+/// For a million values, this takes a second.
 impl<'de> Deserialize<'de> for Scalar {
     fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
         Self::of_toml(&Value::deserialize(file)?).ok_or_else(|| D::Error::custom(Self::REFUSED))
     }
 }
 
-/// Reading numbers back gives the same bits; words are in quotes where a table needs quotes.
+/// A number, once written, reads back with the same bits. A word is in quotes where a table needs quotes.
 impl fmt::Display for Scalar {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -152,8 +152,8 @@ pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
     }
 }
 
-/// Sets a parameter by its whole name, in the type of its present value; returns false if one of the names
-/// before the last does not name a group.
+/// Sets a parameter by its whole name, in the type of the present value. Returns false if any part of the
+/// name, except the last, does not name a group.
 #[must_use]
 pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     match name.split_once('.') {
@@ -185,8 +185,8 @@ pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> 
     }
 }
 
-/// Sets a parameter of an experiment, and returns the value that the experiment then has. The error names the
-/// reason: there is no such parameter, or the experiment refuses the value.
+/// Sets a parameter of an experiment, and returns the parameter's value as the experiment then has it. The
+/// error says that there is no such parameter, or that the experiment refuses the value.
 pub(super) fn probe<E: Serialize + DeserializeOwned>(
     base: &Table,
     parameter: &str,
@@ -264,7 +264,8 @@ fn derived(seed: u64, bytes: &[u8]) -> u64 {
 
 /// Returns a random index below this number, or 0. It has no influence on results.
 pub(super) fn anywhere(count: usize) -> usize {
-    // The standard library seeds its hash tables from the system: a random number that needs no dependency.
+    // The standard library seeds its hash tables from the operating system, so a random number needs no
+    // dependency.
     let random = RandomState::new().build_hasher().finish();
     random.checked_rem(count as u64).unwrap_or(0) as usize
 }

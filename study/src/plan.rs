@@ -19,20 +19,20 @@ use values::Axis;
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
-/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a separate seed and
-/// independent of all others. Each step of a ramp is a *value*. Without axes, the grid has one point. Without
-/// a ramp, each point has one value.
+/// The axes of the sweep span a grid. Each repeat of each point is a ramp, which has a separate seed and is
+/// independent of all other ramps. Each step of a ramp is a *value*. Without axes, the grid has one point.
+/// Without a ramp, each point has one value.
 ///
-/// Axes and ramps vary parameters of the experiment by name. The whole name is the name of the field, after
-/// the names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is
-/// enough if no other parameter has it.
+/// Axes and ramps vary parameters of the experiment by name. The whole name of a parameter consists of the
+/// names of the groups that contain it, then its own name (`base.bi_parabolic.amplitude`). The name after the
+/// last dot is enough if no other parameter has it.
 ///
 /// A ramp is a function of its parameters, its repeat and the seed, not of the rest of the plan: a larger
 /// plan has the same ramps, and so do the parts of a sweep
-/// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight
-/// bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the
-/// same way from the plan's seed, and the name and value of each parameter of the sweep. Successive indices
-/// of ramps first run through the repeats of a point.
+/// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). The seed of a ramp is the first
+/// eight bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows
+/// in the same way from the plan's seed, and the name and value of each parameter of the sweep. Successive
+/// ramp indices first run through the repeats of a point, then move to the next point.
 ///
 /// ```
 /// use granular_edmd_study::{Plan, Scalar, vibrated_box::VibratedBox};
@@ -61,14 +61,14 @@ use values::Axis;
 #[serde(try_from = "Parts<E>", bound(deserialize = "E: Experiment"))]
 pub struct Plan<E> {
     pub(super) parts: Parts<E>,
-    /// The parameters of the experiment by name. Each parameter of the sweep has its first value, as the
-    /// experiment reads it, which shows the kind of number.
+    /// The parameters of the experiment by name. Each swept parameter has its first value, in the number type
+    /// that the experiment reads.
     tree: Table,
     /// The full names of the parameters that vary: first the axes in their order, then the ramp.
     pub(super) varied: Vec<String>,
 }
 
-/// The parts of a plan, as they are in its file.
+/// The parts of a plan, as in its file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Plan")]
 pub(super) struct Parts<E> {
@@ -116,18 +116,18 @@ impl<E: Experiment> Plan<E> {
         toml::to_string(self).map_err(|error| PlanError::toml(&error))
     }
 
-    /// Returns the same plan with records that all keep the state at their end
+    /// Returns the same plan, in which every record keeps the state at the end of its value
     /// ([`Record::checkpoint`](super::Record::checkpoint)).
     ///
-    /// Otherwise, a record keeps it only if another value starts from it, since states are most of a record's
-    /// bytes.
+    /// Otherwise, a record keeps its end state only if another value starts from this state, since the state
+    /// takes most of a record's bytes.
     pub fn with_end_states(mut self) -> Self {
         self.parts.end_states = true;
         self
     }
 
-    /// Returns whether the record of a value keeps the state at its end. Any value of a refined ramp may be
-    /// the start of a bisection.
+    /// Returns whether the record of a value keeps the state at its end. In a refined ramp, every record
+    /// keeps it, since a bisection may start from any value.
     pub(super) fn keeps_state(&self, value: usize) -> bool {
         self.parts.end_states || self.is_refined() || value + 1 < self.value_count()
     }
@@ -157,7 +157,7 @@ impl<E: Experiment> Plan<E> {
         self.parts.sweep.iter().map(Axis::len).product()
     }
 
-    /// Returns the number of values of each ramp, without those that a refinement adds.
+    /// Returns the number of values of each ramp, without the values that a refinement adds.
     pub fn value_count(&self) -> usize {
         self.parts.ramp.as_ref().map_or(1, Ramp::len)
     }
@@ -178,7 +178,8 @@ impl<E: Experiment> Plan<E> {
         derived_seed(point, (ramp % self.parts.repeats) as u64)
     }
 
-    /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
+    /// Returns the parameters that vary, with their settings in the given value. The list is empty if there
+    /// is no such value.
     pub fn parameters(&self, ramp: usize, value: usize) -> Vec<(&str, Scalar)> {
         if ramp >= self.ramp_count() || value >= self.value_count() {
             return Vec::new();
@@ -217,7 +218,7 @@ impl<E: Experiment> Plan<E> {
         self.experiment_of(&self.parameters_at(ramp, at))
     }
 
-    /// Returns the experiment with these parameters, or the error with which it rejects them.
+    /// Returns the experiment with these parameters, or the error with which the experiment rejects them.
     pub(super) fn sound_experiment(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
         let experiment = self.experiment_of(varied)?;
         experiment.check().map_err(|source| Self::refused(varied, source))?;

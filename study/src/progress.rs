@@ -12,9 +12,10 @@ pub enum RampStatus {
     Done,
     /// A process is running the ramp.
     Running,
-    /// A part of the ramp is finished, and no process is known to be running the ramp.
+    /// Some work on the ramp is saved, but the ramp is not finished, and no process is known to be running
+    /// it.
     Begun,
-    /// No value of the ramp is finished.
+    /// No work on the ramp is saved, and no process is known to be running the ramp.
     Waiting,
 }
 
@@ -62,13 +63,13 @@ impl<E: Experiment> Study<E> {
         Ok(failed.map(|head| [head.ramp, head.value]).collect())
     }
 
-    /// Marks the failed values of a finished ramp as unfinished, with all values after the first failed
-    /// value, since a new result changes the states from which these start. The next run computes these
-    /// values again. Returns whether there were failed values.
+    /// Marks the first failed value of a finished ramp and all later values as unfinished, since a new result
+    /// changes the states from which the later values start. The next run computes these values again.
+    /// Returns whether there were failed values. A failed value has stalled, failed or reached a limit.
     ///
     /// The same code fails again, with the same bytes: call this for code whose changes were
     /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process is
-    /// running is left alone.
+    /// running is not changed.
     ///
     /// # Errors
     /// If there is no such ramp, the plan or the code of the study has changed, or files cannot be read or
@@ -89,10 +90,11 @@ impl<E: Experiment> Study<E> {
         Ok(true)
     }
 
-    /// Returns the processor seconds that the finished values took, and an estimate for the other values, if
-    /// these are alike. The estimate is NaN before a value is finished.
+    /// Returns the seconds of one thread that the finished values took, and an estimate for the other values,
+    /// which assumes that they take as long on average. The estimate is NaN before a value is finished.
     ///
-    /// Both are estimates: for a value that was interrupted, only the last piece counts.
+    /// The first number is a lower bound: for a value that was interrupted, only the time since it was last
+    /// resumed counts.
     ///
     /// # Errors
     /// If files cannot be read.

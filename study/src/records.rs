@@ -67,8 +67,8 @@ impl<E: Experiment> Point<E> {
         Estimate::over_repeats(self.records.iter().map(|record| record.mean(&quantity)))
     }
 
-    /// Returns the mean of the column of this name over all repeats; `None` if there is no such column, or it
-    /// has no error.
+    /// Returns the mean over all repeats of the column of this name, or `None` if no column of this name has
+    /// an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
         let column = with_error(&columns, column)?;
@@ -80,8 +80,8 @@ impl<E: Experiment> Study<E> {
     /// Returns the record of a value, or `None` if the value is not finished.
     ///
     /// # Errors
-    /// If there is no such ramp, or the record is damaged, of another study, of other code, or cannot be
-    /// read.
+    /// If there is no such ramp, or if the record cannot be read, is damaged, or comes from another study or
+    /// other code.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
         if let Some(record) = self.known_record(ramp, value)? {
@@ -94,7 +94,7 @@ impl<E: Experiment> Study<E> {
         }
     }
 
-    /// Returns the record of a value, if it was finished when the store was last read.
+    /// Returns the record of a value, or `None` if the value was not finished when the store was last read.
     pub(super) fn known_record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.store.known().find(ramp, value).map(|entry| self.read(entry)).transpose()
     }
@@ -102,7 +102,7 @@ impl<E: Experiment> Study<E> {
     /// Reads a record of the store.
     pub(super) fn read(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let record = self.read_unproven(entry)?;
-        // Accepted code differs from this program on purpose.
+        // Code that the study has accepted may differ from this program.
         let is_ours = self.is_ours(&record.contents.origin);
         let last = self.plan.protocol().step(record.contents.steps);
         match record.changed_part(&last).filter(|_| is_ours) {
@@ -111,7 +111,8 @@ impl<E: Experiment> Study<E> {
         }
     }
 
-    /// Reads a record of the store without making the rule and the walls to compare their fingerprints.
+    /// Reads a record of the store without comparing the fingerprints of rule and walls, which would require
+    /// making them.
     pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
         self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(entry))?;
@@ -153,7 +154,8 @@ impl<E: Experiment> Study<E> {
     /// finished.
     ///
     /// # Errors
-    /// If there is no such point, or a record is damaged, of another study, or cannot be read.
+    /// If there is no such point, or if a record cannot be read, is damaged, or comes from another study or
+    /// other code.
     pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
         self.store.refreshed()?;
         self.known_point(index, value)
@@ -173,7 +175,7 @@ impl<E: Experiment> Study<E> {
 
     /// Reads, one by one, all values that have a finished repeat, at all points of the grid.
     ///
-    /// Values that a refinement adds are left out, since they differ between repeats.
+    /// Values that a refinement adds are left out, since different repeats have different ones.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
         let error = self.store.refreshed().err();
         let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
@@ -182,10 +184,12 @@ impl<E: Experiment> Study<E> {
         error.into_iter().map(Err).chain(found)
     }
 
-    /// Returns the transitions that a refined ramp has bracketed; empty until all are bracketed.
+    /// Returns the transitions that a refined ramp has bracketed. The list is empty until all transitions are
+    /// bracketed.
     ///
     /// # Errors
-    /// If there is no such ramp, or a record is damaged, of another study, or cannot be read.
+    /// If there is no such ramp, or if a record cannot be read, is damaged, or comes from another study or
+    /// other code.
     pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
         let seen: Vec<Seen> = self
             .ramp_records(ramp)

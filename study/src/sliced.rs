@@ -1,5 +1,5 @@
-//! The run of a value in slices, which its observer sees as a single run. A driving, which is saved with the
-//! value, and a companion, which is not, take part in it.
+//! The run of a value in slices, which the observer sees as a single run. A driving and a companion may take
+//! part: the driving is saved with the value, the companion is not.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 
 use super::ExperimentError;
 
-/// A [`Driving`] that a study saves with an unfinished value, and restores with it.
+/// A [`Driving`] that a study saves and restores together with an unfinished value.
 ///
 /// Every driving that serde writes and reads implements this trait.
 #[diagnostic::on_unimplemented(
@@ -30,7 +30,7 @@ pub trait SavedDriving: Driving + Send {
     /// Restores the state of a saved driving.
     ///
     /// # Errors
-    /// If the bytes are of another driving.
+    /// If the bytes belong to another driving.
     fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError>;
 }
 
@@ -60,8 +60,8 @@ pub struct Start<'a> {
     pub seed: u64,
     /// Absolute time from which the run starts or continues.
     pub time: f64,
-    /// True if the value continues from a saved state. A value that was killed before its first save starts
-    /// anew, and files of its companion may exist already.
+    /// True if the value continues from a saved state. A value whose process was killed before the first save
+    /// starts anew, and files of its companion may exist already.
     pub is_resumed: bool,
 }
 
@@ -80,7 +80,7 @@ pub struct Interval {
 pub(super) struct Riders {
     pub(super) driving: Option<Box<dyn SavedDriving>>,
     pub(super) companion: Option<Box<dyn Observer>>,
-    /// True if the companion has seen the start of a run, and not its end.
+    /// True if the companion has seen the start of a run and not yet its end.
     pub(super) is_under_way: bool,
 }
 
@@ -94,7 +94,7 @@ impl Riders {
 /// Runs until a limit.
 ///
 /// `is_under_way` is true if an earlier slice has begun the run. The observer sees one start and one end,
-/// however many slices there are, and so does the companion, of which each process has one.
+/// however many slices there are. So does the companion, which each process makes anew.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
     limits: &Limits<'_>,
@@ -129,14 +129,14 @@ fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
     }
 }
 
-/// A wrapper that shows its observer the start of the first slice only, and no end.
+/// A wrapper that shows its observer the start of the first slice only, and the end of none.
 struct Sliced<'a, O> {
     observer: &'a mut O,
     is_under_way: &'a mut bool,
 }
 
 impl<O: Observer> Sliced<'_, O> {
-    /// Reports the end of an uncut run to the observer.
+    /// Reports the end of the run to the observer, unless a slice has merely used up its wall-clock time.
     fn end(self, ended: Result<RunEnd, RunError>, moment: &Snapshot<'_>) -> Result<RunEnd, RunError> {
         *self.is_under_way = matches!(ended, Ok(RunEnd::WallClock));
         if *self.is_under_way {

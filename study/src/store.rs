@@ -23,7 +23,7 @@ use log::{HEAD, Log, Piece, pieces, read_piece};
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
 
-/// Seconds of work that a loss of power may cost.
+/// Most seconds of work on finished values that a power failure may cost a process.
 const AT_RISK: f32 = 0.1;
 
 /// The logs in the folder of a study.
@@ -50,7 +50,8 @@ struct LogFile {
     file: Option<File>,
 }
 
-/// A log that this process alone writes, with a second file of readable lines, which is locked.
+/// A log that this process alone writes, and its second file, which holds readable lines. The lock is on the
+/// second file.
 #[derive(Debug)]
 struct Writer {
     path: PathBuf,
@@ -58,7 +59,7 @@ struct Writer {
     lines: Locked,
     /// True if the last line is complete.
     is_whole: bool,
-    /// Seconds of work that are not synced.
+    /// Seconds of work whose records are not yet synced to the disk.
     at_risk: f32,
 }
 
@@ -77,7 +78,8 @@ impl Store {
         state.logs.extend(new);
         let sorted = state.entries.0.len();
         for (number, log) in state.logs.iter_mut().enumerate() {
-            // The file is opened anew each time, since a client of NFS asks for the present length only then.
+            // Each time, the file is opened anew, since an NFS client asks for the present length only when
+            // it opens a file.
             let read = pieces(&log.path, SEAL, log.end).map_err(|error| failed("read", &log.path, error))?;
             log.end = read.end;
             log.is_damaged |= read.is_damaged;
@@ -97,19 +99,20 @@ impl Store {
         Arc::clone(&self.state().entries)
     }
 
-    /// Returns a log with an unreadable part, which may have held any record.
+    /// Returns the error of a log that is unreadable in part, if there is such a log. That part may have held
+    /// any record.
     pub(super) fn damage(&self) -> Option<StudyError> {
         let state = self.state();
         let found = state.logs.iter().find(|log| log.is_damaged)?;
         Some(StudyError::damaged(&found.path, "a part of it is no record"))
     }
 
-    /// Returns the log that has an entry, for errors.
+    /// Returns the path of the log that holds `entry`, for use in error messages.
     pub(super) fn log_of(&self, entry: &Entry) -> PathBuf {
         self.state().logs[entry.log as usize].path.clone()
     }
 
-    /// Returns the error of a damaged record.
+    /// Returns the error for a damaged record.
     pub(super) fn damaged(&self, entry: &Entry, reason: impl std::fmt::Display) -> StudyError {
         let Head { ramp, value, .. } = entry.head();
         StudyError::damaged(&self.log_of(entry), format!("value {value} of ramp {ramp}: {reason}"))
@@ -121,7 +124,7 @@ impl Store {
         contents.and_then(|contents| decoded(&contents)).map_err(|reason| self.damaged(entry, reason))
     }
 
-    /// Appends the record of a value, and a readable line to the log.
+    /// Appends the record of a value to the log, and a readable line to the log's second file.
     pub(super) fn append<T: DeserializeOwned + Serialize>(
         &self,
         head: Head,
@@ -147,7 +150,7 @@ impl Store {
         state.writer(&self.folder)?.push(Head { edition, ..head }, contents)
     }
 
-    /// Adds a line to the log for people.
+    /// Adds a readable line to the log's second file.
     pub(super) fn note(&self, line: &str) -> Result<(), StudyError> {
         self.state().writer(&self.folder).map(|writer| writer.note(line))
     }
@@ -206,7 +209,7 @@ impl Writer {
     /// Appends a piece.
     fn push(&mut self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
         self.log.push(head.bytes(), contents).map_err(StudyError::io("write", &self.path))?;
-        // Syncing a disk can take longer than running a value again.
+        // Not every record is synced, since syncing a disk can take longer than running a value again.
         self.at_risk += head.seconds.max(0.0);
         if self.at_risk > AT_RISK {
             self.sync()?;
@@ -219,7 +222,7 @@ impl Writer {
         self.log.sync().map_err(StudyError::io("write", &self.path))
     }
 
-    /// Adds a line. A failure is ignored, since a line that cannot be written must not cost the work.
+    /// Adds a line. An error is ignored: a log line that cannot be written must not abort the work.
     fn note(&mut self, line: &str) {
         let whole = if self.is_whole { Ok(self.lines.file()) } else { to_last_line_end(self.lines.file()) };
         self.is_whole = whole.and_then(|mut end| end.write_all(format!("{line}\n").as_bytes())).is_ok();
@@ -247,7 +250,8 @@ impl Entries {
     /// Sorts all entries. The first `sorted` entries are in order already.
     fn settle(&mut self, sorted: usize) {
         let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
-        // For partly sorted entries, a stable sort takes only linear time, but additional memory.
+        // If most entries are sorted already, a stable sort takes only linear time. It needs additional
+        // memory.
         match sorted {
             0 => self.0.sort_unstable_by_key(key),
             _ => self.0.sort_by_key(key),
@@ -312,12 +316,12 @@ impl Entry {
 pub(super) struct Head {
     pub(super) ramp: usize,
     pub(super) value: usize,
-    /// If a value has two records, the record of the higher edition counts. Records of equal editions have
-    /// the same contents.
+    /// If a value has several records, the record with the highest edition counts. Records of a value with
+    /// equal editions have the same contents.
     edition: u16,
     /// The marks of the record: a sum of the constants of this type.
     marks: u16,
-    /// Wall-clock seconds that the value took; NaN if it was taken over.
+    /// Wall-clock seconds that the value took; NaN if the value was taken over from another study.
     pub(super) seconds: f32,
 }
 
@@ -358,7 +362,7 @@ fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(found)
 }
 
-/// Returns the error of a log that cannot be read or written, or is of another format.
+/// Returns the error for a log that cannot be read or written, or has another format.
 fn failed(action: &'static str, path: &Path, error: io::Error) -> StudyError {
     match error.kind() {
         io::ErrorKind::InvalidData => StudyError::damaged(path, error.to_string()),

@@ -27,7 +27,7 @@ pub struct Study<E> {
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// The code that made the study, and the makers whose records it accepts.
+    /// The code that may continue the study, and the makers whose records the study accepts.
     provenance: Option<Provenance>,
     /// The maker of this program's records.
     maker: Maker,
@@ -49,27 +49,27 @@ impl<E: Experiment> Study<E> {
     /// Opens the study in a folder.
     ///
     /// # Errors
-    /// If the folder holds no study, its plan is not one of this experiment or was changed, it was made by
-    /// other code ([`StudyError::Code`]), or it cannot be read.
+    /// If the folder holds no study or cannot be read, if the plan was changed or belongs to another
+    /// experiment, or if other code made the study ([`StudyError::Code`]).
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
         Self::found_in(folder.as_ref())?.checked()
     }
 
     /// Opens the study in a folder, or creates a new one.
     ///
-    /// The same command thus starts a study and continues it, also in several processes at the same time.
+    /// The same call thus starts a study and continues it, also in several processes at the same time.
     ///
     /// # Errors
-    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), holds other
-    /// files but no study, or cannot be read or written.
+    /// If the folder holds a study with another plan, a study that other code made ([`StudyError::Code`]), or
+    /// other files but no study, or if the folder cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
     }
 
-    /// Opens the study in a folder, or writes a plan that passes a check to the folder.
+    /// Opens the study in a folder. If there is none, checks the plan and writes it to the folder.
     ///
-    /// An existing plan was checked when it was written: the check takes seconds in large studies, and each
-    /// of many processes would repeat it.
+    /// An existing plan is not checked again, since it was checked when it was written: the check takes
+    /// seconds in large studies, and each of many processes would repeat it.
     pub(super) fn open_or_put(
         folder: &Path,
         plan: Plan<E>,
@@ -84,11 +84,11 @@ impl<E: Experiment> Study<E> {
     }
 
     /// Allows this program to continue a study that other code made, and returns the differences between the
-    /// two. The list is empty if the program was allowed to continue anyway.
+    /// two. The list is empty if the program was allowed to continue already.
     ///
-    /// The study's finished values stay unchanged. Each record keeps the mark of the code that made it, which
-    /// the column `made_by` of `values.csv` shows. Values on both sides of the change can thus be
-    /// distinguished, and you decide whether they can be compared.
+    /// The study's finished values stay unchanged. Each record keeps the mark of the code that made the
+    /// record, and the column `made_by` of `values.csv` shows this mark. Values from before and after the
+    /// change can thus be distinguished, and you decide whether they can be compared.
     ///
     /// # Errors
     /// If the folder holds no study, or cannot be read or written.
@@ -114,7 +114,8 @@ impl<E: Experiment> Study<E> {
         Self::in_folder(folder, plan)
     }
 
-    /// Reads the plan in a folder. Its experiments were tried when it was put there.
+    /// Reads the plan in a folder. The experiments are not checked again: they were checked when the plan was
+    /// written.
     fn plan_in(folder: &Folder) -> Result<Plan<E>, StudyError> {
         let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
         Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)
@@ -133,7 +134,8 @@ impl<E: Experiment> Study<E> {
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
     /// plan.
     ///
-    /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
+    /// The plan is checked under the lock: of the processes that start at the same time, one checks the plan,
+    /// and the others wait.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
         let _lock = self.folder.prepare()?;
         let is_new = !self.folder.plan().exists();
@@ -144,13 +146,13 @@ impl<E: Experiment> Study<E> {
         Ok(is_new)
     }
 
-    /// Returns the study, or an error if this program may not continue it.
+    /// Returns this study, or an error if this program may not continue the study.
     fn checked(mut self) -> Result<Self, StudyError> {
         self.provenance = self.check_code()?;
         Ok(self)
     }
 
-    /// Returns this program as the maker of the study.
+    /// Returns the provenance that this program gives to a study.
     fn ours(&self) -> Provenance {
         let (experiment, maker) = (&self.plan.parts.experiment, &self.maker);
         let program = std::env::current_exe().ok();
@@ -173,7 +175,8 @@ impl<E: Experiment> Study<E> {
         }
     }
 
-    /// Reads the provenance, which must belong to this plan if it is there.
+    /// Reads the provenance, or returns `None` if its file is missing. The provenance must belong to this
+    /// plan.
     fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
         let (path, text) = (self.folder.provenance(), self.folder.read_provenance()?);
         let Some(text) = text else { return Ok(None) };
@@ -205,7 +208,7 @@ impl<E: Experiment> Study<E> {
         if self.folder.read_plan()? == self.text {
             return Ok(());
         }
-        // A plan that is written in another way may still be the same plan.
+        // Two files that differ may hold the same plan.
         let found = Self::plan_in(&self.folder)?;
         let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
         StudyError::if_different(self.folder.root(), differences)
@@ -221,7 +224,7 @@ impl<E: Experiment> Study<E> {
         &self.plan
     }
 
-    /// Checks that a ramp of this index exists.
+    /// Checks that a ramp with this index exists.
     pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
         let count = self.plan.ramp_count();
         if ramp < count { Ok(()) } else { Err(StudyError::Absent { what: "ramp", index: ramp, count }) }
@@ -259,7 +262,8 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// The file `provenance.json`: the code that may continue a study, and the program that began it.
+/// The file `provenance.json`: the code that may continue a study, which is the code that began the study or
+/// was accepted last, and the code that was accepted earlier.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Provenance {
     results: String,
@@ -272,7 +276,7 @@ struct Provenance {
     target: String,
     /// Hash of the plan.
     plan: String,
-    /// The earlier makers that were accepted, as keys separated by blanks.
+    /// Keys of the earlier makers that the study accepts, separated by blanks.
     accepted: String,
 }
 
@@ -283,7 +287,7 @@ impl Provenance {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// Returns the deciding fields in which this program differs from the one that made the study.
+    /// Returns the deciding fields in which this provenance differs from the provenance in the folder.
     fn differences(&self, there: Option<&Self>) -> Vec<Difference> {
         let all = self.deciding().into_iter().enumerate().map(|(place, (name, ours))| Difference {
             field: name.to_owned(),
@@ -304,7 +308,7 @@ impl Provenance {
         ]
     }
 
-    /// Returns the present maker and the earlier, accepted ones, as keys separated by blanks.
+    /// Returns the keys of the present maker and of the earlier, accepted makers, separated by blanks.
     fn keys(&self) -> String {
         let Self { results, revision, columns, accepted, .. } = self;
         format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()

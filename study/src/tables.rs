@@ -1,4 +1,4 @@
-//! Tables of records, written row by row, with the header and the rows from the same columns.
+//! Tables of records, written row by row. The header and the rows come from the same columns.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ impl<E: Experiment> Study<E> {
     }
 
     /// Writes the tables of all finished records into the folder of the study, and returns the number of
-    /// these records.
+    /// records.
     ///
     /// A run does this when all ramps are done. Call it earlier to see the results so far. Tables are written
     /// row by row, so they may be larger than memory.
@@ -34,11 +34,10 @@ impl<E: Experiment> Study<E> {
         self.tables(self.folder())
     }
 
-    /// Writes the tables of all finished records into another folder, and returns the number of these
-    /// records.
+    /// Writes the tables of all finished records into another folder, and returns the number of records.
     ///
     /// # Errors
-    /// The same as for [`Self::write_tables`], and if the folder has a table of one of these names.
+    /// The same as for [`Self::write_tables`], and if the folder already has a file with the name of a table.
     pub fn write_tables_to(&self, folder: impl AsRef<Path>) -> Result<usize, StudyError> {
         let folder = folder.as_ref();
         create(folder)?;
@@ -53,7 +52,8 @@ impl<E: Experiment> Study<E> {
         let entries = self.store.refreshed()?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        // Making walls takes longer than reading a small record, so only a selection of records is compared.
+        // Only a selection of the records is compared with the present rule and walls, since making walls
+        // takes longer than reading a small record.
         let stride = 1 + entries.heads().count() / MOST_TRIED;
         for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();
@@ -64,7 +64,8 @@ impl<E: Experiment> Study<E> {
                 seen.push(self.plan.seen(&record));
                 finished += 1;
             }
-            // A table that lacks a row must not look complete.
+            // In a complete or damaged study, a missing record is an error: a table that lacks a row must not
+            // look complete.
             if !entries.is_done(ramp) && (self.folder.is_complete() || self.store.damage().is_some()) {
                 let missing =
                     || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
@@ -77,7 +78,7 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// The growing tables of a study. A table takes its place in the folder when all of them are whole.
+/// The tables of a study that are being written. They get their final names once all of them are complete.
 struct Tables<'a, E: Experiment> {
     plan: &'a Plan<E>,
     columns: Vec<Column<E>>,
@@ -87,7 +88,7 @@ struct Tables<'a, E: Experiment> {
     transitions: Option<Rows>,
     more: Vec<(Table<E>, Rows)>,
     described: Rows,
-    /// For each value of the present point, its repeats so far.
+    /// The repeats so far, for each value of the present point.
     repeats: Vec<Vec<Repeat>>,
 }
 
@@ -95,7 +96,7 @@ struct Tables<'a, E: Experiment> {
 struct Repeat {
     /// The estimates of the columns with errors, in their order.
     estimates: Vec<Estimate>,
-    /// True if the engine could not finish this repeat.
+    /// True if the value stalled, failed or reached a limit in this repeat.
     is_failed: bool,
 }
 
@@ -124,8 +125,9 @@ impl Rows {
     }
 }
 
-/// Returns the text of cells after the text of the first ones. A cell without a number is empty, which every
-/// reader of tables takes for a missing value; the text `NaN` spoils the means of some.
+/// Returns the text of a row: the text of its first cells, then further cells. A NaN gives an empty cell,
+/// which every reader of tables takes for a missing value. With the text `NaN`, some readers compute wrong
+/// means.
 fn row(first: &str, cells: impl IntoIterator<Item = Scalar>) -> String {
     let mut row = String::with_capacity(256);
     row.push_str(first);
@@ -153,7 +155,7 @@ struct Place {
     leg: Option<Leg>,
     /// Value of the ramped parameter.
     at: Option<f64>,
-    /// True for all repeats together.
+    /// True if the row stands for all repeats together.
     is_point: bool,
 }
 
@@ -243,8 +245,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     }
 
     fn add_value(&mut self, record: &Record<E>, first: &str) -> Result<(), StudyError> {
-        // A double cannot hold every number of 64 bits. With a letter before it, it is text for every reader
-        // of tables.
+        // A double cannot represent every 64-bit integer. With a letter before the digits, every reader of
+        // tables takes the seed for text.
         let seed = format!("x{:016x}", record.seed());
         let (maker, outcome) = (record.contents.origin.maker.to_string(), record.outcome().name());
         let mut row = vec![seed.into(), maker.into(), outcome.into(), record.samples().len().into()];
@@ -268,15 +270,15 @@ impl<'a, E: Experiment> Tables<'a, E> {
         Ok(())
     }
 
-    /// Returns the names of the columns whose error is only a lower bound, separated by spaces: they have too
-    /// few samples for their correlations.
+    /// Returns the names, separated by spaces, of the columns whose error is only a lower bound, since they
+    /// have too few independent samples.
     fn not_converged(&self, estimates: &[Estimate]) -> Scalar {
         let columns = self.columns.iter().filter(|column| column.in_values && column.has_error());
         let found = columns.zip(estimates).filter(|(_, estimate)| !estimate.is_converged());
         found.map(|(column, _)| column.name()).collect::<Vec<_>>().join(" ").into()
     }
 
-    /// Adds the rows that need all records of a ramp.
+    /// Adds the rows that depend on all records of a ramp.
     fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) -> Result<(), StudyError> {
         for Bracket { leg, near, far, from, to } in brackets {
             let Some(rows) = &mut self.transitions else { break };
@@ -290,7 +292,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         Ok(())
     }
 
-    /// Adds a row for each value of a point: all its finished repeats together.
+    /// Adds a row for each value of a point, for all finished repeats of the value together.
     fn end_point(&mut self, ramp: usize) -> Result<(), StudyError> {
         let all = std::mem::take(&mut self.repeats).into_iter().enumerate();
         for (value, repeats) in all.filter(|(_, repeats)| !repeats.is_empty()) {
@@ -333,7 +335,7 @@ fn between(first: &[&str], own: impl Iterator<Item = Heading>) -> Vec<Heading> {
     first.iter().map(plain).chain(own).chain([Heading::new("not_converged", "")]).collect()
 }
 
-/// Returns the meaning of a column of a table of a plan; empty if the experiment gives none.
+/// Returns the meaning of a column of a table, or an empty text if the experiment gives none.
 fn meaning<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>], table: &str, column: &str) -> String {
     let whole_name = |name: &str| plan.varied().zip(&plan.varied).find(|(short, _)| *short == name);
     let parameter = |name: &str| whole_name(name).and_then(|(_, whole)| find(E::meanings(), whole));

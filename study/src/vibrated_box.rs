@@ -1,7 +1,8 @@
-//! The paper's system: equal disks in a box over a base that vibrates or is hot.
+//! The paper's system: equal disks in a box over a vibrating or hot base.
 //!
-//! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a custom type would. [`Sample`] holds
-//! what is measured. Its [`Record`] has methods for the flow: order, densest layer, energy change and noise.
+//! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a custom type would. A [`Sample`] holds
+//! the measured quantities. A [`Record`] of the box has additional methods for the flow: order parameters,
+//! densest layer, energy change and noise.
 
 mod parts;
 mod sample;
@@ -33,8 +34,8 @@ const MOST_DISKS: usize = 1 << 24;
 /// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
 /// disk are the units.
 ///
-/// Other settings are fields: `experiment.base_inelasticity = Some(0.0)`. Disks start on a lattice with
-/// Maxwellian velocities. Values are checked where the box enters a [`Plan`](super::Plan).
+/// Other parameters are set as fields: `experiment.base_inelasticity = Some(0.0)`. Disks start on a lattice
+/// with Maxwellian velocities. All parameters are checked when the box is put into a [`Plan`](super::Plan).
 ///
 /// ```
 /// use granular_edmd_study::vibrated_box::{Base, VibratedBox};
@@ -60,21 +61,23 @@ pub struct VibratedBox {
     /// Gravity $`g`$.
     #[serde(default)]
     pub gravity: f64,
-    /// Inelasticity $`q`$: the normal one, and also the tangential one unless it is given separately.
+    /// Inelasticity $`q`$: the normal one, and also the tangential one unless `tangential_inelasticity` is
+    /// given.
     #[serde(default)]
     pub inelasticity: f64,
-    /// Tangential inelasticity $`q_t`$, if not $`q`$.
+    /// Tangential inelasticity $`q_t`$, if it differs from $`q`$.
     pub tangential_inelasticity: Option<f64>,
-    /// Friction $`\kappa`$: the static one, and also the dynamic one unless it is given separately.
+    /// Friction $`\kappa`$: the static one, and also the dynamic one unless `dynamic_friction` is given.
     #[serde(default)]
     pub friction: f64,
-    /// Dynamic friction $`\kappa_d`$, if not $`\kappa`$.
+    /// Dynamic friction $`\kappa_d`$, if it differs from $`\kappa`$.
     pub dynamic_friction: Option<f64>,
     /// Inelasticity of the walls, normal and tangential, if it differs from the disks'.
     pub wall_inelasticity: Option<f64>,
     /// Inelasticity of the base alone, if it differs from the walls'.
     pub base_inelasticity: Option<f64>,
-    /// Tangential inelasticity $`q_t`$ of the base alone, if not the normal one of the base.
+    /// Tangential inelasticity $`q_t`$ of the base alone, if it differs from the normal inelasticity of the
+    /// base.
     pub base_tangential_inelasticity: Option<f64>,
     /// Friction of the walls, static and dynamic, if it differs from the disks'.
     pub wall_friction: Option<f64>,
@@ -142,7 +145,7 @@ impl VibratedBox {
         Self { contact_duration: Some(duration), ..self }
     }
 
-    /// Returns the rule of walls of these inelasticities, or `None` if it is the disks' rule.
+    /// Returns the rule of walls with these inelasticities, or `None` if the walls have the disks' rule.
     fn wall_rule(
         &self,
         normal: Option<f64>,
@@ -164,7 +167,7 @@ impl Experiment for VibratedBox {
     type Observer = Measurement;
     type Sample = Sample;
 
-    /// The box is part of this crate, whose results number shows changed results.
+    /// The box is part of this crate, whose number `RESULTS` already changes when results do.
     fn revision() -> Fingerprint {
         Fingerprint::of("VibratedBox")
     }
@@ -207,7 +210,7 @@ impl Experiment for VibratedBox {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
-        // Disks that fall upwards without a lid never come back, and rise farther with each event.
+        // Without a lid, disks that fall upwards would never come back, and would rise ever farther.
         let stays = self.height.is_some() || self.gravity >= 0.0;
         accept(stays, "gravity of a box without a lid", "not negative", self.gravity)?;
         // An open box has room for any number of disks, so a limit keeps a mistyped number from using up all
@@ -221,7 +224,7 @@ impl Experiment for VibratedBox {
         self.gravity.into()
     }
 
-    /// Returns a period of the base, or 1 if it does not oscillate.
+    /// Returns the period of the base, or 1 if the base does not oscillate.
     fn cycle(&self) -> f64 {
         self.base.period().unwrap_or(1.0)
     }
@@ -251,8 +254,9 @@ impl Experiment for VibratedBox {
         sample::regime(record)
     }
 
-    /// Returns false for the size of the box, which must hold its disks, and for a frequency, a change of
-    /// which would make the base jump.
+    /// Returns false for parameters that cannot change along a ramp: the size and the sides of the box, the
+    /// number of disks, the initial temperature, `slip`, and the frequency, whose change would make the base
+    /// jump.
     fn can_be_ramped(parameter: &str) -> bool {
         let name = parameter.rsplit('.').next().unwrap_or(parameter);
         let fixed = ["disks", "width", "height", "sides", "angular_frequency", "slip", "initial_temperature"];

@@ -21,11 +21,11 @@ const SEED: u64 = 0;
 ///
 /// for $`N`$ disks of mass $`m`$ at the vertical temperature $`T_y = m\langle v_y^2\rangle`$. The formula
 /// holds for independent velocities and for disks spread evenly over the width, where
-/// $`\langle\sin^2\rangle = 1/2`$. Just below the onset of convection the slow mode $`\Psi_1`$ fluctuates
-/// more than that.
+/// $`\langle\sin^2\rangle = 1/2`$. Just below the onset of convection, the slow mode $`\Psi_1`$ fluctuates
+/// more than this deviation.
 ///
 /// # Errors
-/// If the temperature is negative, the mass is not positive, one is not finite, or there are no disks.
+/// If the temperature is negative, the mass is not positive, either is not finite, or there are no disks.
 ///
 /// ```
 /// use granular_edmd_study::analysis::thermal_noise;
@@ -42,30 +42,31 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// The criteria by which a state gets its name.
 ///
 /// The samples of $`(\Psi_1, \Psi_2)`$ are divided into the largest number of clusters, from 1 to 4, whose
-/// pairs are all separated by more than 4 ([`Clusters::separation`]). A cloud of symmetric density with one
-/// maximum, cut in two by a k-means search, has at most $`2\sqrt3 = 3.46`$. The names follow from these
-/// clusters and the [`thermal_noise`] $`\sigma`$:
+/// pairs are all separated by more than 4 ([`Clusters::separation`]). A single cloud, of symmetric density
+/// with one maximum, that k-means cuts in two gives a separation of at most $`2\sqrt3 = 3.46`$. The names
+/// follow from these clusters and the [`thermal_noise`] $`\sigma`$:
 ///
 /// 1. A run as a whole is **collapsed** if two conditions hold. First, its height profile has a compact
-///    layer, of packing fraction above 0.60, on a gas of less than half of that. Second, its two-roll flow
-///    has died, $`|\langle\Psi_2\rangle| < 0.03`$.
-/// 2. A cluster shows **no roll** if its center is at most $`3\sigma`$ from the origin. It is collapsed
-///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
-///    layer.
-/// 3. A cluster shows **two rolls** if $`|\Psi_2| > 2|\Psi_1|`$: up in the middle for a positive $`\Psi_2`$,
-///    else down.
-/// 4. A cluster shows **one roll** otherwise: clockwise for a positive $`\Psi_1`$.
+///    layer, of packing fraction above 0.60, on a gas of less than half this packing fraction. Second, its
+///    two-roll flow has died: $`|\langle\Psi_2\rangle| < 0.03`$.
+/// 2. A cluster shows **no roll** if its center is at most $`3\sigma`$ from the origin. If the height profile
+///    has a compact layer, the cluster is collapsed instead: near the collapse, two rolls come and go over
+///    the layer.
+/// 3. A cluster shows **two rolls** if $`|\Psi_2| > 2|\Psi_1|`$: the disks rise in the middle if $`\Psi_2`$
+///    is positive, and otherwise sink there.
+/// 4. A cluster shows **one roll** otherwise: a clockwise one if $`\Psi_1`$ is positive, and otherwise a
+///    counterclockwise one.
 ///
 /// The bound of $`3\sigma`$ compares the center of a cluster with *single* samples of a gas at rest. A
-/// fraction $`e^{-9/2}`$ of these, one in ninety, lies as far out. Unlike an error of the mean, this bound
-/// does not depend on the correlation of the samples. The rolls of the paper's system are far stronger, so
-/// the number matters only at their onset.
+/// fraction $`e^{-9/2}`$ of these samples, one in ninety, lies beyond the bound. Unlike an error of the mean,
+/// this bound does not depend on the correlation of the samples. The rolls of the paper's system are far
+/// above the bound, so its value matters only at their onset.
 ///
 /// In two equal rolls $`\Psi_1`$ vanishes, while one roll may have any $`\Psi_2`$ (paper, section III). At
-/// large gravity, that $`\Psi_2`$ is a third of $`|\Psi_1|`$. At small gravity, the roll leans further to one
-/// side as the loss grows, until the two are equal: a ratio of 1 would call it two rolls there. A ratio of
-/// 1.5 or 3 instead of 2 hardly matters: it changes the names of three or four of 1682 states in
-/// `docs/reproduction/runs.tar.xz`.
+/// large gravity, $`\Psi_2`$ of one roll is a third of $`|\Psi_1|`$. At small gravity, the roll leans further
+/// to one side as the loss grows, until $`|\Psi_2|`$ equals $`|\Psi_1|`$: there, a bound of 1 on their ratio
+/// would name the roll two rolls. A bound of 1.5 or 3 instead of 2 hardly matters: it changes the names of
+/// three or four of the 1682 states in `docs/reproduction/runs.tar.xz`.
 ///
 /// A collapsed run keeps a weak, slow $`\Psi_2`$, whose mean settles only after thousands of oscillations.
 ///
@@ -101,22 +102,22 @@ impl Default for StateCriteria {
 }
 
 impl StateCriteria {
-    /// Sets the multiple of the thermal noise above which flow counts; 3 unless given.
+    /// Sets the multiple of the thermal noise above which flow counts; 3 unless set.
     ///
     /// # Errors
-    /// If it is negative or not finite.
+    /// If the multiple is negative or not finite.
     pub fn with_noise_multiple(self, multiple: f64) -> Result<Self, ParameterError> {
         Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
     }
 
-    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the |⟨Ψ₂⟩| below
-    /// which rolls have died, 0.03 unless given.
+    /// Sets the packing fraction above which a layer is compact (0.60 unless set), and the value of |⟨Ψ₂⟩|
+    /// below which two-roll flow has died (0.03 unless set).
     ///
     /// The bound on $`|\langle\Psi_2\rangle|`$ is a velocity; 0.03 is meant for $`A\omega = 1`$, as in the
     /// paper ([`with_base_speed`](Self::with_base_speed)).
     ///
     /// # Errors
-    /// If one is negative or not finite.
+    /// If either is negative or not finite.
     pub fn with_collapse(self, packing_fraction: f64, order: f64) -> Result<Self, ParameterError> {
         let packing_fraction = non_negative("packing fraction", packing_fraction)?;
         Ok(Self {
@@ -130,13 +131,13 @@ impl StateCriteria {
     /// base), in the units of the samples.
     ///
     /// # Errors
-    /// If it is not positive or not finite.
+    /// If the speed is not positive or not finite.
     pub fn with_base_speed(self, speed: f64) -> Result<Self, ParameterError> {
         let collapsed_order = self.collapsed_order * positive("speed of the base", speed)?;
         Ok(Self { collapsed_order, ..self })
     }
 
-    /// Sets the ratio |Ψ₂|/|Ψ₁| above which a cluster shows two rolls; 2 unless given.
+    /// Sets the ratio |Ψ₂|/|Ψ₁| above which a cluster shows two rolls; 2 unless set.
     ///
     /// ```
     /// use granular_edmd_study::analysis::{ConvectiveRegime, StateCriteria};
@@ -149,16 +150,16 @@ impl StateCriteria {
     /// ```
     ///
     /// # Errors
-    /// If it is not positive or not finite.
+    /// If the ratio is not positive or not finite.
     pub fn with_two_rolls(self, ratio: f64) -> Result<Self, ParameterError> {
         Ok(Self { two_rolls: positive("ratio of two rolls to one", ratio)?, ..self })
     }
 
-    /// Sets the least weight that one roll and two rolls must each have in order to coexist; 0.05 unless
-    /// given.
+    /// Sets the smallest weight that one roll and two rolls must each have to count as coexisting; 0.05
+    /// unless set.
     ///
     /// # Errors
-    /// If it is not in `[0, 0.5]`.
+    /// If the weight is not in `[0, 0.5]`.
     pub fn with_least_weight(self, weight: f64) -> Result<Self, ParameterError> {
         let valid = (0.0..=0.5).contains(&weight);
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
@@ -237,7 +238,7 @@ impl Classification {
 
     /// Returns the state with the largest weight.
     ///
-    /// If several states have it, the state of the first cluster wins.
+    /// If several states have the same largest weight, the state of the first cluster wins.
     pub fn state(&self) -> ConvectiveState {
         let weights = self.states.iter().map(|&state| (state, self.weight(state)));
         let start = (ConvectiveState::NoRoll, 0.0);
@@ -258,11 +259,12 @@ impl Classification {
         self.iter().filter(|&(state, _)| counts(state)).map(|(_, cluster)| cluster.weight()).sum()
     }
 
-    /// Returns the region of Fig. 5: coexistence if one roll and two rolls both have the least weight, and no
-    /// rolls have less; otherwise the region of the number of rolls with the largest weight.
+    /// Returns the region of Fig. 5. It is coexistence if one roll and two rolls each have at least the
+    /// [least weight](StateCriteria::with_least_weight), while no roll and the collapsed state together have
+    /// less. Otherwise, the largest weight decides.
     ///
-    /// Two rolls that come and go near the collapse lean to one side in between. This is the transition from
-    /// flow to no flow, and not the coexistence of one roll with two.
+    /// Near the collapse, two rolls come and go, and lean to one side in between. This is a transition from
+    /// flow to no flow, not a coexistence of one roll and two rolls.
     pub fn regime(&self) -> ConvectiveRegime {
         let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
         let collapsed = self.weight(ConvectiveState::Collapsed);

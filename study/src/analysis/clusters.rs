@@ -6,13 +6,13 @@ use granular_edmd::quantity::{accept, non_negative};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Number of restarts. With four clusters or fewer, most of them find the same best result.
+/// Number of restarts. With four clusters or fewer, most restarts find the same best result.
 const RESTARTS: usize = 16;
 
 /// Largest number of iterations from one start, far above the usual number.
 const ROUNDS: usize = 1000;
 
-/// Largest coordinate. Its square, summed over all points, stays finite.
+/// Largest allowed coordinate. The sum of the squares over all points stays finite.
 const LARGEST: f64 = 1e100;
 
 /// Largest number of clusters to look for: one roll of either sense, and two rolls of either sense.
@@ -66,7 +66,7 @@ impl Cluster {
     fn variance(&self, direction: DVec2) -> f64 {
         let (xx, yy, xy) = self.covariance;
         let DVec2 { x, y } = direction;
-        // The variance is zero across a line of points, and rounding can make it negative.
+        // For points on a line, the variance across the line is zero, and rounding can make it negative.
         (xx * x * x + 2.0 * xy * x * y + yy * y * y).max(0.0)
     }
 
@@ -90,7 +90,7 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// Creates clusters from the label of each sorted point, and the point's index in the given order.
+    /// Creates clusters from each sorted point's label and its index in the given order.
     pub(super) fn new(sorted: &[DVec2], labels: &[usize], order: &[usize]) -> Self {
         let most = labels.iter().max().map_or(0, |&label| label + 1);
         let members = |label: usize| -> Vec<DVec2> {
@@ -101,8 +101,8 @@ impl Clusters {
             .filter(|(_, members)| !members.is_empty())
             .map(|(label, members)| (label, Cluster::new(&members, sorted.len())))
             .collect();
-        // The search numbers its clusters in a random order. Sorted by center, a cluster has the same number
-        // for any seed.
+        // The search numbers its clusters in a random order. Once the clusters are sorted by center, each has
+        // the same number for any seed.
         found.sort_by(|(_, a), (_, b)| {
             a.center.x.total_cmp(&b.center.x).then(a.center.y.total_cmp(&b.center.y))
         });
@@ -155,15 +155,15 @@ impl Clusters {
 ///
 /// A k-means search finds as many clusters as requested, so the number must follow from the result itself.
 /// Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each half the
-/// density falls away from the cut. The mean of the half is therefore at most $`\sqrt3`$ of its standard
-/// deviations away from the cut, with equality for the uniform density. A single cloud has
-/// $`D \le 2\sqrt3 = 3.46`$ (a Gaussian one 2.65), so above 4 there are two clouds. Neither the width of a
-/// cloud nor the correlation of its samples enters, as long as the series fills the cloud. A series of only a
-/// few correlation times can look like several clouds.
+/// density falls away from the cut. The mean of a half is therefore at most $`\sqrt3`$ standard deviations of
+/// this half away from the cut, with equality for the uniform density. A single cloud thus has
+/// $`D \le 2\sqrt3 = 3.46`$ (2.65 if it is Gaussian), so $`D > 4`$ means two clouds. This bound depends
+/// neither on the width of the cloud nor on the correlation of its samples, as long as the series fills the
+/// cloud. A series of only a few correlation times can look like several clouds.
 ///
 /// `noise` is the least standard deviation of a single state, such as
-/// [`thermal_noise`](super::thermal_noise). Clusters closer than four times this noise are never distinct,
-/// however sharp they are.
+/// [`thermal_noise`](super::thermal_noise). Clusters whose centers are closer than four times this noise are
+/// never distinct, however narrow the clusters are.
 ///
 /// # Errors
 /// If there is no point, a coordinate is not finite or above 1e100 in magnitude, or the noise is negative or
@@ -171,8 +171,8 @@ impl Clusters {
 pub(crate) fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Result<Clusters, ParameterError> {
     non_negative("noise", noise)?;
     let mut distinct = k_means(points, 1, RESTARTS, seed)?;
-    // The search continues after the first number that fails. Three clouds in a row, cut in two, make a wide
-    // cluster that is not separated from the other; cut in three, they are.
+    // The search continues after the first number that fails. If three clouds in a row are cut in two, one of
+    // the clusters is wide, and is not separated from the other. Cut in three, they are separated.
     for clusters in 2..=MOST.min(points.len()) {
         let found = k_means(points, clusters, RESTARTS, seed)?;
         if found.separation(noise) > DISTINCT {
@@ -182,7 +182,7 @@ pub(crate) fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Resu
     Ok(distinct)
 }
 
-/// Finds this number of clusters in a plane by k-means, the best of several restarts.
+/// Finds the given number of clusters in a plane by k-means, and keeps the best result of several restarts.
 ///
 /// The search looks for the centers $`c_j`$ that minimize the scatter $`\sum_i \min_j |r_i - c_j|^2`$
 /// (MacQueen 1967, the paper's reference 14). It starts from points far from each other, and from centers
@@ -227,8 +227,8 @@ fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
     })
 }
 
-/// Returns the first centers, each the farthest point from the ones before. A cloud of few points that is far
-/// from all others has one of them, though a draw may miss it.
+/// Returns the first centers: each is the point farthest from the previous centers. A small cloud that is far
+/// from all others thus gets a center, which a random draw could miss.
 fn farthest(points: &[DVec2], clusters: usize) -> Vec<DVec2> {
     let mean = points.iter().sum::<DVec2>() / points.len() as f64;
     let mut centers = vec![points[most_distant(points, |point| point.distance_squared(mean))]];
@@ -248,11 +248,11 @@ fn most_distant(points: &[DVec2], distance: impl Fn(DVec2) -> f64) -> usize {
     distances.fold((0, -1.0), |most, next| if next.1 > most.1 { next } else { most }).0
 }
 
-/// Draws the first centers among the points. The probability of each next one is proportional to its squared
-/// distance from the nearest center so far.
+/// Draws the first centers among the points. The probability that a point becomes the next center is
+/// proportional to its squared distance from the nearest center so far.
 fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPlus) -> Vec<DVec2> {
     // Centers drawn evenly often begin in the same cloud, and a descent cannot carry one of them across the
-    // gap to another cloud. Drawn by squared distance, they begin in different clouds in most restarts.
+    // gap to another cloud. Centers drawn by squared distance begin in different clouds in most restarts.
     let first = (uniform(generator) * points.len() as f64) as usize;
     let mut centers = vec![points[first.min(points.len() - 1)]];
     while centers.len() < clusters {
@@ -262,11 +262,11 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
             left -= distance;
             distance > 0.0 && left <= 0.0
         };
-        // Rounding of the sum may leave a remainder after all points. Then the last point that is not a
-        // center yet is the next one.
+        // Rounding of the sum may leave a remainder after all points. Then the next center is the last point
+        // that is not yet a center.
         let last = distances.iter().rposition(|&distance| distance > 0.0);
         let Some(next) = distances.iter().enumerate().find(passed).map(|(point, _)| point).or(last) else {
-            // All points lie on centers: there are no other distinct points.
+            // All points lie on centers: no further distinct point exists.
             break;
         };
         centers.push(points[next]);

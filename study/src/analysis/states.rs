@@ -127,8 +127,9 @@ impl TransitionLine {
         }
     }
 
-    /// Returns true beyond the line and false before it, for a control value at which these regimes were
-    /// seen. The result is `None` if they lie on both sides.
+    /// Returns whether a control value, at which the given regimes were seen, lies beyond the line. If the
+    /// regimes lie on both sides, the value is beyond line 1–2 (a) and before line 1–2 (b); for the other
+    /// lines the result is `None`.
     fn side(self, seen: Seen) -> Option<bool> {
         let (least, most) = (seen.least >= self.beyond(), seen.most >= self.beyond());
         match self {
@@ -157,13 +158,13 @@ impl fmt::Display for TransitionLine {
 pub struct Transition {
     /// The transition line to which the point belongs.
     pub line: TransitionLine,
-    /// Middle between the neighboring control values on the two sides of the line.
+    /// Midpoint of the neighboring control values on the two sides of the line.
     pub value: f64,
-    /// Half the distance between these control values. The transition lies between `value - error` and
+    /// Half the difference of these control values. The transition lies between `value - error` and
     /// `value + error`.
     pub error: f64,
-    /// True if the regime advances in the order of growing energy loss as the control value grows. The regime
-    /// goes back where the paper finds re-entrance.
+    /// True if increasing the control value leads to the regime with the larger energy loss. It is false
+    /// where the paper finds re-entrance.
     pub rising: bool,
 }
 
@@ -177,15 +178,16 @@ struct Seen {
 
 /// Finds the transitions along one control parameter.
 ///
-/// The observations are the regimes seen at all values of the parameter, in any order: on a ramp up, on a
-/// ramp down, with other seeds. The result is in ascending order of the values, and at equal values in the
-/// order of the lines.
+/// The observations are the regimes seen at all values of the parameter, in any order: from ramps up, ramps
+/// down, and runs with other seeds. The result is in ascending order of the values, and at equal values in
+/// the order of the lines.
 ///
 /// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
 /// the first value where a run shows two rolls, or both numbers of rolls alternately, and ends (b) at the
-/// last value where a run shows anything but two rolls. The other lines have no hysteresis in the paper.
-/// Where runs disagree about them, the transition lies somewhere between the values at which the runs agree,
-/// and its error covers that range. The observations of a single ramp give the points of that ramp.
+/// last value where a run shows anything but two rolls. The other two lines have no hysteresis in the paper.
+/// Where runs disagree about such a line, the transition lies somewhere between the values at which the runs
+/// agree, and the error of the transition covers this range. The observations of a single ramp give the
+/// transitions of this ramp.
 ///
 /// # Errors
 /// If a control value is not finite.
@@ -220,8 +222,8 @@ fn merge(
         |(value, regime)| Ok(Seen { value: finite("control value", value)?, least: regime, most: regime });
     let mut all = observations.into_iter().map(check).collect::<Result<Vec<_>, ParameterError>>()?;
     all.sort_by(|a, b| a.value.total_cmp(&b.value));
-    // By hysteresis, runs at one value may end in different regimes. The entry of the value keeps the lowest
-    // and the highest, and a line between these two does not count as crossed there.
+    // Because of hysteresis, runs at one value may end in different regimes. The value's entry keeps the
+    // lowest and the highest regime.
     all.dedup_by(|next, kept| {
         let same = next.value == kept.value;
         if same {

@@ -1,4 +1,4 @@
-//! The arguments of the command line: the commands, and the manner of a run.
+//! The arguments of the command line: the commands and their options.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use granular_edmd::ParameterError;
 
 use crate::Control;
 
-/// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
+/// Largest number of threads of a run: more than any machine has processors, and few enough to start.
 const MOST_THREADS: i64 = 4096;
 
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
@@ -30,11 +30,12 @@ pub(super) enum Command {
         /// File to write; standard output if not given. An existing file is not overwritten.
         file: Option<PathBuf>,
     },
-    /// Explains a key of a plan or a column of the tables, or all of them: meaning, unit, range and default.
+    /// Explains a key of a plan or a column of the tables, or all keys and columns: meaning, unit, range and
+    /// default.
     Explain {
         /// Name of the key, for example `friction`, `protocol.settle` or `protocol`.
         key: Option<String>,
-        /// Prints a JSON schema of plans instead, by which editors complete and check them.
+        /// Prints a JSON schema of plans instead. Editors complete and check plans with it.
         #[arg(long, conflicts_with = "key")]
         schema: bool,
     },
@@ -50,7 +51,7 @@ pub(super) enum Command {
         /// Folder of the study: empty, or one with this plan.
         #[arg(long)]
         out: PathBuf,
-        /// Index of the only ramp to do, counted from 0.
+        /// Index of the ramp to run, counted from 0; all ramps if not given.
         #[arg(long)]
         ramp: Option<usize>,
         #[command(flatten)]
@@ -72,21 +73,21 @@ pub(super) enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Writes the disks after each cycle of a value, for OVITO, LAMMPS or ParaView, by the ending of the
-    /// file.
+    /// Writes the disks after each cycle of a value, for OVITO, LAMMPS or ParaView. The ending of the file's
+    /// name chooses the format.
     Trajectory(Trajectory),
-    /// Writes the disks of a file of any format to a file of another format.
+    /// Reads disks from a file of any accepted format, and writes them to a file of another format.
     ///
     /// Columns are found by their names, in any order and case: x, y or pos, velo or vx, radius or diameter,
     /// mass, density or momenta, omega, orientation or angle, id, type, kind or species, image. Notes on
     /// standard error say what is ignored, wrapped or shrunk.
     Convert(Convert),
-    /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the
-    /// state before one of them.
+    /// Runs a value again, bit by bit the same, and writes its last collisions, its collisions in an interval
+    /// of time, or the state before a collision.
     ///
     /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
-    /// the wall, position of the disk, speeds of closing and of slip before, impulse on the disk, change of
-    /// energy.
+    /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
+    /// disk, change of energy.
     Replay(Replay),
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
     /// from its position in the other run than a tolerance.
@@ -96,8 +97,8 @@ pub(super) enum Command {
         /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
         shell: String,
     },
-    /// Allows this program to continue a study that other code began. Records keep the mark of the code that
-    /// made them.
+    /// Allows this program to continue a study that other code began. Each record keeps the mark of the code
+    /// that made it.
     Accept {
         /// Folder of the study.
         folder: PathBuf,
@@ -109,20 +110,21 @@ pub(super) enum Command {
         /// Prints the core hours as JSON.
         #[arg(long, requires = "plan")]
         json: bool,
-        /// Measures for a second only, by shorter intervals, whose times are a few percent longer.
+        /// Measures for one second only. The measured intervals are shorter, and times per collision a few
+        /// percent longer.
         #[arg(long)]
         quick: bool,
     },
 }
 
-/// The value of a plan or a study, and the time until which it runs.
+/// A value of a plan or a study, and the time at which its run ends.
 #[derive(Debug, clap::Args)]
 pub(super) struct Place {
     /// Index of the ramp, counted from 0.
     #[arg(long, default_value_t = 0)]
     pub(super) ramp: usize,
-    /// Index of the value in the ramp, counted from 0. A value after the first one starts where an earlier
-    /// one ended, which only the folder of a study knows.
+    /// Index of the value in the ramp, counted from 0. Any value after the first one starts from the end of
+    /// an earlier value, and only the folder of a study has this state.
     #[arg(long, default_value_t = 0)]
     pub(super) value: usize,
     /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
@@ -160,7 +162,7 @@ pub(super) struct Convert {
     /// Frame to read, counted from 0, or from the end if negative; `last` for −1.
     #[arg(long, default_value = "last", allow_negative_numbers = true, value_parser = frame)]
     pub(super) frame: isize,
-    /// Step of the frame to read instead, as dumps and GSD number their frames.
+    /// Step of the frame to read, instead of its number: dumps and GSD files number their frames by steps.
     #[arg(long, conflicts_with = "frame")]
     pub(super) step: Option<u64>,
     /// Largest overlap that is accepted, relative to the sum of the radii.
@@ -192,13 +194,13 @@ pub(super) struct Replay {
     /// Absolute time after which all collisions are written.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) from: Option<f64>,
-    /// Id of a disk, to write only its collisions.
+    /// Id of a disk: only collisions of this disk are written.
     #[arg(long)]
     pub(super) disk: Option<u64>,
-    /// Number of collisions to write, the last ones; 10 if there is no `--from`.
+    /// Number of the last collisions to write; 10 if there is no `--from`.
     #[arg(long)]
     pub(super) last: Option<usize>,
-    /// Number of a collision, to write the state before it instead: as disks if the file ends in .xyz,
+    /// Number of a collision: the state before it is written instead, as disks if the file ends in .xyz,
     /// .lammpstrj, .csv, .data or .vtp, and otherwise as a checkpoint for `--start`.
     #[arg(long, conflicts_with_all = ["from", "disk", "last"])]
     pub(super) before: Option<u64>,
@@ -211,14 +213,14 @@ pub(super) struct Replay {
 pub(super) struct Diff {
     /// A plan, in TOML (`-` for standard input), or the folder of a study.
     pub(super) first: PathBuf,
-    /// The other plan or folder; the first one again if not given.
+    /// The other plan or folder; if not given, the same as the first.
     pub(super) second: Option<PathBuf>,
     #[command(flatten)]
     pub(super) place: Place,
     /// File from which the second run starts; `--start` belongs to the first.
     #[arg(long)]
     pub(super) other_start: Option<PathBuf>,
-    /// Distance beyond which a disk is away from its position in the other run.
+    /// Distance from its position in the other run beyond which a disk counts as displaced.
     #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
     pub(super) tolerance: f64,
 }
@@ -229,21 +231,21 @@ pub(super) struct Manner {
     /// Number of threads; one for each processor if not given.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub(super) threads: Option<u16>,
-    /// Folder of an earlier study to reuse. This plan may add values to the axes and to the end of the ramp,
-    /// repeats, and samples. Can be given several times.
+    /// Folder of an earlier study to reuse. Compared with its plan, this plan may have more values on the
+    /// axes and at the end of the ramp, more repeats, and more samples. Can be given several times.
     #[arg(long)]
     from: Vec<PathBuf>,
-    /// Runs values that stalled or failed again, with those after them in their ramps. The same code fails
-    /// again.
+    /// Runs again the values that stalled, failed or reached a limit, and all later values of their ramps.
+    /// The same code fails again.
     #[arg(long)]
     pub(super) retry: bool,
-    /// Ends as soon as other processes do all that is left.
+    /// Ends as soon as only work of other processes is left.
     #[arg(long)]
     no_wait: bool,
-    /// Ends each value that takes more than this number of seconds.
+    /// Ends each value that takes more than this number of wall-clock seconds.
     #[arg(long)]
     most_seconds: Option<f64>,
-    /// Writes no tables when all ramps are done; `tables` does so later.
+    /// Writes no tables when all ramps are done; `tables` writes them later.
     #[arg(long)]
     no_tables: bool,
     /// Also reads the records of finished ramps, and runs damaged or lost ones again.
@@ -252,7 +254,7 @@ pub(super) struct Manner {
 }
 
 impl Manner {
-    /// Returns a control with these wishes.
+    /// Returns a control with these options.
     pub(super) fn of<'a>(&'a self, control: Control<'a>) -> Result<Control<'a>, ParameterError> {
         let control = control.with_earlier_studies(&self.from);
         let control = if self.no_wait { control.without_waiting() } else { control };

@@ -13,14 +13,14 @@ use super::terminal::{read, refused, say};
 use super::{End, Failure, Plan, StudyError, core_time};
 use crate::Experiment;
 
-/// Largest number of ramps whose first values are run for the core hours of a plan.
+/// Largest number of ramps whose first values are run in order to estimate the core hours of a plan.
 const RAMPS: usize = 4;
 
 type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
 /// Prints the time per collision in each standard state.
 pub(super) fn table(quick: bool) -> Result<End, Failure> {
-    // In short intervals, filling the caches takes a part of the time.
+    // In a short interval, filling the caches takes a noticeable part of the time.
     let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
     let states: [(&str, Stretch); 7] = [
         ("dilute", stretches(speed::dilute()?)),
@@ -32,7 +32,7 @@ pub(super) fn table(quick: bool) -> Result<End, Failure> {
         ("vessel", stretches(speed::vessel()?)),
     ];
     let mut reports = states.each_ref().map(|_| Vec::with_capacity(rounds));
-    // The states take turns, so that a slow phase of the machine slows one interval of each.
+    // The states alternate, so that a slow phase of the machine affects one interval of each state.
     for _ in 0..rounds {
         for ((_, stretch), reports) in states.iter().zip(&mut reports) {
             reports.push(stretch(collisions)?);
@@ -54,7 +54,7 @@ fn stretches(
     Box::new(move |collisions| speed::stretch(&run, collisions, &mut ()))
 }
 
-/// Prints the core hours of a plan, from a short run of the first values of some ramps.
+/// Prints the core hours of a plan, estimated from short runs of the first values of some ramps.
 pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Result<End, Failure> {
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
     let (ramps, share) = (plan.ramp_count(), Duration::from_millis(if quick { 200 } else { 2000 }));
@@ -78,8 +78,8 @@ pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Resul
     Ok(End::Done)
 }
 
-/// Returns the hours on a core of the first value of a ramp, if all its cycles take as long as the present
-/// ones.
+/// Returns the core hours that the first value of a ramp takes if all its cycles take as long as the measured
+/// cycles.
 fn hours<E: Experiment>(plan: &Plan<E>, ramp: usize, share: Duration) -> Result<f64, Failure> {
     let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let experiment = plan.experiment(ramp, 0)?;

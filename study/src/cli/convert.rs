@@ -1,4 +1,4 @@
-//! The command `convert`, and the formats of files of disks, which follow from the endings of names.
+//! The command `convert`, and the file formats for disks, which follow from the endings of file names.
 
 use std::f64::consts::PI;
 use std::io;
@@ -44,7 +44,7 @@ pub(super) fn convert(wishes: &Convert) -> Result<End, Failure> {
     Ok(End::Done)
 }
 
-/// A format of files of disks.
+/// A file format for disks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ending {
     Csv,
@@ -56,7 +56,7 @@ pub(super) enum Ending {
     Xyz,
 }
 
-/// Endings of names.
+/// Endings of file names.
 const ENDINGS: [(&str, Ending); 10] = [
     ("xyz", Ending::Xyz),
     ("extxyz", Ending::Xyz),
@@ -71,7 +71,7 @@ const ENDINGS: [(&str, Ending); 10] = [
 ];
 
 impl Ending {
-    /// Returns the format of a file, by the ending of its name. A trajectory as text may be compressed.
+    /// Returns the format of a file from the ending of its name. A text trajectory may be compressed.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?.to_ascii_lowercase();
         let (name, is_packed) = name.strip_suffix(".gz").map_or((name.as_str(), false), |name| (name, true));
@@ -81,7 +81,7 @@ impl Ending {
         (!is_packed || matches!(found, Self::Xyz | Self::Dump)).then_some(found)
     }
 
-    /// Returns the format of a file, or the error of an ending that is not accepted.
+    /// Returns the format of a file, or an error if the ending of its name is not accepted.
     pub(super) fn need(path: &Path, accepts: impl Fn(Self) -> bool) -> Result<Self, PlanError> {
         Self::of(path).filter(|&ending| accepts(ending)).ok_or_else(|| {
             let accepted = ENDINGS.iter().filter(|(_, ending)| accepts(*ending));
@@ -95,7 +95,8 @@ impl Ending {
         matches!(self, Self::Xyz | Self::Dump | Self::Gsd | Self::Pvd)
     }
 
-    /// Returns the bytes of a file with one state, if it is plain text.
+    /// Returns `state` encoded in this format, or `None` if the format is not plain text or the file is
+    /// compressed.
     pub(super) fn text(self, path: &Path, state: &State) -> Option<io::Result<Vec<u8>>> {
         if path.extension().is_some_and(|ending| ending == "gz") {
             return None;
@@ -123,7 +124,7 @@ impl Ending {
         write_new(path, &bytes)
     }
 
-    /// Returns the names of the data in the state that the format cannot hold.
+    /// Returns the names of the state's data that the format cannot hold.
     pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
         let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
         let any = |has: fn(&Disk) -> bool| state.disks().iter().any(has);

@@ -1,4 +1,4 @@
-//! The command `diff`: the first differences of two runs.
+//! The command `diff`: finds where two runs first differ.
 
 use std::collections::HashSet;
 
@@ -15,7 +15,7 @@ use crate::{Experiment, Run};
 /// Number of parts of a compared interval, after each of which the progress is shown.
 const PARTS: u32 = 32;
 
-/// Compares two runs, for longer and longer times until both differences are found.
+/// Compares two runs over longer and longer times, until both differences are found or a run ends.
 pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Diff) -> Result<End, Failure> {
     let tolerance = non_negative("tolerance", wishes.tolerance).map_err(PlanError::from)?;
     let second = wishes.second.as_ref().unwrap_or(&wishes.first);
@@ -25,7 +25,7 @@ pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Diff) -
     end_at_once()?;
     let (begin, end, cycle) = (one.run.time().max(two.run.time()), one.end.min(two.end), one.cycle);
     let show = one.clock();
-    // One start file may be from a later time than the other.
+    // The start file of one run may hold a later time than the start of the other run.
     one.advance(begin, u64::MAX, &show)?;
     two.advance(begin, u64::MAX, &show)?;
     let mut replays = [Replay::new(one.run, cycle)?, Replay::new(two.run, cycle)?];
@@ -56,7 +56,7 @@ pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Diff) -
     Ok(if are_same { End::Done } else { End::Different })
 }
 
-/// Returns an error if the runs have no disk in common, and reports disks that only one run has.
+/// Returns an error if the runs have no disk in common. Reports the number of disks that only one run has.
 fn check_disks(one: &[Disk], two: &[Disk]) -> Result<(), Failure> {
     let ids: HashSet<u64> = one.iter().map(Disk::id).collect();
     let common = two.iter().filter(|disk| ids.contains(&disk.id())).count();

@@ -1,5 +1,5 @@
-//! The meanings of the keys of plans, for the command `explain`, as the JSON schema by which editors complete
-//! and check plans, and as the comments of a new plan.
+//! The meanings of the keys of plans: the text of the command `explain`, the JSON schema with which editors
+//! complete and check plans, and the comments of a new plan.
 
 use std::collections::HashSet;
 use std::sync::LazyLock;
@@ -12,17 +12,17 @@ use crate::parameters;
 use crate::plan::values::Steps;
 use crate::{Column, Experiment, Plan, PlanError, Table};
 
-/// The keys that every plan has, whatever its experiment, by section.
+/// The keys that the plans of all experiments have, by section.
 static OF_PLANS: Meanings = LazyLock::new(|| meanings(include_str!("keys.txt")));
 
-/// Examples of optional sections, shown for plans that lack them.
+/// Examples of optional sections, which a new plan shows as comments if it lacks the section.
 const EXAMPLES: [(&str, &str); 3] = [
     ("repeats", "repeats = 8   (before [experiment])"),
     ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),
     ("[[sweep]]", "[[sweep]]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]"),
 ];
 
-/// Returns the meaning of a key of a plan by its whole name, such as `protocol.settle` or
+/// Returns the meaning of the key of a plan that has the given whole name, such as `protocol.settle` or
 /// `experiment.friction`.
 pub(super) fn of_key<E: Experiment>(key: &str) -> Option<&'static str> {
     match key.strip_prefix("experiment.") {
@@ -32,7 +32,7 @@ pub(super) fn of_key<E: Experiment>(key: &str) -> Option<&'static str> {
     }
 }
 
-/// Explains a key, or all of them: meaning, unit, range and default.
+/// Explains one key or column, or all keys and columns: meaning, unit, range and default.
 pub(super) fn explained<E: Experiment>(key: Option<&str>) -> Result<String, String> {
     let Some(key) = key else {
         let lines = all::<E>().map(|(name, meaning)| line::<E>(name, meaning));
@@ -61,7 +61,8 @@ pub(super) fn explained<E: Experiment>(key: Option<&str>) -> Result<String, Stri
     Err(format!("there is no key `{key}`{nearest}; `explain` without a key lists all"))
 }
 
-/// Returns all names with their meanings, except for names that are neither parameters nor columns.
+/// Returns all names with their meanings. A meaning of the experiment is left out if its name is neither a
+/// parameter nor a column.
 fn all<E: Experiment>() -> impl Iterator<Item = (&'static str, &'static str)> {
     let (shape, columns, tables) = (Shape::of::<E>(), E::columns(), E::tables());
     let exists = move |name: &str| {
@@ -162,7 +163,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     Ok(lines.join("\n"))
 }
 
-/// Returns the meaning of the key on a line, or of the section that begins there.
+/// Returns the meaning of the key on a line, or of the section that begins on the line.
 fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
     let key = match line.split_once(" = ") {
         Some((key, _)) => format!("{section}.{key}"),
@@ -172,7 +173,7 @@ fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
     of_key::<E>(key.trim_start_matches('.'))
 }
 
-/// Returns the parameters that have no value in the plan, as comments.
+/// Returns comments that list the parameters without a value in the plan.
 fn without_values<E: Experiment>(plan: &Plan<E>) -> Result<Vec<String>, PlanError> {
     let given = parameters::tree(&plan.parts.experiment)?;
     let parts = Shape::of::<E>().parts.into_iter();

@@ -55,7 +55,7 @@ fn counted(count: usize, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Returns a line with the values of all parameters that differ in or among the ramps, for all repeats.
+/// Returns a line for a point: the indices of its repeats, and the values of all parameters that vary.
 fn values_of<E: Experiment>(plan: &Plan<E>, point: usize) -> String {
     let ramp = point * plan.repeats();
     let changing = plan.ramp().map(Ramp::parameter);

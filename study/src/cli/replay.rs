@@ -21,7 +21,8 @@ const FEW: usize = 10;
 /// Number of collisions between two checks for signals.
 const BATCH: usize = 1024;
 
-/// Runs a value again, and writes the requested collisions or state. An incomplete file is removed.
+/// Runs a value again, and writes the requested collisions or the requested state. An incomplete file is
+/// removed.
 pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
     let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
     wishes.check(&source)?;
@@ -45,7 +46,7 @@ pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
 }
 
 impl Replay {
-    /// Returns an error if the run has no time after `--from`, or cannot have the disk of `--disk`.
+    /// Returns an error if the run ends before `--from`, or cannot contain the disk of `--disk`.
     fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<E>) -> Result<(), PlanError> {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
         match (self.from, self.disk.filter(|id| !is_there(id))) {
@@ -60,7 +61,7 @@ impl Replay {
     }
 }
 
-/// Writes collisions as they come, or the last ones at the end.
+/// Writes all collisions as they occur, or the last collisions at the end.
 fn rows<E: Experiment>(
     wishes: &Replay,
     mut source: Source<E>,
@@ -77,7 +78,7 @@ fn rows<E: Experiment>(
     let mut text = HEADINGS.to_owned() + "\n";
     while !is_over {
         for _ in 0..BATCH {
-            // The collisions up to an error are written, too.
+            // If the run ends with an error, the collisions before the error are still written.
             let next = steps.next(end).unwrap_or_else(|error| {
                 tell_end(steps.run(), &error);
                 None
@@ -103,7 +104,7 @@ fn rows<E: Experiment>(
     Ok(End::Done)
 }
 
-/// Writes the state before a collision, also before one that ended the run with an error.
+/// Writes the state before a collision, even if the collision ended the run with an error.
 fn state_before<E: Experiment>(
     number: u64,
     mut source: Source<E>,
@@ -130,7 +131,7 @@ fn state_before<E: Experiment>(
     write(&state).map(|_| End::Done)
 }
 
-/// Returns the contents of a file with the present state, by the ending of its name.
+/// Returns the present state, encoded in the format that the ending of the file's name chooses.
 fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
     let path = path.unwrap_or(Path::new("-.csv"));
     let Some(ending) = Ending::of(path) else { return Ok(run.checkpoint().to_bytes()?) };

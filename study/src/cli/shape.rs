@@ -1,4 +1,4 @@
-//! The shape of a type in a file, found by letting the type read one.
+//! The shape that a type has in a file, found by letting the type read a file.
 
 use serde::de::value::{Error, MapDeserializer, SeqDeserializer};
 use serde::de::{
@@ -6,10 +6,11 @@ use serde::de::{
     Visitor,
 };
 
-/// Largest number of readings, far above the number of parts of which only one is seen in a reading.
+/// Largest number of readings. It is far above the number of variants and options, of which a reading shows
+/// only one.
 const READINGS: usize = 1000;
 
-/// Largest depth. A type that contains itself has no end.
+/// Largest depth. The shape of a recursive type would have infinite depth.
 const DEPTH: usize = 8;
 
 /// The keys that a type accepts, with the kinds of their values.
@@ -23,9 +24,9 @@ pub(super) struct Shape {
 /// The kind of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// The type has not read it.
+    /// The type has not read the value.
     Unknown,
-    /// The type looks at the value before it decides.
+    /// The type examines the value before it decides what to read.
     Any,
     /// A variant without contents.
     Word,
@@ -49,7 +50,7 @@ impl Shape {
             if shape.is_known() {
                 break;
             }
-            // What is read is of no interest, and often refused.
+            // Only the shape counts: the value is not used, and the type often refuses it.
             let _ = T::deserialize(Reader { shape: &mut shape, depth: 0 });
         }
         shape
@@ -73,7 +74,8 @@ impl Shape {
     }
 }
 
-/// A file that has all that the type asks for, and notes it. Parts that are known are left out.
+/// A made-up file, which has whatever the type asks for, and records each request. Parts that are known
+/// already are left out.
 struct Reader<'s> {
     shape: &'s mut Shape,
     depth: usize,

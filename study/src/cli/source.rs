@@ -1,5 +1,5 @@
 //! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a
-//! file. The command `trajectory`, which needs nothing more.
+//! file. Also the command `trajectory`.
 
 use std::path::Path;
 use std::time::Duration;
@@ -31,7 +31,7 @@ pub(super) struct Source<E: Experiment> {
 }
 
 impl<E: Experiment> Source<E> {
-    /// Opens a value of a plan, or of the study in a folder.
+    /// Opens a value of a plan, or of the study in a folder, at its start.
     pub(super) fn open(path: &Path, place: &Place, start: Option<&Path>) -> Result<Self, Failure> {
         let Place { ramp, value, until, .. } = *place;
         let (run, cycle, end) = if path.is_dir() && start.is_none() {
@@ -67,7 +67,7 @@ impl<E: Experiment> Source<E> {
         }
     }
 
-    /// Runs until a time or a number of all collisions, whichever is first. Returns false if a signal
+    /// Runs until a time or a total number of collisions, whichever comes first. Returns false if a signal
     /// arrived.
     pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<bool, RunError> {
         while !is_stopped() {
@@ -107,8 +107,8 @@ fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>
     Ok(builder.disks(state.into_disks()).build()?)
 }
 
-/// Returns whether a file is not a checkpoint, or cannot be opened, in which case its reader gives a better
-/// error.
+/// Returns whether a file is not a checkpoint or cannot be read. In the second case, the reader of disks
+/// gives a better error.
 fn is_no_checkpoint(error: &CheckpointError) -> bool {
     match error {
         CheckpointError::File { source, .. } => matches!(**source, CheckpointError::NotACheckpoint),
@@ -116,8 +116,8 @@ fn is_no_checkpoint(error: &CheckpointError) -> bool {
     }
 }
 
-/// Prints the error with which a run ended. Errors name disks by their indices, and tables name them by their
-/// ids.
+/// Prints the error with which a run ended. The id of the disk is added, since errors name disks by index and
+/// tables by id.
 pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
     let id = match error {
         RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. } => run.disk(*disk),
@@ -156,7 +156,7 @@ pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Fail
     Ending::need(out, Ending::is_trajectory)?;
     let Source { mut run, cycle, .. } = Source::<E>::open(plan, place, place.start.as_deref())?;
     let mut recorder = Recorder::create(out, ByEnding, SampleTimes::every(cycle)?)?;
-    // Half a cycle more, so that rounding does not cut the last frame off.
+    // The run lasts half a cycle longer, so that rounding cannot lose the last frame.
     let end = run.time() + cycle * (f64::from(*cycles) + 0.5);
     run.run_until(place.until.map_or(end, |until| end.min(until)), &mut recorder)?;
     let (frames, disks) = (recorder.times().len(), run.len());

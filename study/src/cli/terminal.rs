@@ -1,5 +1,5 @@
-//! Input and output of the commands; the display of progress, as a bar on a terminal or else in lines, and
-//! the signals that stop a command.
+//! Input and output of the commands; the display of progress, which is a bar on a terminal and otherwise
+//! lines; and the signals that stop a command.
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
@@ -16,7 +16,7 @@ use crate::{PlanError, Progress, StudyError};
 /// True once Ctrl-C or SIGTERM was received.
 pub(super) static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Time between two lines if there is no terminal.
+/// Time between two lines of progress if there is no terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 /// Prints a line.
@@ -30,8 +30,8 @@ pub(super) fn tell(note: &str) {
     let _ = writeln!(io::stderr(), "note: {note}");
 }
 
-/// Evaluates the result of writing output. A closed pipe is not an error, since its reader has seen enough:
-/// the result is then false. A full disk is an error.
+/// Evaluates the result of writing output. If the reader has closed a pipe, the result is false, and not an
+/// error: the reader has seen enough. A full disk is an error.
 pub(super) fn wrote(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
@@ -46,13 +46,13 @@ pub(super) fn read(path: &Path) -> Result<String, Failure> {
     Ok(text.map_err(StudyError::io("read", path))?)
 }
 
-/// Writes a new file. An existing one is not overwritten.
+/// Writes a new file. An existing file is not overwritten.
 pub(super) fn write_new(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let written = fs::File::create_new(path).and_then(|mut file| file.write_all(bytes));
     Ok(written.map_err(StudyError::io("write", path))?)
 }
 
-/// Returns the error of a plan, with the name of its file.
+/// Returns a function that adds the file name to the error of a plan.
 pub(super) fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
     move |source| StudyError::Unreadable { path: path.to_owned(), source }
 }
@@ -99,7 +99,8 @@ impl Watch {
         let before = bar.position();
         bar.set_length(progress.total);
         bar.set_position(progress.done);
-        // Values that were finished earlier do not count for the rate.
+        // A jump of several steps comes from values that were finished earlier, and these do not count for
+        // the rate.
         if progress.done > before + 1 {
             bar.reset_eta();
         }

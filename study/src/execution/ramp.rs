@@ -14,7 +14,8 @@ use crate::plan::ramp::{Seen, Step};
 use crate::store::{Entries, Head};
 use crate::{Experiment, Plan, Study, StudyError};
 
-/// Shortest part of a run between two saves, so that a run advances even if it is saved all the time.
+/// Shortest part of a run between two saves. It makes a run advance even if saving takes longer than the save
+/// interval.
 const SHORTEST: Duration = Duration::from_millis(20);
 
 /// The progress through a ramp.
@@ -24,16 +25,16 @@ struct Walk<'a, 's, E: Experiment> {
     /// The records that the store had when the ramp was claimed.
     entries: &'a Entries,
     unfinished: &'a HashSet<[usize; 2]>,
-    /// The ramps of earlier studies that agree with this ramp in all values so far.
+    /// The ramps of earlier studies that have agreed with this ramp in all values so far.
     earlier: Vec<(&'a Study<E>, usize)>,
     seen: Vec<Seen>,
     last: Option<Record<E>>,
-    /// True if there is a file with the next value's unfinished state.
+    /// True if the next value has a file with its unfinished state.
     has_partial: bool,
 }
 
-/// Runs the ramps of a block until they are done or the run must stop. Returns false if another process does
-/// them.
+/// Runs the ramps of a block until they are done or the run must stop. Returns false if another process is
+/// running the block.
 pub(super) fn attempt<E: Experiment>(
     session: &Session<'_, E>,
     ramps: &Range<usize>,
@@ -41,11 +42,12 @@ pub(super) fn attempt<E: Experiment>(
     let study = session.study;
     let _claim = match study.claims.claim(ramps)? {
         Claimed::Ours(claim) => Some(claim),
-        // The caller of a run of one ramp makes sure that no other process runs it.
+        // The ramp can run without a claim: a caller that runs a single ramp assigns each ramp to one
+        // process.
         Claimed::Collision if session.ramps.len() == 1 => None,
         Claimed::Theirs | Claimed::Collision => return Ok(false),
     };
-    // Other processes may have finished some ramps before this process had the claim.
+    // Other processes may have finished some of the ramps before this process got the claim.
     let (entries, unfinished) = (study.store.refreshed()?, study.folder.unfinished()?);
     if let Some(error) = study.store.damage().filter(|_| !ramps.clone().all(|ramp| entries.is_done(ramp))) {
         session.if_sound::<()>(Err(error))?;
@@ -95,7 +97,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.new_value(step, before.as_ref())
     }
 
-    /// Returns the record of the next value, if it is finished.
+    /// Returns the record of the next value, or `None` if the value is not finished.
     fn known(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
         let (study, ramp, value) = (self.session.study, self.ramp, self.seen.len());
         let Some(entry) = self.entries.find(ramp, value) else { return Ok(None) };
@@ -107,17 +109,18 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let record = self.session.if_sound(read)?;
         if record.is_some() {
             self.advance(study.plan.protocol().steps());
-            // A process that was killed just after it had finished a value may have left this file.
+            // A process that was killed just after it had finished the value may have left the file of the
+            // unfinished value.
             self.forget_partial(value)?;
         }
         Ok(record)
     }
 
-    /// Runs the next value from a record, or takes the value over from an earlier study. Returns false if the
-    /// value was interrupted.
+    /// Takes the next value over from an earlier study, or runs it from the record `before`. Returns false if
+    /// the value was interrupted.
     fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<bool, StudyError> {
         let (study, value, started) = (self.session.study, self.seen.len(), Instant::now());
-        // A plan with many values was checked at only some of them.
+        // The value is checked now, since a new plan with many values is checked at only some of them.
         let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
         let origin = study.origin(self.ramp, value);
         let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
@@ -138,7 +141,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.keep(active.record(outcome)?, &warnings, Some(started.elapsed()))
     }
 
-    /// Returns the record of the next value, if an earlier study has it.
+    /// Returns an earlier study's record of the next value, or `None` if no earlier study has a suitable one.
     fn earlier(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
         let (plan, seen) = (&self.session.study.plan, &self.seen);
         // After a value with more samples, the next one starts from another state.
@@ -146,8 +149,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.earlier.retain(|(study, _)| are_same(&study.plan) && study.plan.next(seen) == Some(step));
         for (study, ramp) in &self.earlier {
             let record = study.known_record(*ramp, seen.len())?;
-            // Values from other code that the earlier study accepted are computed again here, and so are
-            // values that a limit ended, which may have been the clock's.
+            // Values that other code made are computed again, even if the earlier study accepted this code.
+            // Values that a limit ended are computed again, too: it may have been the limit on wall-clock
+            // time.
             let is_ours = |record: &Record<E>| study.is_ours(&record.contents.origin);
             let is_whole = |record: &Record<E>| !matches!(record.outcome(), Outcome::Limited { .. });
             if let Some(record) = record.filter(|record| is_ours(record) && is_whole(record)) {
@@ -172,8 +176,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.session.if_sound(read)
     }
 
-    /// Runs the steps of a value until it is finished, and saves it at intervals. Returns `None` if it was
-    /// interrupted.
+    /// Runs the steps of a value until the value is finished, and saves the value at intervals. Returns
+    /// `None` if it was interrupted.
     fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Option<Outcome>, StudyError> {
         let control = self.session.control;
         let (began, mut saved) = (Instant::now(), Instant::now());
@@ -215,8 +219,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         write_sealed::<Partial<E>>(&path, &partial)
     }
 
-    /// Stores the record of a value as the last record, with the warnings of its simulation and the time that
-    /// it took; `None` if it comes from an earlier study.
+    /// Stores the record of a value, with the warnings of the simulation and the time that the value took
+    /// (`None` if the record comes from an earlier study). The record becomes the last one of this ramp.
     fn keep(
         &mut self,
         record: Record<E>,
@@ -266,7 +270,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     }
 }
 
-/// The line of a record for people.
+/// The readable line about a record in the log.
 #[derive(serde::Serialize)]
 struct Line<'a> {
     ramp: usize,

@@ -14,7 +14,7 @@ use crate::parameters::{self, anywhere};
 use crate::store::{Entries, Entry, Head};
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
 
-/// Longest time between two checks of a thread for a request to stop.
+/// Longest time between two checks in which a thread looks for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
 
 /// The state that the threads of one [`Study::run`] share.
@@ -34,7 +34,7 @@ pub(super) struct Session<'a, E: Experiment> {
     ///
     /// The others then stop as if interrupted.
     pub(super) broken: AtomicBool,
-    /// True once this run has removed the mark that the study is complete.
+    /// True once this run has removed the mark of a complete study.
     is_opened: AtomicBool,
 }
 
@@ -101,7 +101,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         }
     }
 
-    /// Returns the data that were read, or notes a damaged file and returns `None`.
+    /// Returns the data that were read. If the file is damaged, notes it and returns `None`.
     pub(super) fn if_sound<T>(&self, read: Result<Option<T>, StudyError>) -> Result<Option<T>, StudyError> {
         match read {
             Err(StudyError::Damaged { path, reason }) => {
@@ -114,8 +114,8 @@ impl<'a, E: Experiment> Session<'a, E> {
         }
     }
 
-    /// Removes the mark that the study is complete, once in a run, before the first value that may not be in
-    /// the tables.
+    /// Removes the mark of a complete study, once in a run. Call this before the first value that may not be
+    /// in the tables.
     pub(super) fn open_study(&self) -> Result<(), StudyError> {
         if self.is_opened.swap(true, Ordering::Relaxed) {
             return Ok(());
@@ -145,7 +145,8 @@ impl<'a, E: Experiment> Session<'a, E> {
         let with = |mark| found().filter(|head| head.has(mark)).count();
         let finished = found().count();
         let more = found().filter(|head| head.value >= values).count();
-        // An unfinished refinement lacks at least one value.
+        // If a ramp is not done, at least one value is missing, even if a refinement has yet to add this
+        // value.
         let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
         let (failed, warned) = (with(Head::FAILED), with(Head::WARNED));
@@ -156,10 +157,10 @@ impl<'a, E: Experiment> Session<'a, E> {
     }
 }
 
-/// Blocks that wait, and blocks of other processes.
+/// The blocks that are waiting to be run, and the blocks of other processes.
 ///
-/// Processes begin at random blocks and continue in order from there, so they seldom meet, and each runs
-/// the blocks ahead of it. A process that meets another moves to a new random block.
+/// Each process begins at a random block and continues in order from there, so two processes seldom meet at a
+/// block. A process that meets another one moves to a new random block.
 #[derive(Debug)]
 pub(super) struct Queue(Mutex<Blocks>);
 
@@ -206,7 +207,7 @@ impl Queue {
         self.blocks().elsewhere.iter().cloned().flatten().collect()
     }
 
-    /// Lets a number of other processes' blocks wait for another attempt.
+    /// Moves up to `count` blocks of other processes to the waiting blocks, for another attempt.
     pub(super) fn retry(&self, count: usize) {
         let mut blocks = self.blocks();
         let mut tried = begun_anywhere(std::mem::take(&mut blocks.elsewhere));
@@ -219,13 +220,13 @@ impl Queue {
     }
 }
 
-/// Returns the same ring of blocks from a random one on.
+/// Rotates the blocks so that they begin at a random one.
 fn begun_anywhere(mut blocks: VecDeque<Range<usize>>) -> VecDeque<Range<usize>> {
     blocks.rotate_left(anywhere(blocks.len()));
     blocks
 }
 
-/// Returns the fields in which two plans differ, except for fields by which a study may grow.
+/// Returns the fields in which two plans differ, except for fields that may differ in a larger study.
 fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Difference>, PlanError> {
     const FREE: [&str; 7] =
         ["repeats", "end_states", "sweep", "protocol.samples", "ramp.values", "ramp.course", "ramp.refine"];

@@ -1,5 +1,5 @@
-//! One value of a ramp, from its start to its record: a pure function of the plan, the index and the record
-//! from which it starts.
+//! One value of a ramp, from its start to its record. The record is a pure function of the plan, the indices
+//! of ramp and value, and the record from which the value starts.
 
 use std::path::Path;
 use std::time::Duration;
@@ -34,7 +34,7 @@ pub(super) type Partial<E> = (Origin, WorkOf<E>, Checkpoint, Option<Vec<u8>>);
 
 type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 
-/// The finished work of a value.
+/// The work of a value so far.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Work<S, O> {
@@ -43,7 +43,7 @@ pub(super) struct Work<S, O> {
     steps: u64,
     /// True once the experiment has prepared the next step.
     is_prepared: bool,
-    /// True if the observer has seen the start of a run, and not its end.
+    /// True if the observer has seen the start of a run and not yet its end.
     is_under_way: bool,
     /// Counters at the start of the value.
     counters: Counters,
@@ -107,7 +107,8 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Riders { driving, companion, is_under_way: false })
     }
 
-    /// Returns whether a record of the same ramp in another study has all data for the record of this value.
+    /// Returns whether the record of the same value in another study contains all data for the record of this
+    /// value.
     pub(super) fn is_finished_by(&self, Record { contents, .. }: &Record<E>) -> bool {
         let (samples, all) = (contents.measured.samples.len() as u64, self.plan.protocol().samples());
         let is_whole = if contents.outcome == Outcome::Completed { samples == all } else { samples < all };
@@ -126,7 +127,7 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// Continues the value where it was saved.
     ///
     /// # Errors
-    /// If the saved data, which are in this file, are not of this value, or the companion cannot be made.
+    /// If the data saved in `path` do not belong to this value, or the companion cannot be created.
     pub(super) fn go_on(&'a self, partial: Partial<E>, path: &Path) -> Result<Active<'a, E>, StudyError> {
         let mut driving = self.driving()?;
         let is_loaded = match (&mut driving, &partial.3) {
@@ -158,7 +159,8 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok((work, run))
     }
 
-    /// Returns the time at which the value starts, in whole cycles if the length of a cycle has not changed.
+    /// Returns the time at which the value starts. It continues the count of whole cycles if the length of a
+    /// cycle has not changed.
     fn start(&self) -> Cycles {
         let Some(before) = self.before else { return Cycles::START };
         let (end, cycle) = (before.contents.end, before.experiment.cycle());
@@ -179,7 +181,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(run)
     }
 
-    /// Resumes a saved state with the rule of the experiment that saved it.
+    /// Resumes a saved state with the rule of the experiment `saved`, with which it was saved.
     fn resume(state: &Checkpoint, saved: &E, boundary: E::Boundary) -> Result<Run<E>, ExperimentError> {
         Ok(Simulation::resume(state, saved.rule()?, boundary).build()?)
     }
@@ -191,7 +193,7 @@ impl<'a, E: Experiment> Value<'a, E> {
 
 #[cfg(feature = "cli")]
 impl<E: Experiment> Study<E> {
-    /// Returns the experiment of a value, the simulation at its start, and the time of its end.
+    /// Returns a value's experiment, its simulation at the start, and the time of its end.
     pub(crate) fn start_of(&self, ramp: usize, value: usize) -> Result<(E, Run<E>, f64), StudyError> {
         let before = self.ramp_records(ramp).take(value).map(|record| Ok(self.plan.seen(&record?)));
         let seen: Vec<_> = before.collect::<Result<_, StudyError>>()?;
@@ -220,7 +222,7 @@ impl<E: Experiment> Active<'_, E> {
         self.run.warnings().iter().map(ToString::to_string).collect()
     }
 
-    /// Returns the number of steps that are done.
+    /// Returns the number of finished steps.
     pub(super) const fn steps(&self) -> u64 {
         self.work.steps
     }
@@ -229,9 +231,9 @@ impl<E: Experiment> Active<'_, E> {
         self.work.steps >= self.value.plan.protocol().steps()
     }
 
-    /// Runs the next step, which settles or takes a sample, for at most this wall-clock time. The observer
-    /// may end the value during the step. The next call continues a step that takes longer, with the same
-    /// bits. Returns whether the step is done; the error is the outcome of a value that ends early.
+    /// Runs the next step, which settles or takes a sample, for at most the wall-clock time `slice`. Returns
+    /// whether the step is done; if not, the next call continues the step, with the same bits. The error is
+    /// the outcome of a value that ends early.
     pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
         self.prepare()?;
         let ended = self.advance(slice);
@@ -269,7 +271,7 @@ impl<E: Experiment> Active<'_, E> {
         prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
     }
 
-    /// Runs to the sample of the next step, if it has one, takes it, and runs to the end of the step.
+    /// Runs the next step to its end, and takes its sample on the way if the step has one.
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.plan.protocol(), self.value.experiment.cycle());
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
@@ -301,7 +303,7 @@ impl<E: Experiment> Active<'_, E> {
         limits.with_most_collisions(most.saturating_sub(done))
     }
 
-    /// Returns the unfinished value as data, from which it can continue later.
+    /// Returns the data from which the unfinished value can continue later.
     #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
     pub(super) fn partial(
         &self,
@@ -309,8 +311,8 @@ impl<E: Experiment> Active<'_, E> {
         Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
-    /// Returns the record of the value after its last step. A value that stalled, failed or reached a limit
-    /// leaves the next value the state in which it started.
+    /// Returns the record of the value after its last step. If the value stalled, failed or reached a limit,
+    /// the record holds the state in which the value started, and the next value starts from this state.
     pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
         let Self { value, work, run, riders } = self;
         let (start, cycles) = (work.start, value.plan.protocol().cycles());

@@ -1,4 +1,4 @@
-//! Columns of tables, each defined once by its name, unit and value, and the meanings of their names.
+//! Columns of tables, each defined once by its name, unit and value; and the meanings of column names.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -40,8 +40,9 @@ pub(crate) enum Kind<E: Experiment> {
 impl<E: Experiment> Column<E> {
     /// Creates a column from a quantity of each sample.
     ///
-    /// The table of samples has its values. The table of values has its mean, with the error and the number
-    /// of independent samples. [`Self::of_sample`] and [`Self::averaged`] are for one of these tables alone.
+    /// The table of samples shows the quantity itself. The table of values shows its mean, with the error and
+    /// the number of independent samples. For only one of these tables, use [`Self::of_sample`] or
+    /// [`Self::averaged`].
     pub fn sampled<T: Into<Scalar>>(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -79,7 +80,7 @@ impl<E: Experiment> Column<E> {
         Self { heading: Heading::new(name, unit), kind, in_samples: false, in_values: true }
     }
 
-    /// Creates a column of the table of values from a quantity of each record that has an error.
+    /// Creates a column of the table of values from a quantity with an error, computed from each record.
     pub fn estimated(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -99,8 +100,8 @@ impl<E: Experiment> Column<E> {
         self.heading.unit()
     }
 
-    /// Returns the headings in the table of values: the mean is followed by its error, and its number of
-    /// independent samples.
+    /// Returns the headings in the table of values. The heading of a mean is followed by the headings of its
+    /// error and its number of independent samples.
     pub(crate) fn headings(&self) -> Vec<Heading> {
         let mut all = vec![self.heading.clone()];
         if self.has_error() {
@@ -115,7 +116,7 @@ impl<E: Experiment> Column<E> {
         !matches!(self.kind, Kind::Record(_))
     }
 
-    /// Returns the value for a sample, or `None` if the column is not of samples.
+    /// Returns the value for a sample, or `None` if the column is not computed from samples.
     pub(crate) fn of(&self, sample: &E::Sample) -> Option<Scalar> {
         match &self.kind {
             Kind::Sample(value) => Some(value(sample)),
@@ -160,7 +161,8 @@ impl<E: Experiment> Table<E> {
     /// Creates a table from its name, the names and units of its columns, and a function that returns the
     /// rows of each record.
     ///
-    /// A row has a number for each column: missing numbers are NaN, and surplus numbers are left out.
+    /// A row should have a number for each column: missing numbers become NaN, and surplus numbers are
+    /// ignored.
     pub fn new(
         name: impl Into<String>,
         columns: impl IntoIterator<Item: Into<Heading>>,
@@ -170,7 +172,7 @@ impl<E: Experiment> Table<E> {
         Self { name: name.into(), columns, rows: Box::new(rows) }
     }
 
-    /// Returns the name of the table: the name of its file without the ending.
+    /// Returns the name of the table, which is the name of its file without the ending.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -203,7 +205,7 @@ pub(crate) fn meanings(text: &'static str) -> Vec<(&'static str, &'static str)> 
     text.lines().filter_map(|line| line.split_once(": ")).collect()
 }
 
-/// Returns the meaning of one of the two columns that follow a mean.
+/// Returns the meaning of a column that follows a mean: its error or its number of independent samples.
 pub(crate) fn of_error<E: Experiment>(columns: &[Column<E>], column: &str) -> Option<String> {
     columns.iter().filter(|mean| mean.has_error()).map(Column::name).find_map(|mean| {
         let numbers = ["Standard error of the mean", "Number of independent samples behind the mean"];

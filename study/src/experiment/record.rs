@@ -1,4 +1,5 @@
-//! Records of finished values, and their origin: a study, a place in it, and the code that made them.
+//! Records of finished values, and the origin of a record: the study, the ramp and the value, and the code
+//! that made the record.
 
 use std::fmt;
 
@@ -17,7 +18,7 @@ const TIME_ROUNDING: f64 = 1e-12;
 
 /// A finished value: its parameters, samples and counters, and its last state if the plan keeps it.
 ///
-/// Samples, observer and times belong to the measured part, after the value has settled.
+/// The samples, their times and the observer belong to the measured part of the value, after settling.
 #[doc(alias("checkpoint", "restart"))]
 #[derive(Clone, PartialEq)]
 pub struct Record<E: Experiment> {
@@ -79,14 +80,14 @@ impl<E: Experiment> Record<E> {
         &self.contents.measured.times
     }
 
-    /// Returns the observer in its state at the end.
+    /// Returns the observer, as it was at the end of the value.
     pub const fn observer(&self) -> &E::Observer {
         &self.contents.measured.observer
     }
 
     /// Returns the counters of the value, settling included.
     ///
-    /// The largest overlap counts from the start of the ramp.
+    /// Only the largest overlap covers the whole ramp so far, not just this value.
     pub const fn counters(&self) -> &Counters {
         &self.contents.counters
     }
@@ -97,8 +98,8 @@ impl<E: Experiment> Record<E> {
         self.contents.state.as_ref()
     }
 
-    /// Returns the walls at the end of the value. A value that was not finished ends with the walls with
-    /// which it began.
+    /// Returns the walls of the state that the record keeps. If the value stalled, failed or reached a limit,
+    /// they are the walls at its start.
     pub(crate) fn last_boundary(&self, last: &Interval) -> Result<E::Boundary, ExperimentError> {
         match self.outcome().reason() {
             Some(_) => self.experiment.boundary(),
@@ -107,7 +108,7 @@ impl<E: Experiment> Record<E> {
     }
 
     /// Returns the name of the part (the rule or the walls) that differs from the part with which the value
-    /// was run. Rules and walls without fingerprints cannot be distinguished.
+    /// was run. Two rules without fingerprints cannot be distinguished, nor two sets of walls.
     pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
@@ -121,12 +122,12 @@ impl<E: Experiment> Record<E> {
 
     /// Returns the mean of a quantity over the samples, with an error that accounts for their correlation.
     ///
-    /// The mean is NaN without samples, and the error is NaN for fewer than two.
+    /// The mean is NaN without samples, and the error is NaN for fewer than two samples.
     pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
         self.samples().iter().map(quantity).collect::<BlockedMean>().estimate()
     }
 
-    /// Returns the mean of the column of this name; `None` if there is no such column, or it has no error.
+    /// Returns the mean of the column of this name, or `None` if no column of this name has an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
         with_error(&columns, column)?.estimate(self)
@@ -150,25 +151,24 @@ pub enum Outcome {
     Completed,
     /// The observer ended the value.
     ///
-    /// The record has only the samples until then. The next value of the ramp starts from the state at that
-    /// time.
+    /// The record has only the samples taken before this. The next value of the ramp starts from the state at
+    /// `time`.
     Stopped {
         /// Time since the start of the ramp.
         time: f64,
     },
     /// Time hardly advanced, as in an inelastic collapse.
     ///
-    /// The record has only the samples until then. The next value of the ramp starts from the state in which
-    /// this one started.
+    /// The record has only the samples taken before the stall. The next value of the ramp starts from the
+    /// state in which this value started.
     Stalled {
         /// Time since the start of the ramp.
         time: f64,
         /// Message of the engine.
         reason: String,
     },
-    /// The value reached a limit: the collisions of its
-    /// [protocol](crate::Protocol::with_most_collisions), or the seconds of a
-    /// [control](crate::Control::with_most_seconds).
+    /// The value reached the collision limit of its [protocol](crate::Protocol::with_most_collisions) or the
+    /// time limit of a [control](crate::Control::with_most_seconds).
     ///
     /// The samples and the next value are as for a stalled value.
     Limited {
@@ -200,7 +200,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the reason why the value was not finished: it stalled, failed, or reached a limit.
+    /// Returns the reason if the value stalled, failed or reached a limit, and otherwise `None`.
     pub fn reason(&self) -> Option<&str> {
         match self {
             Self::Stalled { reason, .. } | Self::Failed { reason, .. } | Self::Limited { reason, .. } => {
@@ -211,7 +211,8 @@ impl Outcome {
     }
 }
 
-/// The contents of a record's file. The experiment is missing, since it follows from the plan.
+/// The part of a record that is stored in a log. The experiment is not stored, since it follows from the
+/// plan.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Contents<S, O> {
     pub(crate) origin: Origin,
@@ -239,8 +240,8 @@ pub(crate) struct Measured<S, O> {
     pub(crate) observer: O,
 }
 
-/// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
-/// does not drift as a sum of cycles does.
+/// A time, as a number of whole cycles since some absolute time. Unlike a sum of cycles, the product of a
+/// cycle and a whole number does not drift.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Cycles {
     /// Absolute time from which cycles are counted.
@@ -309,12 +310,13 @@ pub(crate) struct Maker {
     pub(crate) results: u32,
     /// The revision of the experiment.
     pub(crate) revision: Fingerprint,
-    /// Fingerprint of the names and units in all tables. An experiment need not declare a change of these.
+    /// Fingerprint of the names and units in all tables, so that an experiment need not change its revision
+    /// with them.
     pub(crate) columns: Fingerprint,
 }
 
 impl Maker {
-    /// Returns, in one word, the numbers that decide whether a study accepts the code.
+    /// Returns, as one word, the numbers by which a study decides whether it accepts the code.
     pub(crate) fn key(&self) -> String {
         format!("{}:{}:{}", self.results, self.revision, self.columns)
     }

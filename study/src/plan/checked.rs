@@ -1,5 +1,5 @@
-//! New plans, made by a program or read from a file, with all checks, so that their faults do not make a run
-//! fail later.
+//! New plans, made by a program or read from a file. All checks are made here, so that a faulty plan does not
+//! make a run fail later.
 
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
@@ -18,13 +18,13 @@ use crate::{Experiment, PlanError};
 /// The names of the tables of every study.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 
-/// The columns of [`OF_TABLES`] that some tables alone have, so that others may have columns of these names.
+/// The columns of [`OF_TABLES`] that only some tables have. Other tables may have columns of these names.
 const OF_SOME: [&str; 3] = ["time", "from_state", "to_state"];
 
 /// Largest number of values of a study, in all ramps together.
 const MOST_VALUES: usize = 1_000_000;
 
-/// Largest seed: a plan has no larger integers.
+/// Largest seed: a plan cannot hold larger integers.
 const LARGEST_SEED: u64 = i64::MAX as u64;
 
 impl<E: Experiment> TryFrom<Parts<E>> for Plan<E> {
@@ -72,14 +72,16 @@ impl<E: Experiment> Plan<E> {
     /// Reads a plan in TOML.
     ///
     /// # Errors
-    /// If the text is not TOML, a field is unknown or missing, or a value is refused. The error names it.
+    /// If the text is not TOML, a field is unknown or missing, or a value is refused. The error names the
+    /// field or the value.
     pub fn from_toml(text: &str) -> Result<Self, PlanError> {
         let plan = Self::from_toml_unproven(text)?;
         plan.check_experiments()?;
         Ok(plan)
     }
 
-    /// Reads a plan without a check of its experiments, which is needed only once.
+    /// Reads a plan without checking its experiments: they were checked when the plan was written to its
+    /// folder.
     pub(crate) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
         let parts: Parts<E> = toml::from_str(text).map_err(|error| PlanError::toml(&error))?;
         parts.consistent()
@@ -126,8 +128,8 @@ impl<E: Experiment> Plan<E> {
         }
     }
 
-    /// Sets each parameter that varies to its first value, to check that it exists and to see the kind of its
-    /// values as the experiment reads them.
+    /// Sets each parameter that varies to its first value. This checks that the parameter exists, and shows
+    /// in which type the experiment reads its values.
     fn try_names(&mut self) -> Result<(), PlanError> {
         for (axis, name) in self.parts.sweep.iter_mut().zip(&self.varied) {
             let Some(first) = axis.value(0) else { continue };
@@ -156,7 +158,7 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the experiment accepts the parameters of each value, or of a selection if there are many
     /// values.
     pub(crate) fn check_experiments(&self) -> Result<(), PlanError> {
-        // With parameters that vary, the experiment as it stands is never run, and need not be possible.
+        // If parameters vary, the experiment as given is never run, so it need not be valid.
         if self.varied.is_empty() {
             self.parts.experiment.check().map_err(|source| Self::refused(&[], source))?;
         }
@@ -169,8 +171,8 @@ impl<E: Experiment> Plan<E> {
         self.check_ramp()
     }
 
-    /// Checks that the ramped parameter changes the simulation, and not only the disks at its start, which
-    /// stay the same along a ramp.
+    /// Checks that the ramped parameter changes more than the disks at the start of the simulation, since a
+    /// ramp keeps its disks.
     fn check_ramp(&self) -> Result<(), PlanError> {
         let (Some(ramp), true) = (&self.parts.ramp, self.value_count() > 1) else { return Ok(()) };
         let varied = self.parameters(0, 1);
@@ -183,7 +185,7 @@ impl<E: Experiment> Plan<E> {
         let mut run = first.build(0).map_err(refused)?;
         let before = run.checkpoint();
         next.change(&mut run).map_err(refused)?;
-        // Parts without fingerprints may have changed.
+        // Without fingerprints, the rule and the walls may have changed.
         let are_known = run.rule().fingerprint().is_some() && run.boundary().fingerprint().is_some();
         let is_same = are_known && E::cycle(&first) == E::cycle(&next) && run.checkpoint() == before;
         if is_same { Err(not_rampable(ramp)) } else { Ok(()) }
@@ -210,8 +212,8 @@ fn not_rampable(ramp: &Ramp) -> PlanError {
     PlanError::varied(ramp.parameter(), "cannot be ramped with the disks in place; sweep it instead")
 }
 
-/// Checks that the names of an experiment's columns and tables are valid and unique, also among the varied
-/// parameters and the built-in columns.
+/// Checks that the names of an experiment's columns and tables are valid, unique, and different from the
+/// names of varied parameters and built-in columns.
 fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
     let names = OF_TABLES.iter().map(|(name, _)| *name);

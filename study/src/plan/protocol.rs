@@ -6,13 +6,13 @@ use granular_edmd::quantity::accept;
 use super::values::from_file;
 use crate::Interval;
 
-/// Largest length of a value in cycles, and largest number of samples, at which products are still exact.
+/// Largest length of a value in cycles, and largest number of samples. Products up to this size are exact.
 const MOST: u64 = 1 << 40;
 
 /// The schedule of a value: settle, then sample at equal intervals, always at the same phase of the base.
 ///
 /// All times are in cycles ([`Experiment::cycle`](super::Experiment::cycle)): periods of the base, or units
-/// of time if it does not oscillate.
+/// of time if the base does not oscillate.
 ///
 /// ```
 /// use granular_edmd_study::Protocol;
@@ -53,7 +53,7 @@ const fn end() -> f64 {
 }
 
 impl Protocol {
-    /// Creates the protocol that settles for `settle` cycles, then takes `samples` samples, one at the end of
+    /// Creates the protocol that settles for `settle` cycles, then takes `samples` samples: one at the end of
     /// each interval of `every` cycles.
     ///
     /// # Errors
@@ -80,7 +80,8 @@ impl Protocol {
         Ok(Self { phase, ..self })
     }
 
-    /// Returns the same protocol with at most this number of collisions in a value, with disks or walls.
+    /// Returns the same protocol with at most this number of collisions in a value, of disks with each other
+    /// and with walls.
     ///
     /// A value that reaches it ends with [`Outcome::Limited`](crate::Outcome::Limited), so that one value of
     /// a sweep cannot take as long as all others together.
@@ -131,7 +132,8 @@ impl Protocol {
         steps.saturating_sub(self.settling_steps())
     }
 
-    /// Returns the step after this number of finished steps, or the last step of a finished value.
+    /// Returns the step that follows this number of finished steps. If the value is finished, returns its
+    /// last step.
     pub(crate) fn step(&self, finished: u64) -> Interval {
         let index = finished.min(self.steps().saturating_sub(1));
         Interval { index, sample: index.checked_sub(self.settling_steps()) }

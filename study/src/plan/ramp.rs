@@ -1,4 +1,4 @@
-//! Ramps: the successive values of a parameter in one run, and further values that bracket transitions
+//! Ramps: the successive values of a parameter in one run, and the additional values that bracket transitions
 //! between states.
 
 use std::ops::Range;
@@ -61,24 +61,24 @@ from_file! {
     }, PlanError
 }
 
-/// The width to which transitions are bisected, in a plan `refine = { relative = 0.01 }`.
+/// The width to which transitions are bisected. In a plan: `refine = { relative = 0.01 }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Width {
     /// A width in the unit of the parameter.
     Absolute(f64),
-    /// A fraction of the value itself, for parameters that span orders of magnitude.
+    /// A fraction of the parameter's value, for parameters that span orders of magnitude.
     ///
     /// All values must be positive.
     Relative(f64),
 }
 
 impl Ramp {
-    /// Creates a ramp of the parameter of this name through these values, which must increase.
+    /// Creates a ramp that takes the parameter with this name through the given values, which must increase.
     ///
     /// # Errors
-    /// If there are no values, or they are not finite or do not increase.
+    /// If there are no values, a value is not finite, or the values do not increase.
     pub fn new(
         parameter: impl Into<String>,
         values: impl IntoIterator<Item = f64>,
@@ -108,10 +108,10 @@ impl Ramp {
 
     /// Returns the same ramp with bisection of each transition between two of its values, down to this width.
     ///
-    /// A transition is a change of [`Experiment::state`](super::Experiment::state). The ramp looks for
-    /// transitions only between neighbors of different states. A ramp up brackets transitions from below, a
-    /// ramp down from above. The values of a bisection come after the values of the ramp, each from the last
-    /// state on the near side.
+    /// A transition is a change of [`Experiment::state`](super::Experiment::state). The search covers only
+    /// neighboring values with different states. A ramp up brackets transitions from below, a ramp down from
+    /// above. The values of a bisection are run after the values of the ramp. Each of them starts from the
+    /// end state of the closest value on the near side of the transition.
     ///
     /// # Errors
     /// If the width is not positive, or is relative and a value of the ramp is not positive.
@@ -157,7 +157,7 @@ impl Ramp {
         }
     }
 
-    /// Returns the value of this index, and the direction from which the ramp comes to it.
+    /// Returns the value with this index, and the direction from which the ramp comes to the value.
     pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
         if self.course != Course::Down && index < self.values.len() {
             return Some((Leg::Up, self.value(index)));
@@ -167,7 +167,7 @@ impl Ramp {
     }
 }
 
-/// The data of a finished value on which the path depends.
+/// The part of a finished value's record that determines the next values of the ramp.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Seen {
     pub(crate) leg: Option<Leg>,
@@ -176,8 +176,8 @@ pub(crate) struct Seen {
 }
 
 impl<E: Experiment> Plan<E> {
-    /// Returns the parts of a record on which the path depends. Finding the name of a state may take long,
-    /// and only a refined ramp needs the name.
+    /// Returns the part of a record that determines the next values of the ramp. The name of the state is
+    /// left out unless the ramp is refined, since finding the name may take long.
     pub(crate) fn seen(&self, record: &Record<E>) -> Seen {
         let state = if self.is_refined() { E::state(record) } else { None };
         Seen { leg: record.leg(), at: record.ramped_value(), state }
@@ -191,7 +191,8 @@ impl<E: Experiment> Plan<E> {
         }
     }
 
-    /// Returns the brackets of all transitions; empty until all of them have the requested width.
+    /// Returns the brackets of all transitions. The list is empty until all brackets have the requested
+    /// width.
     pub(crate) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
         self.ramp().and_then(|ramp| ramp.search(seen).ok()).unwrap_or_default()
     }
@@ -215,7 +216,7 @@ pub struct Bracket {
     pub near: f64,
     /// The value on the far side.
     pub far: f64,
-    /// The state on the side from which the ramp came.
+    /// The state on the near side.
     pub from: String,
     /// The state on the far side; empty if the far side's record shows no state.
     pub to: String,
@@ -251,14 +252,15 @@ impl Search<'_> {
     /// Narrows the transitions between two neighbors of the ramp, in the order of the path. The error is the
     /// next value that they need.
     ///
-    /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to
-    /// the direction from which the ramp came. The first of several transitions is narrowed first: every
-    /// state but the near one counts as beyond the transition.
+    /// Each value starts from the end state of the closest value on the near side of the transition, so that
+    /// a bracket belongs to the direction from which the ramp came. Of several transitions, the first one on
+    /// the path is narrowed first: every state that differs from the near state counts as beyond the
+    /// transition.
     fn between(&mut self, mut near: usize, far: usize) -> Result<(), Step> {
         if self.seen[far].state.is_none() {
             return Ok(());
         }
-        // The values beyond the transition, the closest value last.
+        // The indices of the values beyond the transition, the closest last.
         let mut beyond = vec![far];
         while let Some(&far) = beyond.last() {
             let [from, to] = [near, far].map(|index| &self.seen[index].state);
@@ -289,8 +291,7 @@ impl Search<'_> {
     fn middle(&self, near: usize, far: usize) -> Option<f64> {
         let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
         let width = far - near;
-        // Where both forms are possible, the sum of the halves would round differently. It therefore serves
-        // only where the width overflows.
+        // The sum of the halves would round differently, so it is used only where the width overflows.
         let at = if width.is_finite() { near + 0.5 * width } else { 0.5 * near + 0.5 * far };
         // There is no number between two neighboring doubles.
         let is_between = (near < at && at < far) || (far < at && at < near);

@@ -1,5 +1,5 @@
-//! The values of a parameter: a list, or a rule, which costs no memory, however many values follow from it.
-//! The values of an axis.
+//! The values of a parameter: a list, or a rule, which takes the same memory for any number of values. The
+//! values of an axis.
 
 use std::collections::HashSet;
 
@@ -17,7 +17,7 @@ macro_rules! from_file {
     ($name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),+ } => $checked:expr, $error:ty) => {
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
-                // The mirror has the name of the type, which stands in errors of formats.
+                // The mirror has the same name as the type, since errors of formats show this name.
                 #[derive(serde::Deserialize)]
                 #[serde(deny_unknown_fields)]
                 struct $name {
@@ -33,8 +33,7 @@ macro_rules! from_file {
 
 pub(super) use from_file;
 
-/// A parameter that differs between ramps, so that each of its values starts afresh, independent of all
-/// others.
+/// A parameter that differs between ramps. Each of its values starts afresh, independent of all other values.
 ///
 /// ```
 /// use granular_edmd_study::Axis;
@@ -55,10 +54,10 @@ from_file! {
 
 #[expect(clippy::len_without_is_empty, reason = "an axis has at least one value")]
 impl Axis {
-    /// Creates an axis of the parameter of this name with these values, in any order.
+    /// Creates an axis on which the parameter with this name takes the given values, in any order.
     ///
     /// # Errors
-    /// If there are no values, one is not finite, or one comes twice.
+    /// If there are no values, a value is not finite, or a value occurs twice.
     pub fn new(
         parameter: impl Into<String>,
         values: impl IntoIterator<Item: Into<Scalar>>,
@@ -88,30 +87,30 @@ impl Axis {
         self.values.len()
     }
 
-    /// Returns the value of this index, or `None` beyond the last value.
+    /// Returns the value with this index, or `None` beyond the last value.
     pub fn value(&self, index: usize) -> Option<Scalar> {
         (index < self.len()).then(|| self.values.at(index))
     }
 
-    /// Returns the indices of the values that are tried when a plan is made.
+    /// Returns the indices of the values that are checked when a plan is made.
     pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
         self.values.tried()
     }
 
-    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files.
-    /// Values that differ may be one value of that type.
+    /// Converts the values of a list to the type of the parameter, so that equal plans have equal files.
+    /// Values that differ may become the same value of this type, which is an error.
     pub(super) fn set_kind(&mut self, kind: &Scalar) -> Result<(), PlanError> {
         self.values.set_kind(kind);
         self.check_twice()
     }
 }
 
-/// Largest number of values that are tried when a plan is made.
+/// Largest number of values that are checked when a plan is made.
 pub(crate) const MOST_TRIED: usize = 1024;
 
-/// Returns the indices, out of `count`, that are tried when a plan is made: all if they are few, otherwise
-/// the ends and several between them at equal distances. A plan of a million values is thus made as fast as a
-/// small plan. The others are refused when their turn comes.
+/// Returns the indices below `count` of the values that are checked when a plan is made: all if there are at
+/// most [`MOST_TRIED`], and otherwise this number, evenly spread, with the first and the last. A plan of a
+/// million values is thus made quickly. The other values are checked when they are run.
 pub(crate) fn tried(count: usize) -> impl Iterator<Item = usize> {
     let tried = count.min(MOST_TRIED);
     (0..tried).map(move |index| index * count.saturating_sub(1) / tried.saturating_sub(1).max(1))
@@ -125,7 +124,7 @@ pub(super) enum Values {
     Rule(Steps),
 }
 
-/// Derived code would try a list and a rule, and could not say what is wrong with either.
+/// Derived code would try a list, then a rule, and its error could not say what is wrong with either.
 impl TryFrom<toml::Value> for Values {
     type Error = String;
 
@@ -164,7 +163,7 @@ impl Values {
         }
     }
 
-    /// Turns the values of a list into the type of another value.
+    /// Converts the values of a list to the type of `kind`.
     pub(super) fn set_kind(&mut self, kind: &Scalar) {
         if let Self::List(list) = self {
             for value in list {
@@ -173,8 +172,8 @@ impl Values {
         }
     }
 
-    /// Returns the indices of the values that are tried. The values of a list are in any order, so the
-    /// indices include the smallest and the largest value: an experiment usually accepts a range.
+    /// Returns the indices of the values that are checked. They include the smallest and the largest value,
+    /// wherever these are in a list, since an experiment usually accepts a range.
     pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
         let number = |index: &usize| self.at(*index).number().unwrap_or(0.0);
         let order = |one: &usize, other: &usize| number(one).total_cmp(&number(other));
@@ -197,7 +196,7 @@ impl Values {
         }
     }
 
-    /// Returns a value that occurs twice in the list, if any.
+    /// Returns a value that occurs twice in the list, or `None` if there is none.
     fn twice(&self) -> Option<&Scalar> {
         let Self::List(list) = self else { return None };
         let mut known = HashSet::with_capacity(list.len());
@@ -211,11 +210,11 @@ impl Values {
     }
 }
 
-/// Largest number of values that follow from a rule: doubles do not count larger numbers exactly.
+/// Largest number of values that a rule may give: beyond 2⁵³, a double cannot represent every integer.
 const MOST: f64 = 9_007_199_254_740_992.0;
 
-/// Fraction of a step by which the last step may miss the end. It allows for the rounding of decimal
-/// fractions, since neither 0.1 nor 1/3 is a double.
+/// Fraction of a step by which the last step may miss the end. This tolerance allows for rounding, since
+/// neither 0.1 nor 1/3 is exactly a double.
 const ROUNDING: f64 = 1e-9;
 
 /// Increasing values that follow from a rule, in place of a list in a plan:
@@ -228,7 +227,7 @@ pub(crate) struct Steps {
     /// The difference of neighbors, or `None` for equal ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
-    /// The number of values in equal ratios.
+    /// The number of values, if they are in equal ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     log: Option<usize>,
     #[serde(skip)]
@@ -268,8 +267,8 @@ impl Steps {
     /// Creates `count` values in equal ratios, the first and the last included.
     ///
     /// # Errors
-    /// If the first value is not positive, the last one is not finite or not above the first, their ratio is
-    /// not finite, or there are fewer than two, or too many, so that neighbors would be equal.
+    /// If the first value is not positive, the last value is not finite or not above the first, their ratio
+    /// is not finite, `count` is below 2, or `count` is so large that neighbors would be equal.
     fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
         positive("first value", from)?;
         positive("last value", to)?;
@@ -284,8 +283,8 @@ impl Steps {
 
     /// Returns the value of an index below the number of values.
     ///
-    /// Each value follows from its index, not from the one before, so errors do not add up. Equal steps give
-    /// the decimal fractions that a reader of the plan expects.
+    /// Each value is computed from its index, not from the previous value, so rounding errors do not
+    /// accumulate. Equal steps give the decimal fractions that a reader of the plan expects.
     fn value(&self, index: usize) -> f64 {
         match self.step {
             Some(step) => self.decimal(index, step),
@@ -297,8 +296,8 @@ impl Steps {
         }
     }
 
-    /// Returns a value in equal steps: 0.07 and not 0.06999999999999999, if the first value and the step are
-    /// decimal fractions, too.
+    /// Returns a value in equal steps. If the first value and the step are decimal fractions, so is the
+    /// result: 0.07, not 0.06999999999999999.
     fn decimal(&self, index: usize, step: f64) -> f64 {
         let value = self.from + index as f64 * step;
         let is_close = |near: &f64| (near - value).abs() <= ROUNDING * step;
@@ -310,7 +309,7 @@ impl Steps {
         let rounded = |number: f64| format!("{number:.places$}").parse::<f64>().unwrap_or(number);
         let are_decimal = [self.from, step].iter().all(|&number| rounded(number) == number);
         let near = Some(rounded(value)).filter(|near| are_decimal && is_close(near));
-        // The sum with 0 turns -0 into 0.
+        // Adding 0 turns -0 into 0.
         near.unwrap_or(value) + 0.0
     }
 }

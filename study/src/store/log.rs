@@ -12,18 +12,18 @@ const MARK: [u8; 4] = *b"\xabPC\n";
 /// Number of bytes in the header of a piece.
 pub(crate) const HEAD: usize = 16;
 
-/// Bytes before the contents: mark, header, length, a checksum of these three, and a checksum of the
-/// contents.
+/// Number of bytes before the contents of a piece: mark, header, length, a checksum of these three, and a
+/// checksum of the contents.
 const BEFORE: usize = 4 + HEAD + 4 + 8 + 16;
 
-/// Bytes before the first piece: first bytes and version of the format.
+/// Number of bytes before the first piece: the first bytes and the version of the format.
 pub(crate) const START: u64 = 12;
 
 /// A log: a file to which one process appends, while any number of others may read.
 ///
 /// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or an
-/// incomplete piece at the end, which the next piece overwrites. Nothing locks the file: whoever appends must
-/// be alone.
+/// incomplete piece at the end, which the next piece overwrites. Nothing locks the file: the caller must make
+/// sure that only one process appends.
 #[derive(Debug)]
 pub(crate) struct Log {
     file: File,
@@ -35,7 +35,7 @@ pub(crate) struct Log {
 
 /// The header of a piece, and the position of its contents.
 ///
-/// A million of these may be in memory, so it is as small as possible.
+/// A million pieces may be in memory, so this type is as small as possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Piece {
     /// The header, for an index.
@@ -44,7 +44,7 @@ pub(crate) struct Piece {
     pub(crate) start: u64,
     /// Number of bytes of the contents.
     pub(crate) length: u32,
-    /// Number of the log, by which its reader knows it.
+    /// Number by which the reader identifies the log.
     pub(crate) log: u32,
 }
 
@@ -74,8 +74,8 @@ impl Log {
         self.append(&bytes)
     }
 
-    /// Writes after the last complete piece. If that fails, the bytes are cut off again, at the latest before
-    /// the next ones.
+    /// Writes after the last complete piece. If the write fails, the incomplete bytes are removed, at the
+    /// latest before the next write.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         if !self.is_cut {
             self.file.set_len(self.end)?;
@@ -102,11 +102,11 @@ pub(crate) struct Pieces {
     pub(crate) is_damaged: bool,
 }
 
-/// Finds the complete pieces of a log from a position on, 0 or the end of an earlier reading. Their checksums
-/// are not compared.
+/// Finds the complete pieces of a log from a position on: 0, or the end of an earlier reading. The checksums
+/// of the contents are not compared.
 ///
 /// # Errors
-/// If the file cannot be read, or is of another format or version ([`io::ErrorKind::InvalidData`]).
+/// If the file cannot be read, or has another format or version ([`io::ErrorKind::InvalidData`]).
 pub(crate) fn pieces(path: &Path, seal: Seal, from: u64) -> io::Result<Pieces> {
     let mut pieces = Pieces { found: Vec::new(), end: from, is_damaged: false };
     let mut file = File::open(path)?;
@@ -186,7 +186,8 @@ fn search(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Op
     Ok(found)
 }
 
-/// Returns the complete piece that begins at a position of a file of this length, if there is one.
+/// Returns the complete piece that begins at a position of a file of this length, or `None` if no complete
+/// piece begins there.
 fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
     let (checked, rest) = before.split_at(4 + HEAD + 4);
     let head = *checked[4..].first_chunk()?;

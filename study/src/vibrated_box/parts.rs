@@ -63,7 +63,7 @@ impl Base {
         BiParabolic::new(1.0, angular_frequency).ok().and_then(|motion| motion.period())
     }
 
-    /// Returns the scale of the speeds that the base gives to disks of mass 1.
+    /// Returns the typical speed that the base gives to disks of mass 1.
     pub(super) fn speed(&self) -> f64 {
         match *self {
             Self::BiParabolic { amplitude, angular_frequency }
@@ -72,7 +72,7 @@ impl Base {
         }
     }
 
-    /// Returns the container over this base.
+    /// Returns the container whose floor is this base.
     pub(super) fn under(&self, container: Container) -> Result<Container, ExperimentError> {
         Ok(match *self {
             Self::BiParabolic { amplitude, angular_frequency } => {

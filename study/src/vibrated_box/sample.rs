@@ -11,7 +11,7 @@ use crate::analysis::{StateCriteria, thermal_noise};
 use crate::experiment::record;
 use crate::{Column, Record, Table};
 
-/// Largest number of bins of a profile: of one diameter each.
+/// Largest number of bins of a profile. A bin is one diameter high.
 const MOST_BINS: usize = 65_536;
 
 /// Height of the profile of an open box, in diameters.
@@ -46,7 +46,7 @@ pub struct Sample {
 pub struct Measurement {
     change: EnergyChange,
     samples: u64,
-    /// Sums over the samples of the packing fraction.
+    /// The packing fraction by height, summed over the samples.
     profile: Vec<f64>,
 }
 
@@ -157,11 +157,11 @@ impl Record<VibratedBox> {
         let total: f64 = self.samples().iter().map(|s| s.collisions as f64 * s.energy_change).sum();
         let mean = total / collisions;
         let per_sample = collisions / self.samples().len() as f64;
-        // The error of a ratio is the error of the mean residual, over the mean number of collisions.
+        // The error of a ratio is the error of the mean residual divided by the mean number of collisions.
         self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 
-    /// Returns the standard deviation of $`\Psi_1`$ and $`\Psi_2`$ in a gas at rest of this temperature,
+    /// Returns the standard deviation of $`\Psi_1`$ and $`\Psi_2`$ in a gas at rest with this temperature,
     /// $`\sqrt{T_y/2N}`$.
     pub fn thermal_noise(&self) -> f64 {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean();
@@ -177,8 +177,8 @@ pub(super) fn regime(record: &Record<VibratedBox>) -> Option<String> {
     found.ok().map(|found| found.regime().to_string())
 }
 
-/// Returns the columns of the tables of values and samples. None has the name of a parameter, which could
-/// then not vary.
+/// Returns the columns of the tables of values and samples. No column has the name of a parameter, since the
+/// parameter could then not vary.
 pub(super) fn columns() -> Vec<Column<VibratedBox>> {
     vec![
         Column::of_record("state", "", |record| regime(record).unwrap_or_default()),
