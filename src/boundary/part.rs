@@ -89,10 +89,10 @@ impl Part {
 
     /// Returns the same part as a sink that takes a disk out of the run when its center arrives at a brick.
     ///
-    /// Disks may overlap such a part: it is a line that their centers must not pass. A center arrives when it is
-    /// within 1e-7 radii of the line, on a side on which the brick is free. A center that begins on the line,
-    /// or behind a one-sided brick, does not arrive. At times later than $`10^8R/v`$, the position of a line
-    /// that moves without a period is rounded more than this, and centers may pass.
+    /// Disks may overlap such a part: it is a line that their centers must not pass. A center arrives when it
+    /// is within 1e-7 radii of the line, on a side on which the brick is free. A center that begins on the
+    /// line, or behind a one-sided brick, does not arrive. At times later than $`10^8R/v`$, the position of a
+    /// line that moves without a period is rounded more than this, and centers may pass.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
