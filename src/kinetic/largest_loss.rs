@@ -16,8 +16,8 @@ use crate::collision::Frictional;
 /// ```
 ///
 /// which exists for $`q_t < 1/3`$. The notation is as in [`mean_energy_change`](super::mean_energy_change);
-/// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at $`\kappa = 0.2627`$, the
-/// paper's $`\kappa\approx0.3`$.
+/// the derivation is in `docs/physics-kinetic.md`. At $`q_n = q_t = 0`$, where only
+/// sliding loses energy, the loss is largest at $`\kappa = 0.2627`$; the paper gives $`\kappa\approx0.3`$.
 ///
 /// The result is `None` if the loss has no maximum at a finite friction. If sticking itself loses much
 /// ($`q_t\ge1/3`$ for $`\rho=1`$), the loss grows with friction all the way to rough disks. There is no

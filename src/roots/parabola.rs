@@ -47,9 +47,9 @@ fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
     let discriminant = rate * rate - 2.0 * acceleration * value;
     if discriminant <= 0.0 {
         // The gap is still closed at the top of the parabola. A gap that began exactly at zero would close as
-        // fast as it opened, at twice the time of the top, so the function returns that time. At the top
-        // itself the rate is zero: a disk that bounces lower than rounding would stop there, although no rule
-        // took its speed.
+        // fast as it opened, at twice the time of the top, so the function returns that time. The time of the
+        // top would be wrong: the rate is zero there, so a disk whose bounce is lower than the rounding error
+        // would lose its speed, although no rule took it.
         return (-2.0 * rate / acceleration).max(0.0);
     }
     let root = discriminant.sqrt();

@@ -88,7 +88,8 @@ fn bound_of_zeros(polynomial: &Coefficients) -> f64 {
     let leading = polynomial.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     let largest = polynomial[..leading].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
     // A tiny leading coefficient can put a zero beyond the largest number, so the bound is cut to a finite
-    // one. Values out there may overflow, but at a finite time an infinite partial sum keeps its sign.
+    // one. There, the sums of Horner's scheme may overflow, but an infinite sum that is multiplied by a
+    // finite positive time and increased by a finite coefficient keeps its sign.
     (1.0 + largest / polynomial[leading].abs()).min(f64::MAX)
 }
 

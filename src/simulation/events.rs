@@ -55,8 +55,8 @@ pub struct Counters {
     pub wall_collisions: u64,
     /// Collisions, with disks or walls, that a contact-duration model made elastic.
     pub contact_duration_collisions: u64,
-    /// The longest time since the previous collision of a partner at which a contact-duration model acted. It
-    /// is just below the model's duration.
+    /// Of all collisions that a contact-duration model made elastic, the longest time since a partner's
+    /// previous collision. It is just below the model's duration.
     pub longest_contact: f64,
     /// Collisions whose surfaces parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound).

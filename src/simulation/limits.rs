@@ -83,11 +83,11 @@ impl<'a> Limits<'a> {
     /// Returns the same limits, with this simulated time per event as the least progress of the run; 0 for a
     /// run that may stand still.
     ///
-    /// Progress is judged over windows of 200 000 events, and 20 more for each disk; a search for a wall that
-    /// ends at its horizon counts as 256 events. A run with less progress is
-    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have about
-    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk moves or falls tens of
-    /// diameters.
+    /// Progress is judged over windows of 200 000 events plus 20 for each disk. A search for a wall looks
+    /// ahead for a limited time; if it ends there without a touch, it counts as 256 events. A run with less
+    /// progress is [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have
+    /// about $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk moves or falls tens
+    /// of diameters.
     ///
     /// # Errors
     /// If the time is negative or not finite.

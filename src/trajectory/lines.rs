@@ -1,4 +1,4 @@
-//! Lines of a text with their numbers, and the numbers in them.
+//! Reading of a text line by line, with line numbers, and of the values in each line.
 
 use std::io::{BufRead, Read};
 use std::str::FromStr;

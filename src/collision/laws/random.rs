@@ -45,8 +45,9 @@ pub(crate) fn meeting(partners: [Partner; 2], closing: f64, slip: f64, spin: f64
         .with_spin(spin, inertia, one[2] - other[2])
 }
 
-/// Returns contacts between disks, and with straight, convex and hollow walls. They have relative spins, mass
-/// ratios up to 10⁶ and infinite masses, and last collisions at any time.
+/// Returns contacts between disks, and with straight, convex and hollow walls. They include relative
+/// spins, mass ratios of up to 10⁶ and infinite masses. The previous collision of a partner may be at any
+/// earlier time.
 pub(super) fn random_contacts(seed: u64, kinds: &[Kind]) -> impl Iterator<Item = Contact> + '_ {
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(seed));
     (0..CONTACTS).map(move |_| random.contact(kinds))

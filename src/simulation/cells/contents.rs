@@ -4,8 +4,8 @@ use super::block::{Block, CROWDED, SLOTS};
 use super::crowd::Crowds;
 use crate::prefetch::prefetch;
 
-/// Size of the slice to which three blocks are written. As far as the compiler knows, a block holds up to 7
-/// disks, so the third block begins before slot 16.
+/// Size of the slice to which three blocks are written. The count of a block has three bits, so the compiler
+/// knows only that it is at most 7: two blocks fill at most 14 slots, and the third block still fits.
 const WINDOW: usize = 16 + SLOTS;
 
 /// The disks of each cell, by the index of the cell.

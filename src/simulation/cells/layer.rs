@@ -136,9 +136,9 @@ impl LayerLayout {
 /// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than
 /// half a period, no other image comes nearer.
 pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
-    // Both of two equal disks may be anywhere in their cells. Each cell may therefore be half as wide as half
-    // a period less the distance at a touch. For a small disk, the margin of its cell counts, too, since the
-    // disk may be outside the cell by the margin.
+    // Both of two equal disks may be anywhere in their cells. Each cell may therefore be as wide as (p/2 −
+    // d)/2, where p is the period and d the distance at a touch. For a small disk, the margin of its cell
+    // counts, too, since the disk may be outside the cell by the margin.
     let half = 0.5 * domain.periods();
     let small_cell = grid.layout.pitch + 2.0 * grid.margin;
     let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);

@@ -39,8 +39,8 @@ impl Bodies {
 
     /// Removes a disk, in a time that does not grow with the number of disks. The last one takes its index.
     ///
-    /// Afterwards, no disk has one of these two indices together with a count of collisions that an earlier
-    /// forecast holds.
+    /// The index of the removed disk and the last index both get a count of collisions that no earlier
+    /// forecast holds, so earlier forecasts with these indices are recognized as outdated.
     pub(in crate::simulation) fn swap_remove(&mut self, disk: usize) {
         let last = self.len() - 1;
         let count = |disk: usize| self.particles[disk].forecast.collisions.wrapping_add(1);

@@ -144,7 +144,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Returns an earlier study's record of the next value, or `None` if no earlier study has a suitable one.
     fn earlier(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
         let (plan, seen) = (&self.session.study.plan, &self.seen);
-        // After a value with more samples, the next one starts from another state.
+        // Each value starts where the previous one ended. After an earlier study's value with other samples,
+        // the next value there started from a state that is not this study's.
         let are_same = |other: &Plan<E>| seen.is_empty() || other.protocol() == plan.protocol();
         self.earlier.retain(|(study, _)| are_same(&study.plan) && study.plan.next(seen) == Some(step));
         for (study, ramp) in &self.earlier {
@@ -281,7 +282,7 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "str::is_empty")]
     warnings: &'a str,
     collisions: u64,
-    /// True, in place of the seconds, if the value comes from an earlier study.
+    /// True if the value was taken over from an earlier study; the line then has no `seconds`.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     taken_over: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
