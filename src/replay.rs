@@ -151,6 +151,9 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
 
     /// Returns the collisions after the absolute time `from`, up to and including `to`.
     ///
+    /// The [time](crate::observable::Collision::time) of a collision is rounded: `time.next_up()` surely
+    /// includes it.
+    ///
     /// # Errors
     /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
@@ -162,6 +165,9 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
 
     /// Returns a disk's last collisions up to and including an absolute time, at most `count` of them, in
     /// order. The disk is identified by its [id](crate::Disk::id).
+    ///
+    /// The [time](crate::observable::Collision::time) of a collision is rounded: `time.next_up()` surely
+    /// includes it.
     ///
     /// # Errors
     /// If the replay fails where the run did not: a part then returns other results than in the run.

@@ -30,7 +30,8 @@ pub(super) struct Lags<V> {
     past: VecDeque<V>,
     /// Means for the lags of 0, 1, 2, … intervals.
     means: Vec<BlockedMean>,
-    /// Unwrapped positions of the disks at the end of the latest run.
+    /// Unwrapped positions of the disks at the end of the latest run, and of removed disks where they were
+    /// last.
     places: Option<PerDisk<DVec2>>,
 }
 
@@ -51,7 +52,7 @@ impl<V> Lags<V> {
     /// are forgotten.
     pub(super) fn begin(&mut self, start: &Snapshot<'_>) {
         self.sample_times.start_at(start.time());
-        let Some(places) = self.places.take() else { return };
+        let Some(places) = &self.places else { return };
         let rounding = ROUNDING * start.mean(Disk::radius);
         let is_elsewhere = |before: &DVec2, now: &DVec2| f64::from(before.distance(*now) > rounding);
         if places.mean_with(&places_in(start), is_elsewhere) > 0.0 {
@@ -61,7 +62,10 @@ impl<V> Lags<V> {
 
     /// Notes the end of a run.
     pub(super) fn pause(&mut self, end: &Snapshot<'_>) {
-        self.places = Some(places_in(end));
+        let mut places = places_in(end);
+        // A removed disk may come back elsewhere, after any number of runs.
+        places.keep_missing(self.places.take());
+        self.places = Some(places);
     }
 
     /// Adds a sample and its pairs with the earlier ones. Pairs whose value is NaN are left out.

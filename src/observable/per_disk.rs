@@ -55,6 +55,19 @@ impl<T> PerDisk<T> {
     }
 }
 
+impl<T> PerDisk<T> {
+    /// Adds earlier values of disks that are not here.
+    pub(super) fn keep_missing(&mut self, earlier: Option<Self>) {
+        let here = self.0.len();
+        for (id, value) in earlier.into_iter().flat_map(|earlier| earlier.0) {
+            if self.0[..here].binary_search_by_key(&id, |(id, _)| *id).is_err() {
+                self.0.push((id, value));
+            }
+        }
+        self.0.sort_by_key(|(id, _)| *id);
+    }
+}
+
 impl<T> From<Vec<(u64, T)>> for PerDisk<T> {
     /// Creates the values from ids and values in any order.
     fn from(mut entries: Vec<(u64, T)>) -> Self {

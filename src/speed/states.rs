@@ -74,8 +74,8 @@ pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
     settled_gas(container, disks)
 }
 
-/// Returns an elastic gas of disks of two sizes, in the ratio 1 to 10, each with half of the disks' area, at
-/// the area fraction 0.4, periodic on all sides.
+/// Returns an elastic gas of disks of two sizes, in the ratio 1 to 10, each with about half of the disks'
+/// area, at the area fraction 0.4, periodic on all sides.
 ///
 /// # Errors
 /// The errors of the builder, which do not occur for these fixed numbers.

@@ -282,6 +282,23 @@ fn disks_put_elsewhere_have_not_moved_there() -> Result<(), Failure> {
     Ok(())
 }
 
+/// A disk is taken out, and put back elsewhere after a run without it.
+#[test]
+fn a_disk_that_comes_back_elsewhere_has_not_moved_there() -> Result<(), Failure> {
+    let disks = [disk(1.0, 1.0)?.with_id(1)?, disk(3.0, 3.0)?.with_id(2)?];
+    let mut run = Simulation::builder(Elastic, Container::periodic(8.0, 8.0)?).disks(disks).build()?;
+    let mut displacement = MeanSquaredDisplacement::new(4, times()?)?;
+    run.run_until(2.0, &mut displacement)?;
+    let removed = run.remove(|_, disk| disk.id() == 2)?;
+    run.run_until(2.0, &mut displacement)?;
+    run.insert(
+        removed.iter().map(|disk| disk.with_position(DVec2::splat(6.0))).collect::<Result<Vec<_>, _>>()?,
+    )?;
+    run.run_until(9.0, &mut displacement)?;
+    assert!(displacement.iter().all(|(_, squared)| squared.mean() == 0.0));
+    Ok(())
+}
+
 #[test]
 fn two_systems_in_one_observer_are_refused_by_name() -> Result<(), Failure> {
     let drum = Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
