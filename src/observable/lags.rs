@@ -30,9 +30,10 @@ pub(super) struct Lags<V> {
     past: VecDeque<V>,
     /// Means for the lags of 0, 1, 2, … intervals.
     means: Vec<BlockedMean>,
-    /// Unwrapped positions of the disks at the end of the latest run, and of removed disks where they were
-    /// last.
+    /// Unwrapped positions of the disks at the end of the latest run.
     places: Option<PerDisk<DVec2>>,
+    /// Largest id of a disk at the end of any run so far.
+    largest_id: u64,
 }
 
 impl<V> Lags<V> {
@@ -40,7 +41,14 @@ impl<V> Lags<V> {
     pub(super) fn new(times: SampleTimes, longest: usize) -> Result<Self, ParameterError> {
         accept((1..=MOST_LAGS).contains(&longest), "number of lags", "in 1..=2^20", longest as f64)?;
         let means = vec![BlockedMean::new(); longest + 1];
-        Ok(Self { sample_times: times, latest: None, past: VecDeque::new(), means, places: None })
+        Ok(Self {
+            sample_times: times,
+            latest: None,
+            past: VecDeque::new(),
+            means,
+            places: None,
+            largest_id: 0,
+        })
     }
 
     /// Returns the longest lag, as a number of intervals.
@@ -48,23 +56,24 @@ impl<V> Lags<V> {
         self.means.len() - 1
     }
 
-    /// Notes the start of a run. If a disk is no longer where the previous run left it, the samples so far
-    /// are forgotten.
+    /// Notes the start of a run. If a disk is no longer where the previous run left it, or comes back, the
+    /// samples so far are forgotten.
     pub(super) fn begin(&mut self, start: &Snapshot<'_>) {
         self.sample_times.start_at(start.time());
-        let Some(places) = &self.places else { return };
-        let rounding = ROUNDING * start.mean(Disk::radius);
+        let Some(places) = self.places.take() else { return };
+        let (now, rounding) = (places_in(start), ROUNDING * start.mean(Disk::radius));
         let is_elsewhere = |before: &DVec2, now: &DVec2| f64::from(before.distance(*now) > rounding);
-        if places.mean_with(&places_in(start), is_elsewhere) > 0.0 {
+        // A disk with a lower id than others is not new: it has come back after runs without it.
+        let comes_back = now.iter().any(|(id, _)| id <= self.largest_id && !places.has(id));
+        if comes_back || places.mean_with(&now, is_elsewhere) > 0.0 {
             self.forget_samples();
         }
     }
 
     /// Notes the end of a run.
     pub(super) fn pause(&mut self, end: &Snapshot<'_>) {
-        let mut places = places_in(end);
-        // A removed disk may come back elsewhere, after any number of runs.
-        places.keep_missing(self.places.take());
+        let places = places_in(end);
+        self.largest_id = places.iter().map(|(id, _)| id).fold(self.largest_id, u64::max);
         self.places = Some(places);
     }
 
@@ -121,13 +130,14 @@ crate::gate::from_file! {
         latest: Option<f64>,
         past: VecDeque<V>,
         means: Vec<BlockedMean>,
-        #[serde(default)] places: Option<PerDisk<DVec2>>
+        #[serde(default)] places: Option<PerDisk<DVec2>>,
+        #[serde(default)] largest_id: u64
     } => {
         crate::quantity::finite("time of the latest sample", latest.unwrap_or(0.0))?;
         let lags = means.len().saturating_sub(1);
         accept((1..=MOST_LAGS).contains(&lags), "number of lags", "in 1..=2^20", lags as f64)?;
         let fits = past.len() <= means.len();
         accept(fits, "number of samples that are kept", "at most the number of lags", past.len() as f64)?;
-        Ok(Self { sample_times, latest, past, means, places })
+        Ok(Self { sample_times, latest, past, means, places, largest_id })
     }
 }

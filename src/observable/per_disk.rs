@@ -39,6 +39,11 @@ impl<T> PerDisk<T> {
         self.0.iter().map(|(id, value)| (*id, value))
     }
 
+    /// Returns whether there is a value for the disk with this id.
+    pub(super) fn has(&self, id: u64) -> bool {
+        self.0.binary_search_by_key(&id, |(id, _)| *id).is_ok()
+    }
+
     /// Returns the mean of a function of a disk's two values, over the disks that have both, or NaN if no
     /// disk has both.
     pub fn mean_with(&self, other: &Self, function: impl Fn(&T, &T) -> f64) -> f64 {
@@ -52,19 +57,6 @@ impl<T> PerDisk<T> {
             }
         }
         sum / f64::from(count)
-    }
-}
-
-impl<T> PerDisk<T> {
-    /// Adds earlier values of disks that are not here.
-    pub(super) fn keep_missing(&mut self, earlier: Option<Self>) {
-        let here = self.0.len();
-        for (id, value) in earlier.into_iter().flat_map(|earlier| earlier.0) {
-            if self.0[..here].binary_search_by_key(&id, |(id, _)| *id).is_err() {
-                self.0.push((id, value));
-            }
-        }
-        self.0.sort_by_key(|(id, _)| *id);
     }
 }
 

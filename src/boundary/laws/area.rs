@@ -43,8 +43,8 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
     let narrow = DVec2::new(thin(), thin());
     let narrow = Region::new(one, (one + narrow * (high - low)).min(high));
     let Domain { periodic_sides, periodic_ends, top, .. } = trial.domain;
-    let beyond = trial.radius * DVec2::new(is(!periodic_sides), is(!periodic_ends));
-    let above = beyond * DVec2::new(1.0, is(top == high.y));
+    let beyond = trial.radius * DVec2::new(f64::from(!periodic_sides), f64::from(!periodic_ends));
+    let above = beyond * DVec2::new(1.0, f64::from(top == high.y));
     for radius in [trial.radius, 0.0] {
         let whole = Region::new(low, high);
         for region in [whole, Region::new(one.min(other), one.max(other)), narrow] {
@@ -59,11 +59,6 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
              a strip beyond the walls {all:?}");
     }
     Ok(())
-}
-
-/// Returns 1 for true and 0 for false.
-fn is(condition: bool) -> f64 {
-    f64::from(u8::from(condition))
 }
 
 fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Result<(), Violation> {
