@@ -11,8 +11,8 @@
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls. Inlets come after all events of disks, in the order in which they were added.
-//! 3. A sample at time $`t`$ includes all events up to and including $`t`$. The time of an event is rounded:
-//!    a run until the [time](crate::observable::Collision::time) of a collision may end just before it.
+//! 3. A sample at time $`t`$ includes all events up to and including $`t`$. A run until the
+//!    [time](crate::observable::Collision::time) of a collision thus includes this collision.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].

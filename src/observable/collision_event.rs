@@ -36,8 +36,7 @@ pub enum Partner {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Collision {
-    /// Absolute time of the collision, rounded: a run until this time may end just before the collision, and
-    /// a run until `time.next_up()` includes it.
+    /// Absolute time of the collision. A run until this time includes the collision.
     pub time: f64,
     /// Index of the disk.
     pub disk: usize,

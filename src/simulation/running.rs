@@ -197,8 +197,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         watch: &Watch<'_>,
         observer: &mut O,
     ) -> Outcome<Reached> {
-        // The epoch may move with each event, which changes the offset of `stop`.
-        while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
+        while let Some((disk, due)) = self.next_due(stop) {
             if self.clock.is_look_due()
                 && let Some(end) = self.look(watch, disk, due)?
             {
@@ -208,8 +207,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
-        // The difference is rounded, and must not set the run back to a time before its last event.
-        self.clock.now = self.clock.now.max(stop - self.clock.origin);
+        self.clock.advance_to(stop);
         Ok(Reached::Time)
     }
 

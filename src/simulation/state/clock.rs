@@ -54,6 +54,15 @@ impl Clock {
         self.origin + self.now
     }
 
+    /// Advances to an absolute time. All events up to and including it have been carried out.
+    pub(in crate::simulation) fn advance_to(&mut self, time: f64) {
+        let offset = time - self.origin;
+        // The difference is rounded. It must neither pass the time, nor set the run back to before its last
+        // event.
+        let is_after = self.origin + offset > time;
+        self.now = self.now.max(if is_after { offset.next_down() } else { offset });
+    }
+
     /// Returns the largest difference between the present and the time up to which a run was to advance.
     pub(in crate::simulation) fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * (self.origin.abs() + self.now.abs())
