@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// ```math
 /// g(r) = \frac{A\,\langle N_{ij}(r)\rangle}
-/// {\langle N_i\rangle\langle N_j\rangle\,(1 - \delta_{ij}/N)\; 2\pi r\,\Delta r} .
+/// {\langle N_i\rangle\langle N_j\,(1 - \delta_{ij}/M_j)\rangle\; 2\pi r\,\Delta r} .
 /// ```
 ///
 /// If the number of disks in the box varies, its mean square enters, too: the denominator has the factor
@@ -30,8 +30,8 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// $`N_{ij}(r)`$ counts the pairs of a disk $`i`$ in a region and a partner $`j`$ anywhere, by the distance
 /// between their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area
-/// is $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners
-/// among the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the
+/// is $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`M_j - 1`$
+/// partners in the box. Shells have their exact areas. In a periodic box, the
 /// region is the whole domain. At walls, the region ends at a distance of `range` from the sides and ends of
 /// the domain, so that all shells lie inside. In a vessel with walls inside, give a region by
 /// [`within`](Self::within) that keeps the same distance from all walls. Where the density varies, under

@@ -25,9 +25,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(always)]
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
-        // Observers know the rounded absolute time of a collision. If the offset of `end` were compared, a run
-        // until that time could end just before the collision. The comparison is not `<=`, since a time that
-        // is not a number must be noticed, and must not end the run.
+        // Observers know the rounded absolute time of a collision. If the offset of `end` were compared, a
+        // run until that time could end just before the collision. The comparison is not `<=`, since a time
+        // that is not a number must be noticed, and must not end the run.
         if self.clock.origin + due > end { None } else { Some((disk, due)) }
     }
 
