@@ -55,7 +55,8 @@ impl Observable for CenterOfMass {
     }
 }
 
-/// Returns the circular mean of a coordinate, from `low` on; NaN if the disks have no mean direction.
+/// Returns the circular mean of a coordinate, between `low` and `low + period`; NaN if the disks have no mean
+/// direction.
 fn circular_mean(
     snapshot: &Snapshot<'_>,
     mass: f64,

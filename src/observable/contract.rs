@@ -29,7 +29,7 @@ pub trait Observable {
     fn measure(&self, snapshot: &Snapshot<'_>) -> Self::Value;
 }
 
-/// The error of an observer that makes a run fail: any error, or a text.
+/// The error of an observer that makes a run fail: any error, or a string.
 ///
 /// It is an error like any other, so `?` converts it into `Box<dyn Error>` and into the error types of other
 /// crates.

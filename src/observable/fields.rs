@@ -75,8 +75,7 @@ pub struct Fields {
 impl Fields {
     /// Creates fields over the cells of a grid.
     ///
-    /// Disks outside are left out. A run ends with an error if the whole grid is outside the
-    /// domain.
+    /// Disks outside the grid are left out. A run ends with an error if the whole grid is outside the domain.
     pub fn new(grid: Grid) -> Self {
         let (sums, free) = (vec![CellSums::default(); grid.count()], vec![0.0; grid.count()]);
         Self { grid, sums, free, samples: 0, shares: FreeShares::default() }

@@ -13,7 +13,7 @@ use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "observer";
 
-/// Largest number of samples in a short run of the script, and in the last run.
+/// Largest numbers of samples: in a short run of the script, and in the last run.
 const SAMPLES: usize = 50;
 const MANY_SAMPLES: usize = 10_000;
 
@@ -37,7 +37,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// make a new one for a measurement. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first broken promise.
 ///
 /// ```
 /// use granular_edmd::observable::laws::check;

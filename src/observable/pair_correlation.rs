@@ -67,11 +67,11 @@ pub struct PairCorrelation {
     bins: Bins,
     kinds: Option<[Kind; 2]>,
     region: Option<Region>,
-    /// Numbers of pairs over the area of the shell, for each bin.
+    /// Numbers of pairs divided by the area of the shell, for each bin.
     pairs: Vec<BlockedMean>,
     /// Number of disks in the region, around which pairs are counted.
     centers: RunningMean,
-    /// Number of partners in the region, over its area.
+    /// Number of partners in the region, divided by its area.
     partner_density: RunningMean,
     /// Numbers of possible centers in the box, of possible partners of each center, and of pairs.
     numbers: [RunningMean; 3],
