@@ -75,9 +75,9 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 6. Whatever an observer does, the trajectory has the same bits as without the observer, as far as the run
 ///    goes.
 ///
-/// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions only, and no start, samples
-/// or end. A verdict that fails ends the step with an error. A verdict that stops has no effect, since the
-/// caller takes each step.
+/// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions, insertions and removals, but
+/// no start, samples or end. A verdict that fails ends the step with an error. A verdict that stops has no
+/// effect, since the caller takes each step.
 ///
 /// # Guarantees of an observer
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.

@@ -30,7 +30,7 @@ use crate::{Disk, Fingerprint};
 const SEAL: Seal = Seal::new(*b"GRANEDMD", 9);
 
 /// A saved run: everything on which its future depends, except its rule and its boundary. The state of walls
-/// that [react](Boundary::react) is kept.
+/// that [react](Boundary::react) is included.
 ///
 /// A resumed run continues bit for bit, even under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were truncated,

@@ -177,7 +177,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 }
 
-/// Checks that inlets are in the domain of a boundary, and that it has room for their models.
+/// Checks that inlets are in the domain of a boundary, and that the boundary has room for their models.
 pub(super) fn check_inlets<B: Boundary + ?Sized>(boundary: &B, inlets: &[Inlet]) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for inlet in inlets {

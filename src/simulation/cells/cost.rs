@@ -109,7 +109,7 @@ impl Gridded {
         homes * LOOK + homes * self.home * self.home * self.density
     }
 
-    /// Returns the costs of a search in a smaller group, after a collision and after a passage.
+    /// Returns the costs of a search in a smaller group, after a collision and after a cell crossing.
     fn below(&self, smaller: &Self) -> (f64, f64) {
         let (width, hole) = self.reach(smaller);
         let (homes, disks) = (1.0 / (smaller.home * smaller.home), smaller.density);

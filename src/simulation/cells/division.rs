@@ -10,8 +10,7 @@ const WIDTH: f64 = 0.7;
 /// Returns the classes in the order of their sizes, smallest first. Without disks, there is no class.
 ///
 /// With narrow classes, a search meets fewer disks that are too far away; with a small number of classes, it
-/// visits fewer layers. The
-/// classes returned are the cheapest that the search finds.
+/// visits fewer layers. The classes returned are the cheapest that the search finds.
 pub(super) fn classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let narrow = narrow_classes(diameters);
     let (area, groups) = (area(&narrow), Group::of_each(&narrow));

@@ -66,8 +66,8 @@ pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Res
     check(disks().all(is_placed), MISFIT)?;
     let inside = |(disk, (_, &place))| holds(cells.grid_of(disk), place, bodies.position(disk, now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
-    // The cells at walls extend to infinity.
-    // Rounding needs much less than a radius.
+    // The cells at walls extend to infinity, so they do not keep disks in the domain. Rounding needs much
+    // less than a radius.
     let within = |disk| saved.domain.contains(bodies.position(disk, now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
     check(has_room(saved, cells, bodies), "the disks of a cell overlap")?;
@@ -250,8 +250,8 @@ fn ends_where_it_can(
     gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbor(place, exit.direction()).0)
 }
 
-/// Returns whether a disk touches its partner when it collides with it. An outdated prediction passes, since
-/// the engine replaces it when its event is due.
+/// Returns whether a disk and its partner touch at the time of their predicted collision. An outdated
+/// prediction passes, since the engine replaces it when its event is due.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due.is_finite()
