@@ -188,10 +188,10 @@ impl Vessel {
     /// The walls of the part come after the walls of all other parts.
     ///
     /// # Errors
-    /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
-    /// walls. Also if the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. Also if the part takes out centers and
-    /// either turns or has a motion whose acceleration is not exactly known. The vessel then stays unchanged.
+    /// If a part or a wall of the container already has this name, if the vessel would have more than 2¹⁶
+    /// walls, if the part extends over more than 64 periods of the container in one direction or more than
+    /// 256 in both together, or if its motion is lost in the rounding of its coordinates. The vessel then
+    /// stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));

@@ -43,8 +43,8 @@ use crate::{Disk, ParameterError};
 /// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
 /// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults the check finds. If a
-/// driving draws random numbers in the order of the list, the check finds that it remembers disks by their
-/// position in the list only if each kick at a position resembles the previous one there. The engine refuses
+/// driving draws random numbers in the order of the list and remembers disks by their position in it, the
+/// check finds this only if each kick at a position resembles the previous one there. The engine refuses
 /// disks that overlap, a change of their number, and a clock that stands still.
 ///
 /// ```

@@ -103,10 +103,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// If no collision comes before `end`, the run advances to `end`, and the result is `None`.
     ///
-    /// The observer receives the collision, and the disks that inlets and sinks insert and remove.
-    /// `on_start`, `on_sample` and `on_end` are not called, so the observer's clock stands still. If the
-    /// observer fails, the step returns an error. A verdict to stop has no effect, since the caller decides
-    /// on each step.
+    /// The observer receives the collision, and the disks that inlets insert and sinks remove. `on_start`,
+    /// `on_sample` and `on_end` are not called, so the observer's clock stands still. If the observer fails,
+    /// the step returns an error. A verdict to stop has no effect, since the caller decides on each step.
     ///
     /// ```
     /// # use granular_edmd::glam::DVec2;
