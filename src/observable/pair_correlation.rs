@@ -150,12 +150,12 @@ impl PairCorrelation {
         };
         let (is_left, requirement) = (
             region.min.cmplt(region.max).all() && region.max.is_finite(),
-            "less than half of the distance between walls, or have a region",
+            "less than half of the distance between walls, unless a region is given",
         );
         accept(is_left, "range of the correlation", requirement, self.range())?;
         let shells = grown(region, self.range() * (1.0 - ROUNDING), &domain);
         let is_inside = inside(shells, &room).is_ok() && snapshot.is_clear(&shells);
-        let requirement = "less than the distance of the region from all walls: give a region away from them";
+        let requirement = "less than the distance of the region from all walls: choose another region";
         accept(is_inside, "range of the correlation", requirement, self.range())?;
         Ok(region)
     }

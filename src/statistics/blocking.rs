@@ -63,7 +63,7 @@ const LARGEST: f64 = 1e100;
 /// ```
 pub fn block_average(samples: &[f64]) -> Result<Estimate, ParameterError> {
     accept(samples.len() >= 2, "number of samples", "at least 2", samples.len() as f64)?;
-    let largest = "finite and at most 1e100 in size";
+    let largest = "finite and at most 1e100 in magnitude";
     samples
         .iter()
         .try_for_each(|&sample| accept(sample.abs() <= LARGEST, "sample", largest, sample).map(|_| ()))?;
