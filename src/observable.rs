@@ -7,8 +7,8 @@
 //! or an `Option`. Watching never changes a trajectory.
 //!
 //! An [`Accumulator`] adds up snapshots. It gets them from the [`Sampled`] that wraps it in a run, or from
-//! your program. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have their
-//! own clocks, since the sampling interval is part of what they measure.
+//! your program. Observers such as [`Stress`], [`MeanSquaredDisplacement`] and [`Arrivals`] have their own
+//! clocks, since the sampling interval is part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|

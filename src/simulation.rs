@@ -1,6 +1,6 @@
 //! The engine, which advances disks from event to event.
 //!
-//! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
+//! [`Simulation::builder`] checks the disks, gravity and the boundary, and builds a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
 //! it. Between runs, you can change the rule, the boundary and gravity, insert disks ([`Simulation::insert`])
 //! and remove them ([`Simulation::remove`]). During a run, [sinks](crate::boundary::Part::absorbing) take
@@ -111,7 +111,8 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     generator: Xoshiro256PlusPlus,
     counters: Counters,
     lookahead: Lookahead,
-    /// Processor instructions that predictions may use; the results do not depend on them, to the bit.
+    /// Processor instructions that predictions may use. The results are the same with any of them, bit for
+    /// bit.
     instructions: Instructions,
     scratch: Scratch,
     inlets: Vec<Inlet>,

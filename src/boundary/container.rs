@@ -15,7 +15,8 @@ use crate::quantity::{accept, positive};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
 
-/// A rectangular container with its lower left corner at the origin, such as the paper's box.
+/// A rectangular container, such as the paper's box. Its lower left corner is at the origin unless it is
+/// [shifted](Self::shifted).
 ///
 /// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
 /// normal (which points inward), its own rule, a temperature, or a kind.

@@ -32,7 +32,7 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 ///
 /// A disk must clear the container's walls and each part: two blocks make a hopper, and a polygon can have
 /// pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
-/// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
+/// sides: a part that extends beyond one side enters again at the other, however far it extends. Parts are
 /// added, replaced and removed by name, even between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///

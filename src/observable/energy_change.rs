@@ -18,8 +18,8 @@ use crate::statistics::BlockedMean;
 ///
 /// A run ends with an error if it belongs to another system than the previous run, if it goes back in time,
 /// or if the index of a wall that was hit now belongs to another wall. Clear the observer before such a run,
-/// or use another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) is the mean over
-/// several systems.
+/// or use another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) gives the mean
+/// over several systems.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;

@@ -41,7 +41,7 @@ pub struct FieldCell {
 /// [`Boundary::area`](crate::boundary::Boundary::area) gives at each sample; a run ends with an error if the
 /// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*, over all samples.
 /// A flow that changes between samples, such as a roll that reverses, counts as temperature. If $`n`$ disks
-/// are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$, for independent samples.
+/// are seen in a cell in independent samples, its temperatures are too small by a factor $`1 - 1/n`$.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};

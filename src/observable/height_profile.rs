@@ -63,9 +63,9 @@ impl DenseLayer {
 /// \Big/ \langle A(y_k, y_k + \Delta y)\rangle.
 /// ```
 ///
-/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor,
-/// [`Boundary::area`](crate::boundary::Boundary::area) gives it. A bin without free area has the packing
-/// fraction 0. A run ends with an error if the boundary does not know its area.
+/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and above a moving
+/// floor, [`Boundary::area`](crate::boundary::Boundary::area) gives it. A bin without free area has the
+/// packing fraction 0. A run ends with an error if the boundary does not know its area.
 ///
 /// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins smaller than a
 /// diameter. In the paper's box, bins of one diameter resolve a compact layer and average over its rows.

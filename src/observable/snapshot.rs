@@ -249,7 +249,7 @@ impl<'a> Snapshot<'a> {
     /// Returns the walls as polylines, without the edges of the domain, for pictures.
     ///
     /// They come from the [`wall_lines`](Boundary::wall_lines) of the run's boundary at this time. A snapshot
-    /// that was not made by a simulation has no walls.
+    /// without a boundary has no walls.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -222,7 +222,7 @@ impl TransportCoefficients {
         self.lags[0].iter().zip(self.lags[2].iter()).map(|((time, shear), (_, heat))| (time, [shear, heat]))
     }
 
-    /// Returns the mean translational temperature about the center of mass: twice the energy over the
+    /// Returns the mean translational temperature about the center of mass: twice the energy divided by the
     /// $`2(N-1)`$ degrees of freedom.
     pub fn temperature(&self) -> f64 {
         self.temperature.mean()

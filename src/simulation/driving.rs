@@ -5,7 +5,8 @@
 //! | [`WhiteNoise`] | random kicks, which conserve the total momentum |
 //! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
 //!
-//! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop knows nothing of it.
+//! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop does not know about
+//! drivings.
 
 pub mod laws;
 mod noise;

@@ -5,7 +5,7 @@ use super::RunningMean;
 /// Smallest number of blocks with a meaningful scatter. The error of eight blocks is uncertain by a quarter.
 const FEWEST_BLOCKS: u64 = 8;
 
-/// Smallest number of independent samples of an error that can be trusted.
+/// Smallest number of independent samples from which an error can be trusted.
 ///
 /// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. If
 /// half of this number were enough, every tenth series of 30 independent samples would be called converged,

@@ -40,8 +40,8 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);
     loop {
-        // Inverting two neighbors together shifts a bound, or adds or removes two bounds. Without such steps
-        // the search would stay in a local minimum, where every single change raises the cost.
+        // Inverting two neighboring entries together shifts a bound, or adds or removes two bounds. Without
+        // such steps the search would stay in a local minimum, where every single change raises the cost.
         let changed = (0..bounds.len()).flat_map(|first| [1, 2].map(|count| changed(&bounds, first, count)));
         let costs = changed.map(|bounds| (cost(&bounds), bounds));
         match costs.min_by(|a, b| a.0.total_cmp(&b.0)) {
