@@ -67,11 +67,11 @@ pub struct PairCorrelation {
     bins: Bins,
     kinds: Option<[Kind; 2]>,
     region: Option<Region>,
-    /// Numbers of pairs over the area of the shell, for each bin.
+    /// Numbers of pairs divided by the area of the shell, for each bin.
     pairs: Vec<BlockedMean>,
     /// Number of disks in the region, around which pairs are counted.
     centers: RunningMean,
-    /// Number of partners in the region, over its area.
+    /// Number of partners in the region, divided by its area.
     partner_density: RunningMean,
     /// Numbers of possible centers in the box, of possible partners of each center, and of pairs.
     numbers: [RunningMean; 3],
@@ -150,12 +150,12 @@ impl PairCorrelation {
         };
         let (is_left, requirement) = (
             region.min.cmplt(region.max).all() && region.max.is_finite(),
-            "less than half of the distance between walls, or have a region",
+            "less than half of the distance between walls, unless a region is given",
         );
         accept(is_left, "range of the correlation", requirement, self.range())?;
         let shells = grown(region, self.range() * (1.0 - ROUNDING), &domain);
         let is_inside = inside(shells, &room).is_ok() && snapshot.is_clear(&shells);
-        let requirement = "less than the distance of the region from all walls: give a region away from them";
+        let requirement = "less than the distance of the region from all walls: choose another region";
         accept(is_inside, "range of the correlation", requirement, self.range())?;
         Ok(region)
     }

@@ -52,7 +52,7 @@ impl Bins {
 
     /// Returns the lower edge of a bin.
     pub(crate) fn edge(&self, bin: usize) -> f64 {
-        // The product is rounded, and the last edge is the one that the user gave.
+        // The product is rounded, but the last edge must be exactly the number that the user gave.
         if bin == self.count { self.high } else { self.low + bin as f64 * self.width }
     }
 

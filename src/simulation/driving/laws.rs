@@ -86,10 +86,11 @@ impl Promises {
 /// The closure `make` returns a fresh driving each time. Two drivings kick the same disks: one in a run, and
 /// one in a run that is cut into two. The order of the disks changes from kick to kick.
 ///
-/// Three more drivings show a memory by the position in the list. If the kicks are the same in two orders
-/// that never change, they must also be the same in an order that changes. Otherwise, random numbers may be
-/// drawn in the order of the list, and the check only requires that a kick does not resemble the previous one
-/// at its position. The page "Validation" says which planted faults the check finds.
+/// Three more drivings show whether disks are remembered by their position in the list. If the kicks are the
+/// same in two orders that never change, they must also be the same in an order that changes. Otherwise,
+/// random numbers may be drawn in the order of the list, and the check only requires that a kick does not
+/// resemble the previous one at its position. The page "Validation" says which planted faults the check
+/// finds.
 ///
 /// # Errors
 /// Returns the first broken promise.
@@ -138,8 +139,9 @@ pub fn check<D: Driving>(make: impl FnMut() -> D, promises: &Promises) -> Result
     check_memory(make, &disks)
 }
 
-/// Returns this part of the kicks of all disks, times the roots of their masses, relative to the mean square.
-/// The last component is the spin. A kick that is zero up to rounding shows nothing, and is `None`.
+/// Returns this part of the kicks of all disks, times the roots of their masses, divided by the root of the
+/// sum of their squares. The last component is the spin. Returns `None` for a kick that is zero up to
+/// rounding, since it shows nothing.
 fn shares_of(before: &[Disk], after: &[Disk], part: DVec3) -> Option<[DVec3; DISKS]> {
     let kicks: [DVec3; DISKS] = std::array::from_fn(|place| {
         let (old, new) = (&before[place], &after[place]);

@@ -6,8 +6,8 @@ use crate::simulation::errors::{Outcome, RunError};
 /// Smallest number of floating-point times in an epoch. Between two such times, a typical disk then moves by
 /// at most about a diameter.
 ///
-/// These few times are enough, because epochs are powers of two, and so are the distances between these
-/// times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.
+/// These few times are enough, because the lengths of epochs are powers of two, and so are the distances
+/// between these times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.
 const TIMES_IN_EPOCH: f64 = 64.0;
 
 /// The numbers of cell crossings and of collisions of two disks when the epoch last moved.
