@@ -167,7 +167,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
-        // The first state may have its time's collisions still ahead of it: disks that touch at the start.
+        // The collisions at the time of the first state may still lie ahead: disks may touch at the start.
         for state in self.states.iter().rev().filter(|state| state.time() <= until) {
             let mut own = self.played(state.clone(), end)?;
             own.retain(|replayed| replayed.id == id || replayed.partner_id == Some(id));

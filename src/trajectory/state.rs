@@ -9,7 +9,7 @@ use crate::{Disk, Gravity};
 ///
 /// A [`Reader`](super::Reader) reads it from a file. No two disks overlap by more than the reader's
 /// tolerance, and no center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks
-/// them against the walls.
+/// the disks against the walls.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

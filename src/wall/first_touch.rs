@@ -9,9 +9,9 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Smallest room for a step, in units of the rounding error. It makes sure that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
-/// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
-/// within a few periods, each of which takes a few tens of steps. A search that has taken more steps returns
-/// to its caller, which resumes the search later.
+/// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search finds a
+/// touch within a few periods, each of which takes a few tens of steps. A search that has taken more steps
+/// returns to its caller, which resumes the search later.
 const MOST_STEPS: u32 = 256;
 
 /// The result of a search for the first touch: the touch, or the time up to which there is none.
@@ -252,7 +252,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         }
     }
 
-    /// Returns the end of a bounce that begins at `start`, or `None` if the bounce rises above rounding.
+    /// Returns the end of a bounce that begins at `start`, or `None` if the bounce rises above the rounding
+    /// error of the gap.
     ///
     /// The gap itself does not show when such a bounce is over. However, the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
