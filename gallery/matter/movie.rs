@@ -48,7 +48,7 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Takes 5 frames at most, after 20 oscillations at most.
+    /// Records at most 5 frames, after at most 20 oscillations.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
