@@ -131,7 +131,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns the state just before the collision with this number, or `None` if the run had no such
     /// collision.
     ///
-    /// Collisions with disks and walls are counted together from 1 on, as the
+    /// Collisions with disks and walls are counted together, starting with 1, as the
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors

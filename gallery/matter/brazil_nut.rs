@@ -110,7 +110,7 @@ fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box
     let floor = Sinusoidal::new(AMPLITUDE, 2.0)?;
     let container = Container::open(WIDTH)?.with_motion(Wall::Floor, floor)?;
     let start = initial_disks(&container, diameter, density, arguments.seed)?;
-    // Grains lie on each other for moments; they need a contact duration.
+    // Grains lie on each other for short times, so the rule needs a contact duration.
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.3)?, 1e-3)?;
     let mut simulation = Simulation::builder(rule, container).disks(start.clone()).gravity(1.0).build()?;
 

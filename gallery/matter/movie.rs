@@ -137,7 +137,8 @@ fn heights(disks: &[Disk], layers: &[u8]) -> [f64; LAYERS.len()] {
     })
 }
 
-/// A picture of palette colors: 0 is paper, 1 the walls, and from 2 on the shades of each layer.
+/// A picture of palette colors: 0 is paper, 1 the walls, and the numbers from 2 up are the shades of each
+/// layer.
 struct Canvas {
     width: usize,
     height: usize,

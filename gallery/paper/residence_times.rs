@@ -145,7 +145,8 @@ impl Residence {
     }
 }
 
-/// Returns a series of two values in which stays shorter than this many samples belong to the stay before.
+/// Returns a series of two values in which stays shorter than `least` samples are merged into the stay
+/// before.
 fn without_short(series: &[bool], least: usize) -> Vec<bool> {
     let mut steady: Vec<bool> = Vec::with_capacity(series.len());
     for stay in series.chunk_by(|before, after| before == after) {

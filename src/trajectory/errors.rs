@@ -218,7 +218,7 @@ pub enum ReadError {
         share: f64,
         /// Number of overlaps, counted up to eight for each disk.
         count: usize,
-        /// The settings that accept the overlaps, or the reason why no setting should.
+        /// The settings that accept the overlaps, or the reason why none does.
         advice: &'static str,
     },
     /// The file does not have the frame.

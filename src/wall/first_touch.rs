@@ -106,7 +106,7 @@ impl Approach {
 
 /// Returns the first time, not later than `until`, at which the surface touches the wall and closes further.
 ///
-/// On a piece on which the wall accelerates by at most $`a_{max}`$, the gap is never below the parabola with
+/// In a piece in which the wall accelerates by at most $`a_{max}`$, the gap is never below the parabola with
 /// that acceleration. The search steps to the root of the parabola, where the gap is still open, and repeats
 /// until the gap is closed. One step is exact if the acceleration is constant. Otherwise, the steps shrink
 /// quadratically, down to the rounding error of the gap. The search never steps over a contact. A gap that is

@@ -46,7 +46,7 @@ fn shaken_box() -> Outcome<String> {
     run(&container, 0.05, 0.0, 60.0)
 }
 
-/// Runs unequal disks between periodic sides over a thermal floor that heaves, at a late time.
+/// Runs unequal disks between periodic sides over a thermal floor that moves up and down, at a late time.
 fn heated_column() -> Outcome<String> {
     let container = || -> Outcome<Container> {
         Ok(Container::open(20.0)?
