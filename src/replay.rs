@@ -131,7 +131,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns the state just before the collision with this number, or `None` if the run had no such
     /// collision.
     ///
-    /// Collisions with disks and walls are counted together from 1 on, as the
+    /// Collisions with disks and walls are counted together, starting with 1, as the
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors
@@ -167,7 +167,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
-        // The first state may have its time's collisions still ahead of it: disks that touch at the start.
+        // The collisions at the time of the first state may still lie ahead: disks may touch at the start.
         for state in self.states.iter().rev().filter(|state| state.time() <= until) {
             let mut own = self.played(state.clone(), end)?;
             own.retain(|replayed| replayed.id == id || replayed.partner_id == Some(id));
