@@ -1,7 +1,7 @@
 //! A mixture: light glass and heavy steel, each with its own losses, in one box.
 //!
 //! ```text
-//! cargo run --release --example mixture
+//! cargo run --release -p granular-edmd --example mixture
 //! ```
 //!
 //! It takes two seconds. You learn kinds of disks, rules by pairs of kinds, and observables of one kind. In a
