@@ -1,7 +1,7 @@
 //! A checkpoint: a run that is interrupted, written to a file, and resumed with the same bits.
 //!
 //! ```text
-//! cargo run --release --features serde --example checkpoint
+//! cargo run --release -p granular-edmd --features serde --example checkpoint
 //! ```
 //!
 //! It takes less than a second. You learn what a checkpoint holds (the whole state), what it does not hold

@@ -1,7 +1,7 @@
 //! The first run: grains in a shaken box, and the convection rolls that appear.
 //!
 //! ```text
-//! cargo run --release --example first_run
+//! cargo run --release -p granular-edmd --example first_run
 //! ```
 //!
 //! It takes less than a second. You learn how a run is put together: walls, disks, a rule for their

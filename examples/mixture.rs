@@ -1,7 +1,7 @@
 //! A mixture: light glass and heavy steel, each with its own losses, in one box.
 //!
 //! ```text
-//! cargo run --release --example mixture
+//! cargo run --release -p granular-edmd --example mixture
 //! ```
 //!
 //! It takes two seconds. You learn about kinds of disks, rules for pairs of kinds, and observables for one

@@ -1,7 +1,7 @@
 //! A custom boundary: a drum whose rim is hot on one side and cold on the other.
 //!
 //! ```text
-//! cargo run --release --example own_boundary
+//! cargo run --release -p granular-edmd --example own_boundary
 //! ```
 //!
 //! It takes less than a second. You learn which questions a boundary answers (where it is, when a disk

@@ -1,7 +1,7 @@
 //! A custom observer: the force on the base, oscillation by oscillation, in a table.
 //!
 //! ```text
-//! cargo run --release --example own_observer > force.csv
+//! cargo run --release -p granular-edmd --example own_observer > force.csv
 //! ```
 //!
 //! It takes less than a second. You learn how an observer receives collisions and sampling times. It never

@@ -1,7 +1,7 @@
 //! A custom collision rule: the slower two grains collide, the more elastic they are.
 //!
 //! ```text
-//! cargo run --release --example own_rule
+//! cargo run --release -p granular-edmd --example own_rule
 //! ```
 //!
 //! It takes less than a second. You learn what a rule is (a function from a contact to an impulse), and how

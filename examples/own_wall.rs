@@ -1,7 +1,7 @@
 //! A custom wall motion: a base that rests between its kicks.
 //!
 //! ```text
-//! cargo run --release --example own_wall
+//! cargo run --release -p granular-edmd --example own_wall
 //! ```
 //!
 //! It takes two seconds. You learn what a wall motion returns (position, velocity, bounds on its

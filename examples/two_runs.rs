@@ -1,7 +1,7 @@
 //! Two runs that differ by the last bit of one position: when they diverge, and what stays the same.
 //!
 //! ```text
-//! cargo run --release --example two_runs
+//! cargo run --release -p granular-edmd --example two_runs
 //! ```
 //!
 //! It takes five seconds. You learn how to replay a run, how chaos shows, and why a result is a mean with an

@@ -190,8 +190,10 @@ const HEIGHT: f64 = 440.0;
 const BELOW: f64 = 330.0;
 
 /// Height of the part of the box that is shown, and its levels, with the base at its lowest.
-const SHOWN: f64 = 32.0;
-const LEVELS: (f64, f64) = (-2.0, SHOWN);
+const LEVELS: (f64, f64) = (-2.0, 32.0);
+
+/// The largest height in the panel of curves, with room for their names.
+const CURVES: f64 = 36.0;
 
 /// The highest and the lowest position of the base.
 const BASE: Look = Look::line(QUIET, "2 3").with_width(1.0);
@@ -239,7 +241,7 @@ impl Nut {
         if *density == 1.0 {
             format!("diameter {diameter}")
         } else {
-            format!("{diameter}, density {density}")
+            format!("diameter {diameter}, density {density}")
         }
     }
 }
@@ -255,6 +257,6 @@ fn lines(nuts: &[Nut]) -> Vec<Plot> {
 fn heights(nuts: &[Nut]) -> Layout {
     let last =
         nuts.iter().filter_map(|nut| nut.heights.last()).map(|[time, ..]| time + 1.0).fold(1.0, f64::max);
-    let layout = panel::axes((0.0, last), (0.0, SHOWN));
-    layout.with_x_label("oscillations").with_y_label("its height, in diameters")
+    let layout = panel::axes((0.0, last), (0.0, CURVES));
+    layout.with_x_label("oscillations").with_y_label("height of disk, in diameters")
 }

@@ -97,16 +97,17 @@ impl Panel {
         (across, inelasticity / self.largest_inelasticity)
     }
 
-    /// Returns the point of a line that carries its label. Neighboring lines have their labels at different
-    /// heights.
-    fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
+    /// Returns the point of a line that carries its label, where it hides as little as possible of what
+    /// else is drawn. Neighboring lines have their labels at different heights.
+    fn label_place(&self, index: usize, piece: &Piece, others: &[(f64, f64)]) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
         let height = (0.25 + 0.11 * (index % 5) as f64).max(lowest + 0.15);
         let distance = |&point: &(f64, f64)| {
             let (across, up) = self.fraction(point);
             let edge = (0.07 - across).max(across - 0.92).max(0.03 - up).max(up - 0.97).max(0.0);
             let wanted = if self.logarithmic { up - height } else { across - 0.7 };
-            wanted.abs() + 100.0 * edge
+            let covered = |&&(x, y): &&(f64, f64)| (x - across).abs() < LABEL.0 && (y - up).abs() < LABEL.1;
+            wanted.abs() + 0.1 * others.iter().filter(covered).count() as f64 + 100.0 * edge
         };
         let nearest = piece.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let short = !self.logarithmic && piece.iter().all(|&(friction, _)| friction < 0.7);
@@ -197,6 +198,9 @@ const MARGINS: Margins = [72.0, 20.0, 10.0, 60.0];
 const HEIGHT: f64 = 380.0;
 const HEADER: f64 = 94.0;
 
+/// Half the width and height of a label, as a share of its panel.
+const LABEL: (f64, f64) = (0.065, 0.03);
+
 /// The curve of the largest loss.
 const LARGEST: Look = Look::line(INK, "8 4").with_width(1.6);
 
@@ -221,18 +225,24 @@ fn draw_panel(
     gas: &Maxwellian,
 ) -> Result<(), ParameterError> {
     let (mut plots, mut labels) = (Vec::new(), Vec::new());
-    for (index, (level, pieces)) in panel.trace(gas)?.into_iter().enumerate() {
-        let look = look(level);
+    let (lines, largest, mut taken) = (panel.trace(gas)?, panel.maxima(gas)?, Vec::new());
+    for (index, (level, pieces)) in lines.iter().enumerate() {
+        let look = look(*level);
+        let others = lines.iter().filter(|(other, _)| other != level).flat_map(|(_, pieces)| pieces);
+        let others: Vec<_> = others.chain([&largest]).flatten().map(|&point| panel.fraction(point)).collect();
         for piece in pieces.iter().filter(|piece| piece.len() > 1) {
-            let place = panel.label_place(index, piece);
+            let place = panel.label_place(index, piece, &[&others[..], &taken].concat());
+            let (across, up) = panel.fraction(place);
             // A short piece in a corner has no room for a label.
-            if panel.fraction(place).0 > 0.06 {
+            if across > 0.06 {
+                let corners = [(-1.0, -1.0), (-1.0, 1.0), (0.0, 0.0), (1.0, -1.0), (1.0, 1.0)];
+                taken.extend(corners.map(|(x, y)| (across + LABEL.0 * x, up + LABEL.1 * y)));
                 labels.push((place, format!("{level}").replace('-', "−")));
             }
             plots.push(look.curve(piece.iter().copied()));
         }
     }
-    plots.push(LARGEST.curve(panel.maxima(gas)?));
+    plots.push(LARGEST.curve(largest));
     let drawn = sheet.panel(place, MARGINS, plots, panel.layout());
     for (point, text) in labels {
         let (x, y) = drawn.at(point);

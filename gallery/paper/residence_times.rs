@@ -19,7 +19,7 @@ use granular_edmd_study::Plan;
 use granular_edmd_study::vibrated_box::VibratedBox;
 
 use gallery::command_line::{self, Failure};
-use gallery::look::{BLUE, GREEN, Look, Mark, VERMILION};
+use gallery::look::{BLUE, GREEN, Look, Mark, QUIET, VERMILION};
 use gallery::panel::{self, COLUMN, Margins, Place};
 use gallery::results::Results;
 use gallery::runs;
@@ -290,6 +290,12 @@ const MARGINS: Margins = [74.0, 26.0, 16.0, 60.0];
 const HEADER: f64 = 234.0;
 const SIZE: (f64, f64) = (COLUMN, 360.0);
 
+/// The friction below which the two senses of a roll are not separate states (docs/reproduction.md).
+const SEPARATE: f64 = 0.0175;
+
+/// The look of changes that only noise makes.
+const NOISY: Look = Look::marks(QUIET, Mark::Cross);
+
 /// Ranges of friction and of residence times.
 const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 2e6)];
 
@@ -297,9 +303,11 @@ const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 2e6)];
 fn draw(values: &[Value]) -> Sheet {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
     let notes = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for each friction. Open: one or \
-                 two changes, no bound from above. From κ = 0.025 to 0.055 no roll changed; below 0.0175, noise passes for rolls";
+                 two changes, no bound from above. From κ = 0.025 to 0.055 no roll changed";
     sheet.header(MARGINS[0], "How long states last", &[notes]);
-    sheet.legend((MARGINS[0], HEADER - 66.0), &STAYS.map(|stay| (stay.look, stay.name)));
+    let names = STAYS.iter().map(|stay| (stay.look, stay.name));
+    let names: Vec<_> = names.chain([(NOISY, "below κ = 0.0175, noise passes for rolls")]).collect();
+    sheet.legend((MARGINS[0], HEADER - 90.0), &names);
     let layout = panel::axes(RANGES[0], RANGES[1])
         .with_log_y()
         .with_x_label("friction κ")
@@ -307,12 +315,10 @@ fn draw(values: &[Value]) -> Sheet {
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
     let panel = sheet.panel(place, MARGINS, Vec::new(), layout);
     for stay in &STAYS {
-        let ends = |(at, time): (f64, Residence)| {
-            time.interval().map(|end| (at, end.clamp(RANGES[1].0, RANGES[1].1)))
-        };
-        sheet.bars(&panel, stay.look, times(stay, values).map(ends));
         for (at, time) in times(stay, values) {
-            let look = if time.is_bound() { stay.look.open() } else { stay.look };
+            let look = if at < SEPARATE { NOISY } else { stay.look };
+            sheet.bars(&panel, look, [time.interval().map(|end| (at, end.clamp(RANGES[1].0, RANGES[1].1)))]);
+            let look = if time.is_bound() { look.open() } else { look };
             sheet.marks(&panel, look, [(at, time.mean)]);
         }
     }

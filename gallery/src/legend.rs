@@ -29,7 +29,7 @@ impl Drawn {
         }
     }
 
-    /// Returns the places of the columns of a legend, one or two, in the first corner of a panel where it
+    /// Returns the places of the columns of a legend, one to three, in the first corner of a panel where it
     /// hides nothing. The pair is the width of a column and the height of an entry.
     pub fn free_corner(
         &self,
@@ -50,7 +50,7 @@ impl Drawn {
             let (x, y) = corners.into_iter().find(free)?;
             Some((0..columns).map(|k| (x + (column + INSET) * k as f64, y)).collect())
         };
-        [1, 2].into_iter().find_map(corner)
+        (1..=3).find_map(corner)
     }
 
     fn is_free(&self, place: Place) -> bool {

@@ -186,9 +186,10 @@ pub fn noise(edge: &[(f64, f64)]) -> Plot {
     middle.with_band(edge.iter().map(|(_, half)| -half), edge.iter().map(|(_, half)| *half)).into()
 }
 
-/// Returns a color from blue (-1) over light gray (0) to red (1).
+/// Returns a color from dark blue (-1) over light gray (0) to red (1). In gray, the blue end is much darker
+/// than the red one.
 pub fn diverging(value: f64) -> String {
-    let (middle, blue, red) = ([214.0, 217.0, 221.0], [33.0, 102.0, 172.0], [178.0, 34.0, 48.0]);
+    let (middle, blue, red) = ([214.0, 217.0, 221.0], [8.0, 48.0, 107.0], [222.0, 80.0, 50.0]);
     let end = if value < 0.0 { blue } else { red };
     let share = value.abs().min(1.0);
     let mix = |k: usize| (middle[k] + share * (end[k] - middle[k])) as u8;

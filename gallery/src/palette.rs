@@ -50,7 +50,7 @@ impl Palette {
 struct Group {
     colors: Vec<(Color, u64)>,
     channel: usize,
-    /// The gain of cutting this group: its spread times the root of its pixels; 0 for a single color.
+    /// The square of the spread times the root of the pixels: the gain of cutting this group, 0 for one color.
     weight: u64,
 }
 
@@ -62,7 +62,7 @@ impl Group {
         };
         let channel = (0..3).max_by_key(|&channel| spread(channel)).unwrap_or(0);
         let pixels: u64 = colors.iter().map(|(_, count)| count).sum();
-        let weight = u64::from(spread(channel)) * (pixels as f64).sqrt().ceil() as u64;
+        let weight = u64::from(spread(channel)).pow(2) * (pixels as f64).sqrt().ceil() as u64;
         Self { colors, channel, weight }
     }
 

@@ -42,6 +42,11 @@ fn every_observable_has_a_heading_for_each_number() {
     assert_eq!(all.headings()[0], Heading::new("one_roll", "length/time"));
 }
 
+/// Returns the numbers of a table in CSV, without its headings.
+fn numbers(csv: &str) -> Vec<Vec<f64>> {
+    csv.lines().skip(1).map(|row| row.split(',').map(|number| number.parse().unwrap()).collect()).collect()
+}
+
 #[test]
 fn tables_read_back_to_the_same_bits() {
     let container = Container::closed(10.0, 10.0).unwrap();
@@ -53,9 +58,9 @@ fn tables_read_back_to_the_same_bits() {
 
     let mut table = Vec::new();
     series.write_csv(&mut table).unwrap();
-    let mut table = csv::Reader::from_reader(table.as_slice());
-    assert_eq!(table.headers().unwrap().get(2), Some("center_y [length]"));
-    let rows: Vec<Vec<f64>> = table.deserialize().collect::<Result<_, _>>().unwrap();
+    let table = String::from_utf8(table).unwrap();
+    assert_eq!(table.lines().next().unwrap().split(',').nth(2), Some("center_y [length]"));
+    let rows = numbers(&table);
     assert_eq!(rows.len(), 10);
     for ((time, (center, temperature)), row) in series.iter().zip(rows) {
         assert_eq!(row[..3], [time, center.x, center.y]);
@@ -109,8 +114,7 @@ fn rows(table: &impl Table) -> usize {
     assert!(table.rows().all(|row| row.len() == columns));
     let mut csv = Vec::new();
     table.write_csv(&mut csv).unwrap();
-    let read: Vec<Vec<f64>> =
-        csv::Reader::from_reader(csv.as_slice()).deserialize().collect::<Result<_, _>>().unwrap();
+    let read = numbers(&String::from_utf8(csv).unwrap());
     let bits = |row: Vec<f64>| row.into_iter().map(f64::to_bits).collect::<Vec<_>>();
     let count = read.len();
     assert!(read.into_iter().map(bits).eq(table.rows().map(bits)));

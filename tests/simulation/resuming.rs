@@ -69,8 +69,6 @@ fn a_checkpoint_within_other_formats_is_exact() {
     assert_same(&serde_json::from_value(value).unwrap(), &state);
     let bytes = postcard::to_stdvec(&experiment).unwrap();
     assert_same(&postcard::from_bytes(&bytes).unwrap(), &state);
-    let toml = toml::to_string(&experiment).unwrap();
-    assert_same(&toml::from_str(&toml).unwrap(), &state);
 }
 
 #[test]

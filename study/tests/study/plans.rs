@@ -1,8 +1,13 @@
 //! Plans: as data and as text, with errors by name.
 
+use granular_edmd::boundary::Container;
+use granular_edmd::collision::Elastic;
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::{Simulation, initial};
 use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Control, Course, Plan, Protocol, Ramp, Scalar, Study};
 use proptest::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::cases::config;
 use crate::report::report;
@@ -32,6 +37,26 @@ values = [0.01, 0.02]
 parameter = "inelasticity"
 values = [0.0, 0.01, 0.02]
 "#;
+
+/// A custom experiment can hold the state that its runs begin with.
+#[test]
+fn a_checkpoint_within_toml_is_exact() -> Result<(), AnyError> {
+    #[derive(Serialize, Deserialize)]
+    struct Held {
+        states: Vec<Checkpoint>,
+        last: Option<Checkpoint>,
+    }
+    let walls = Container::closed(12.0, 10.0)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&walls, 20, 0.5)?, 1.0, 3)?;
+    let mut run = Simulation::builder(Elastic, walls).disks(disks).gravity(0.05).seed(2).build()?;
+    run.run_until(4.0, &mut ())?;
+    let state = run.checkpoint();
+    let text = toml::to_string(&Held { states: vec![state.clone(); 2], last: Some(state.clone()) })?;
+    let held: Held = toml::from_str(&text)?;
+    assert!(held.states.len() == 2 && held.last.is_some());
+    assert!(held.states.iter().chain(&held.last).all(|read| *read == state));
+    Ok(())
+}
 
 #[test]
 fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
