@@ -1,8 +1,9 @@
 //! Checks the answers to the exercise on the erratum of Eq. (6), `docs/guide/exercise_erratum.md`.
 //!
 //! ```text
-//! cargo run --release -p granular-edmd --example exercise_erratum > erratum.csv              the curves of its figure
-//! cargo run --release -p granular-edmd --example exercise_erratum -- FACTOR JUMP FRICTION INELASTICITY
+//! cargo run --release -p granular-edmd --example exercise_erratum > erratum.csv              the curves of
+//! its figure cargo run --release -p granular-edmd --example exercise_erratum -- FACTOR JUMP FRICTION
+//! INELASTICITY
 //! ```
 //!
 //! An answer is a number such as 0.25, or a fraction such as 1/4. The program computes the right answers from

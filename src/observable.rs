@@ -84,7 +84,8 @@
 //! # Tables
 //! Every accumulator and every observer that measures something is a [`Table`]:
 //! [`write_csv`](Table::write_csv) writes its results with names, units and errors. A [`Series`] is a table
-//! if its observable is [`Tabular`]; a tuple has the columns of its parts.
+//! if its observable is [`Tabular`]; a tuple has the columns of its parts. For a measure by kind, write the
+//! table of the measure inside.
 //!
 //! # Errors
 //! Errors do not assume that samples are independent. They come from blocks of consecutive samples or
@@ -96,7 +97,8 @@
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
 //! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. If you read them back
-//! and lend them to the resumed run, they end with the same bits as in a run without interruption. Text
+//! and lend them to the resumed run, they end with the same bits as in a run without interruption. They
+//! still refuse other walls at the same indices, but a file does not tell to which system it belongs. Text
 //! formats may lose bits: JSON has no NaN, and its reader must round correctly (serde_json's
 //! `float_roundtrip`).
 

@@ -295,7 +295,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity.larger())?;
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.set_gravity(gravity, self.clock.now);
-        self.ledger.has_source = true;
+        self.balance_anew(&self.boundary.domain());
         self.clock.epoch_length = self.bodies.epoch_length();
         self.predict_all();
         Ok(())

@@ -50,7 +50,8 @@ impl Palette {
 struct Group {
     colors: Vec<(Color, u64)>,
     channel: usize,
-    /// The square of the spread times the root of the pixels: the gain of cutting this group, 0 for one color.
+    /// The square of the spread times the root of the pixels: the gain of cutting this group, 0 for one
+    /// color.
     weight: u64,
 }
 

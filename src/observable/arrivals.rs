@@ -36,7 +36,6 @@ pub struct Arrivals {
     present: u64,
     times: Vec<f64>,
     counts: Vec<u64>,
-    #[cfg_attr(feature = "serde", serde(skip))]
     names: WallNames,
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,

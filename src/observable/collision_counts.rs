@@ -30,7 +30,6 @@ pub struct CollisionCounts {
     contact_duration: u64,
     elastic_below: u64,
     least_rebound: u64,
-    #[cfg_attr(feature = "serde", serde(skip))]
     names: WallNames,
     /// The reason why the collisions of this run cannot be added.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -133,7 +132,7 @@ impl Table for CollisionCounts {
 crate::gate::from_file! {
     CollisionCounts {
         disks: u64, walls: BTreeMap<usize, u64>, sticking: u64, sliding: u64, contact_duration: u64,
-        elastic_below: u64, least_rebound: u64
+        elastic_below: u64, least_rebound: u64, names: WallNames
      } => {
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
@@ -141,6 +140,6 @@ crate::gate::from_file! {
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least the sum over all regimes", all as f64)?;
-        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, ..Self::default() })
+        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, names, fault: None })
     }
 }

@@ -39,7 +39,6 @@ pub struct CollisionHistograms {
     obliqueness: Histogram,
     closing_speed: Histogram,
     impulse: Histogram,
-    #[cfg_attr(feature = "serde", serde(skip))]
     names: WallNames,
     /// The reason why this run's collisions cannot be measured.
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -35,7 +35,6 @@ pub struct EnergyChange {
     /// The system that is measured, and the end of its latest run.
     #[cfg_attr(feature = "serde", serde(default))]
     system: System,
-    #[cfg_attr(feature = "serde", serde(skip))]
     names: WallNames,
     /// The reason why the collisions of this run cannot be added.
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -196,8 +196,10 @@ fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
 
 /// Returns a collision, with a different partner each time.
 fn collision(time: f64, number: usize) -> Collision {
-    use Regime::{ContactDuration, ElasticBelow, Sliding, Sticking, Unspecified};
-    const REGIMES: [Regime; 5] = [Sticking, Sliding, ContactDuration, ElasticBelow, Unspecified];
+    use Regime::{ContactDuration, ElasticBelow, LeastRebound, Sliding, Sticking, Unspecified};
+    // Partners repeat after six collisions. With seven entries, each of them meets all regimes.
+    const REGIMES: [Regime; 7] =
+        [Sticking, Sliding, ContactDuration, ElasticBelow, LeastRebound, Unspecified, Unspecified];
     let disk = number % DISKS;
     let partner = match number % (WALLS + 2) {
         wall if wall < WALLS => Partner::Wall(wall),

@@ -4,10 +4,11 @@ use super::Snapshot;
 use super::marks::Mark;
 use crate::ParameterError;
 
-/// The names of all walls in the latest run. Like marks, they are not written to files, and measurements that
-/// differ only in these names compare equal.
+/// The names of all walls in the latest run. Measurements that differ only in these names compare equal.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct WallNames {
+    #[cfg_attr(feature = "serde", serde(skip))]
     walls: Mark,
     names: Vec<String>,
 }

@@ -49,7 +49,6 @@ use crate::statistics::{BlockedMean, Estimate};
 pub struct WallStress {
     stretch: Stretch,
     walls: BTreeMap<usize, Received>,
-    #[cfg_attr(feature = "serde", serde(skip))]
     names: WallNames,
     /// The reason why the stress cannot be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]

@@ -18,8 +18,8 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 /// less:
 /// - An open gap counts at the first zero through which it falls.
 /// - A gap that is closed and closes further counts immediately, at time 0.
-/// - A closed gap that rises counts when it closes next or, if it never opens, when it falls back to its
-///   first value.
+/// - A closed gap that rises counts when it closes next or, if it falls back to its first value before it
+///   opens, at that time.
 ///
 /// The result is `None` if a coefficient is not finite. `end` may be infinite. The search uses only `+ - * /`
 /// and, for degree two, the square root, so its bits are the same on every platform.

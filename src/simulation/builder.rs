@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cells::{CellSize, Cells};
 use super::lookahead::Lookahead;
-use super::state::{Bodies, Clock, Identities, Ledger};
+use super::state::{Bodies, Clock, Identities, Ledger, falls_forever};
 use super::{BuildError, Counters, Scratch, Simulation};
 use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
@@ -135,8 +135,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
             check_epoch(&clock, 0.0)?;
         }
         // Along a periodic direction, gravity adds energy forever.
-        let falls = gravity.acceleration() * boundary.domain().periods();
-        let ledger = Ledger::new(self.start_time, bodies.energy(0.0), falls != DVec2::ZERO);
+        let has_source = falls_forever(gravity, &boundary.domain());
+        let ledger = Ledger::new(self.start_time, bodies.energy(0.0), has_source);
         let mut simulation = Simulation {
             rule: self.rule,
             boundary,

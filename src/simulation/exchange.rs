@@ -62,7 +62,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.shift_epoch(by);
         }
         self.count_jumps(boundary);
-        self.ledger.has_source = true;
+        self.balance_anew(&boundary.domain());
         self.marks[1] = Mark::new();
         Ok(fitted)
     }

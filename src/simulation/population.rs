@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::builder::{cells_around, check_epoch, check_speeds, fit};
 use super::lookahead::Lookahead;
-use super::state::Clock;
+use super::state::{Clock, falls_forever};
 use super::{BuildError, Simulation};
 use crate::Disk;
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::disk::countable;
 use crate::scheduler::EventScheduler;
@@ -96,8 +96,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts all events anew after disks were changed, added or removed.
     pub(super) fn begin_anew(&mut self) {
         self.lookahead = Lookahead::default();
-        self.ledger.has_source = true;
+        self.balance_anew(&self.boundary.domain());
         self.clock.epoch_length = self.bodies.epoch_length();
         self.predict_all();
+    }
+
+    /// Begins a new balance of the energy, after a change that is not part of a run.
+    pub(super) fn balance_anew(&mut self, domain: &Domain) {
+        let energy = self.bodies.energy(self.clock.now);
+        self.ledger.balance_anew(energy, falls_forever(self.gravity(), domain));
     }
 }

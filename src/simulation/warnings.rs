@@ -36,8 +36,9 @@ const JUMP: f64 = 1e-6;
 
 /// A fact that a run noticed and survived, and that its caller may not have wanted.
 ///
-/// Some warnings follow from the [`Counters`] alone, so records of studies have them, too; the others come
-/// from the simulation itself ([`Simulation::warnings`]).
+/// Warnings about shares and directions of collisions come only after a thousand collisions. Some warnings
+/// follow from the [`Counters`] alone, so records of studies have them, too; the others come from the
+/// simulation itself ([`Simulation::warnings`]).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -90,10 +91,11 @@ pub enum Warning {
         /// Upward component of gravity.
         upwards: f64,
     },
-    /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in:
-    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
+    /// The disks have gained energy since the run was built, or since disks, walls or gravity were last
+    /// changed between two runs, though no wall moves or is warm, and no disk came in or left: a rule gains
+    /// energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
     EnergyGained {
-        /// Energy when the run was built.
+        /// Energy at that time.
         before: f64,
         /// Energy now.
         now: f64,

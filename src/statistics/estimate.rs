@@ -110,7 +110,7 @@ impl Estimate {
     }
 
     /// Returns the number of independent samples with the same information: the number of samples divided by
-    /// [`correlated_samples`](Self::correlated_samples).
+    /// [`correlated_samples`](Self::correlated_samples), and at most the number of samples.
     pub fn independent_samples(&self) -> f64 {
         self.samples as f64 / self.correlated_samples.max(1.0)
     }

@@ -1,13 +1,13 @@
 //! Measurements as data: written halfway and read back, they end with the bits of a run without interruption.
 
-use granular_edmd::boundary::{Container, Region, Wall};
-use granular_edmd::collision::{ContactDuration, Frictional};
+use granular_edmd::boundary::{Container, Part, Region, Vessel, Wall};
+use granular_edmd::collision::{ContactDuration, Elastic, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
-    Grid, HeightProfile, MeanSquaredDisplacement, Observer, OrderParameters, PairCorrelation, SampleTimes,
-    Sampled, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
-    VelocityDistribution, WallStress,
+    Arrivals, CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange,
+    EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Observer, OrderParameters,
+    PairCorrelation, SampleTimes, Sampled, Series, Stress, Temperatures, TemperaturesAboutFlow,
+    TimeCorrelation, Velocities, VelocityDistribution, WallStress,
 };
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::{BlockedMean, Estimate, Histogram, RunningMean};
@@ -275,4 +275,35 @@ fn forged_measurements_are_refused() -> Outcome {
         assert!(refused::<Histogram>(forged(&histogram, at, number)), "{at}");
     }
     Ok(())
+}
+
+/// Fails unless the measurement, read back from a file, refuses walls that have changed their indices.
+fn remembers_walls<O: Observer + Serialize + DeserializeOwned>(mut observer: O) -> Outcome {
+    let peg = |x: f64| Part::peg(DVec2::new(x, 3.0), 1.0);
+    let container = || Container::closed(20.0, 20.0);
+    let vessel = Vessel::new(container()?).with("a", peg(4.0)?)?.with("b", peg(16.0)?)?;
+    let swapped = Vessel::new(container()?).with("b", peg(16.0)?)?.with("a", peg(4.0)?)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&vessel, 40, 0.5)?, 1.0, 1)?;
+    let mut run = Simulation::builder(Elastic, vessel.clone()).disks(disks).build()?;
+    run.run_until(20.0, &mut observer)?;
+    let read =
+        || -> Result<O, serde_json::Error> { serde_json::from_value(serde_json::to_value(&observer)?) };
+    let others = |walls: &Vessel| {
+        Simulation::resume(&run.checkpoint(), Elastic, walls.clone()).with_another_boundary().build()
+    };
+    others(&vessel)?.run_until(30.0, &mut read()?)?;
+    let refused = others(&swapped)?.run_until(30.0, &mut read()?).unwrap_err();
+    let refused = std::error::Error::source(&refused).expect("a cause").to_string();
+    assert!(refused.contains("clear the observer"), "{refused}");
+    Ok(())
+}
+
+#[test]
+fn a_file_holds_the_names_of_walls() -> Outcome {
+    let times = SampleTimes::every(1.0)?;
+    remembers_walls(Arrivals::at([4], times))?;
+    remembers_walls(CollisionCounts::default())?;
+    remembers_walls(CollisionHistograms::new(5.0, 5.0, 4)?.with_wall(4))?;
+    remembers_walls(EnergyChange::default())?;
+    remembers_walls(WallStress::new(times).with_wall(4, 5.0)?)
 }

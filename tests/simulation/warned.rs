@@ -104,12 +104,33 @@ fn energy_without_a_source_is_a_warning() -> Outcome {
     let mut honest = Simulation::builder(Elastic, walls()?).disks(gas(&walls()?)?).gravity(0.1).build()?;
     honest.run_until(300.0, &mut ())?;
     assert_eq!(honest.warnings(), []);
+    // A change by the caller begins a new balance.
+    for change in 0..4 {
+        let gains = change_and_go_on(run.clone(), change)?;
+        assert!(matches!(gains[..], [Warning::EnergyGained { .. }]), "{change}: {gains:?}");
+        assert_eq!(change_and_go_on(honest.clone(), change)?, [], "{change}");
+    }
     let shaken = walls()?.with_motion(Wall::Floor, Sinusoidal::new(0.5, 5.0)?)?;
     let mut heated =
         Simulation::builder(Elastic, shaken.clone()).disks(gas(&shaken)?).gravity(0.1).build()?;
     heated.run_until(30.0, &mut ())?;
     assert_eq!(heated.warnings(), []);
     Ok(())
+}
+
+/// Changes gravity, walls or disks, runs on, and returns the warnings.
+fn change_and_go_on<R: CollisionRule>(
+    mut run: Simulation<R, Container>,
+    change: u32,
+) -> Outcome<Vec<Warning>> {
+    match change {
+        0 => run.set_gravity(0.4)?,
+        1 => run.set_boundary(walls()?)?,
+        2 => drop(run.remove(|index, _| index == 3)?),
+        _ => run.map_disks(|_, disk| disk.with_velocity(2.0 * disk.velocity()))?,
+    }
+    run.run_until(run.time() + 20.0, &mut ())?;
+    Ok(run.warnings())
 }
 
 /// The criterion of the contact duration is the time between the collisions that it leaves, not their share.

@@ -1,5 +1,10 @@
 //! The energy at the start of a run, and whether anything may have added energy since.
 
+use glam::DVec2;
+
+use crate::Gravity;
+use crate::boundary::Domain;
+
 /// The energy balance of a run. It reveals a rule or a wall that adds energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,9 +13,10 @@ pub(in crate::simulation) struct Ledger {
     since: f64,
     /// Sum of the times that all disks had spent in the run before that time.
     disk_time: f64,
-    /// Kinetic and potential energy when the run was built.
+    /// Kinetic and potential energy when the run was built, or when disks, walls or gravity last changed
+    /// between two runs.
     pub(in crate::simulation) energy: f64,
-    /// True once a disk has hit a moving or thermal wall, or disks have been changed, added or removed.
+    /// True once a disk has hit a moving or thermal wall, has come in or has left since then.
     pub(in crate::simulation) has_source: bool,
     /// True while a run is under way. If it is true before a run, a panic interrupted the last run.
     pub(in crate::simulation) is_running: bool,
@@ -19,6 +25,11 @@ pub(in crate::simulation) struct Ledger {
 impl Ledger {
     pub(in crate::simulation) const fn new(start: f64, energy: f64, has_source: bool) -> Self {
         Self { since: start, disk_time: 0.0, energy, has_source, is_running: false }
+    }
+
+    /// Begins a new balance of the energy.
+    pub(in crate::simulation) const fn balance_anew(&mut self, energy: f64, has_source: bool) {
+        (self.energy, self.has_source) = (energy, has_source);
     }
 
     /// Returns the sum of the times that all disks have spent in the run, which now has `disks` disks.
@@ -30,4 +41,9 @@ impl Ledger {
     pub(in crate::simulation) fn count(&mut self, now: f64, before: usize) {
         (self.disk_time, self.since, self.has_source) = (self.disk_time_at(now, before), now, true);
     }
+}
+
+/// Returns whether gravity pulls along a periodic direction. Disks then fall forever, and gain energy.
+pub(in crate::simulation) fn falls_forever(gravity: Gravity, domain: &Domain) -> bool {
+    gravity.acceleration() * domain.periods() != DVec2::ZERO
 }

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use granular_edmd::Disk;
+use granular_edmd::collision::Regime;
 use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
 
 use crate::faults::{List, Planted};
@@ -138,5 +139,37 @@ pub(crate) fn catalogue() -> Vec<Planted<Box<dyn Observer>>> {
         }
     };
     add("beyond the script", "sample 5000 is asked for again", Changed { sample, ..changed() });
+    let regimes = [Regime::Sticking, Regime::Sliding, Regime::ContactDuration, Regime::ElasticBelow];
+    for regime in regimes.into_iter().chain([Regime::LeastRebound, Regime::Unspecified]) {
+        all.family = "regimes";
+        let observer = OnlyAt { clock: changed(), regime };
+        all.plant(format!("a collision of the regime {regime:?} puts the sample off"), Box::new(observer));
+    }
     all.faults
+}
+
+/// A clock that collisions of one regime put off.
+struct OnlyAt {
+    clock: Changed,
+    regime: Regime,
+}
+
+impl Observer for OnlyAt {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
+        self.clock.on_start(start);
+    }
+
+    fn on_collision(&mut self, collision: &Collision) {
+        if collision.impulse.regime() == self.regime {
+            self.clock.next += 1.0;
+        }
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.clock.next_sample()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.clock.on_sample(snapshot);
+    }
 }
