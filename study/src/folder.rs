@@ -23,12 +23,8 @@ const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const LOGS: &str = "logs";
 const UNFINISHED: &str = "unfinished";
-/// Name of the folder in which version 0.3 kept records.
-const RAMPS: &str = "ramps";
 const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
-const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
-    finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
 
 /// Magic number of the file of an unfinished value, and the version of the format that this crate writes and
 /// reads.
@@ -69,20 +65,12 @@ impl Folder {
         Ok(found)
     }
 
-    /// Returns an error if the folder has records of version 0.3, which this version does not read.
-    pub(super) fn check_format(&self) -> Result<(), StudyError> {
-        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
-            return Err(StudyError::refused(&self.root, OUTDATED));
-        }
-        Ok(())
-    }
-
     /// Returns whether the folder holds a study. A plan alone is not a study: a user may keep plans there,
     /// among other files. A study has a lock file beside its plan from the beginning, soon a README, and then
     /// records. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(LOCK).metadata().is_ok_and(|lock| is_lock(&lock));
-        let has_others = || [README, LOGS, RAMPS].iter().any(|name| self.root.join(name).exists());
+        let has_others = || [README, LOGS].iter().any(|name| self.root.join(name).exists());
         self.plan().exists() && (has_lock || has_others())
     }
 
@@ -95,13 +83,8 @@ impl Folder {
         Ok(lock)
     }
 
-    /// Writes the plan, its provenance and the README, except for files that exist already. The caller holds
-    /// the lock.
-    pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
-        if !self.plan().exists() {
-            write(&self.plan(), plan.as_bytes())?;
-        }
-        // If a process is killed here, the folder has a plan but no provenance and no records.
+    /// Writes the provenance and the README, except for files that exist already. The caller holds the lock.
+    pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         if !self.root.join(LOGS).exists() && !self.provenance().exists() {
             write(&self.provenance(), provenance.as_bytes())?;
         }
@@ -110,12 +93,6 @@ impl Folder {
 
     pub(super) fn provenance(&self) -> PathBuf {
         self.root.join(PROVENANCE)
-    }
-
-    /// Returns the text of the provenance, or `None` if its file is missing.
-    pub(super) fn read_provenance(&self) -> Result<Option<String>, StudyError> {
-        let path = self.provenance();
-        if_there("read", &path, fs::read_to_string(&path))
     }
 
     /// Writes the README of the folder, if it is missing or cut short. An edited README stays.

@@ -3,7 +3,6 @@
 use granular_edmd::statistics::Estimate;
 
 use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
-use super::experiment::with_error;
 use super::plan::ramp::{Bracket, Seen};
 use super::store::Entry;
 use super::{Experiment, Plan, Study, StudyError};
@@ -70,9 +69,8 @@ impl<E: Experiment> Point<E> {
     /// Returns the mean over all repeats of the column of this name, or `None` if no column of this name has
     /// an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
-        let columns = E::columns();
-        let column = with_error(&columns, column)?;
-        Some(Estimate::over_repeats(self.records.iter().filter_map(|record| column.estimate(record))))
+        let repeats = self.records.iter().map(|record| record.estimate(column));
+        repeats.collect::<Option<Vec<_>>>().map(Estimate::over_repeats)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A study: a plan in a folder, and the code that may continue it. Creating and opening check both.
 
+use std::fs;
 use std::path::Path;
 
 use granular_edmd::boundary::Boundary;
@@ -8,7 +9,7 @@ use granular_edmd::{Fingerprint, RESULTS};
 
 use super::claims::Claims;
 use super::experiment::record::{Maker, Origin};
-use super::folder::{Folder, write};
+use super::folder::{Folder, if_there, write};
 use super::parameters::{self, tree};
 use super::store::Store;
 use super::{Difference, Experiment, Plan, PlanError, StudyError};
@@ -141,8 +142,10 @@ impl<E: Experiment> Study<E> {
         let is_new = !self.folder.plan().exists();
         if is_new {
             check(&self.plan)?;
+            write(&self.folder.plan(), self.text.as_bytes())?;
         }
-        self.folder.put(&self.text, &self.ours().text())?;
+        // If a process is killed here, the folder has a plan but no provenance and no records.
+        self.folder.put(&self.ours().text())?;
         Ok(is_new)
     }
 
@@ -178,7 +181,8 @@ impl<E: Experiment> Study<E> {
     /// Reads the provenance, or returns `None` if its file is missing. The provenance must belong to this
     /// plan.
     fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
-        let (path, text) = (self.folder.provenance(), self.folder.read_provenance()?);
+        let path = self.folder.provenance();
+        let text = if_there("read", &path, fs::read_to_string(&path))?;
         let Some(text) = text else { return Ok(None) };
         let provenance: Provenance = serde_json::from_str(&text)
             .map_err(|reason| StudyError::damaged(&path, format!("it is no provenance ({reason})")))?;
@@ -189,7 +193,6 @@ impl<E: Experiment> Study<E> {
     }
 
     fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
-        self.folder.check_format()?;
         let provenance = self.read_provenance()?;
         let differences = self.ours().differences(provenance.as_ref());
         if differences.is_empty() {

@@ -23,7 +23,7 @@ pub(super) struct Session<'a, E: Experiment> {
     pub(super) control: &'a Control<'a>,
     /// Earlier studies, each with the indices of its ramps by seed.
     earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
-    pub(super) queue: Queue,
+    blocks: Mutex<Blocks>,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
     /// Number of finished steps, and number of steps in all values.
@@ -43,8 +43,11 @@ impl<'a, E: Experiment> Session<'a, E> {
         study: &'a Study<E>,
         control: &'a Control<'a>,
         ramps: Range<usize>,
-        blocks: impl Iterator<Item = Range<usize>>,
     ) -> Result<Self, StudyError> {
+        let waiting = match ramps.len() {
+            1 => VecDeque::from([ramps.clone()]),
+            _ => begun_anywhere(study.claims.blocks().collect()),
+        };
         let open = |folder: &PathBuf| {
             let earlier = Study::open(folder)?;
             StudyError::if_different(folder, differences(&earlier.plan, &study.plan)?)?;
@@ -58,7 +61,7 @@ impl<'a, E: Experiment> Session<'a, E> {
             study,
             control,
             earlier: control.earlier.iter().map(open).collect::<Result<_, StudyError>>()?,
-            queue: Queue::new(blocks),
+            blocks: Mutex::new(Blocks { waiting, elsewhere: VecDeque::new() }),
             ramps,
             steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
             redone: Mutex::default(),
@@ -67,13 +70,17 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Removes the finished blocks from the queue. A verification keeps all blocks.
+    /// Removes the finished blocks. A verification keeps all blocks.
     pub(super) fn strike_done(&self) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
         }
-        self.skip(self.queue.strike(&*self.study.store.refreshed()?));
+        self.skip(self.blocks().strike(&*self.study.store.refreshed()?));
         Ok(())
+    }
+
+    pub(super) fn blocks(&self) -> MutexGuard<'_, Blocks> {
+        self.blocks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Returns the ramps of earlier studies that have this seed.
@@ -162,37 +169,22 @@ impl<'a, E: Experiment> Session<'a, E> {
 /// Each process begins at a random block and continues in order from there, so two processes seldom meet at a
 /// block. A process that meets another one moves to a new random block.
 #[derive(Debug)]
-pub(super) struct Queue(Mutex<Blocks>);
-
-#[derive(Debug)]
-struct Blocks {
-    waiting: VecDeque<Range<usize>>,
-    elsewhere: VecDeque<Range<usize>>,
+pub(super) struct Blocks {
+    pub(super) waiting: VecDeque<Range<usize>>,
+    pub(super) elsewhere: VecDeque<Range<usize>>,
 }
 
-impl Queue {
-    fn new(blocks: impl Iterator<Item = Range<usize>>) -> Self {
-        let (waiting, elsewhere) = (begun_anywhere(blocks.collect()), VecDeque::new());
-        Self(Mutex::new(Blocks { waiting, elsewhere }))
-    }
-
-    /// Takes the next block.
-    pub(super) fn next(&self) -> Option<Range<usize>> {
-        self.blocks().waiting.pop_front()
-    }
-
-    /// Notes that another process has a block, and moves to another block of the queue.
-    pub(super) fn leave(&self, ramps: Range<usize>) {
-        let mut blocks = self.blocks();
-        blocks.elsewhere.push_back(ramps);
-        blocks.waiting = begun_anywhere(std::mem::take(&mut blocks.waiting));
+impl Blocks {
+    /// Notes that another process has a block, and moves to another waiting block.
+    pub(super) fn leave(&mut self, ramps: Range<usize>) {
+        self.elsewhere.push_back(ramps);
+        self.waiting = begun_anywhere(std::mem::take(&mut self.waiting));
     }
 
     /// Removes the finished blocks, and returns the number of their ramps.
-    fn strike(&self, entries: &Entries) -> usize {
-        let Blocks { waiting, elsewhere } = &mut *self.blocks();
+    fn strike(&mut self, entries: &Entries) -> usize {
         let mut ramps = 0;
-        for blocks in [waiting, elsewhere] {
+        for blocks in [&mut self.waiting, &mut self.elsewhere] {
             blocks.retain(|block| {
                 let is_done = block.clone().all(|ramp| entries.is_done(ramp));
                 ramps += if is_done { block.len() } else { 0 };
@@ -202,21 +194,11 @@ impl Queue {
         ramps
     }
 
-    /// Returns the ramps of other processes.
-    pub(super) fn elsewhere(&self) -> Vec<usize> {
-        self.blocks().elsewhere.iter().cloned().flatten().collect()
-    }
-
     /// Moves up to `count` blocks of other processes to the waiting blocks, for another attempt.
-    pub(super) fn retry(&self, count: usize) {
-        let mut blocks = self.blocks();
-        let mut tried = begun_anywhere(std::mem::take(&mut blocks.elsewhere));
-        blocks.elsewhere = tried.split_off(count.min(tried.len()));
-        blocks.waiting.append(&mut tried);
-    }
-
-    fn blocks(&self) -> MutexGuard<'_, Blocks> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(super) fn retry(&mut self, count: usize) {
+        let mut tried = begun_anywhere(std::mem::take(&mut self.elsewhere));
+        self.elsewhere = tried.split_off(count.min(tried.len()));
+        self.waiting.append(&mut tried);
     }
 }
 
