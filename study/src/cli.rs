@@ -49,6 +49,7 @@ use std::error::Error;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use clap::Parser;
 use serde_json::json;
@@ -56,7 +57,7 @@ use serde_json::json;
 use super::errors::{PlanError, StudyError, chain};
 use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
-use terminal::{STOP, Watch, is_stopped, listen, read, refused, say};
+use terminal::{STOP, Watch, listen, read, say};
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` prints; the JSON of
 /// `status` contains all.
@@ -121,9 +122,9 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
 
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
-    let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
+    let plan = Plan::from_toml_unproven(&read(path)?).map_err(StudyError::unreadable(path))?;
     Ok(Study::open_or_put(folder, plan, Plan::check_experiments).map_err(|error| match error {
-        StudyError::Plan(source) => refused(path)(source),
+        StudyError::Plan(source) => StudyError::unreadable(path)(source),
         error => error,
     })?)
 }
@@ -163,7 +164,7 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) if summary.failed > 0 => End::Unfinished,
         (true, _) => End::Done,
-        (false, false) if !is_stopped() => End::Elsewhere,
+        (false, false) if !STOP.load(Ordering::Relaxed) => End::Elsewhere,
         _ => End::Interrupted,
     })
 }

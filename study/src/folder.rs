@@ -5,7 +5,7 @@
 //! knows that the writer of any temporary file in the folder is dead.
 
 use std::collections::HashSet;
-use std::fs::{self, DirEntry, File, OpenOptions};
+use std::fs::{self, DirEntry, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -23,8 +23,12 @@ const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const LOGS: &str = "logs";
 const UNFINISHED: &str = "unfinished";
+/// Name of the folder in which version 0.3 kept records.
+const RAMPS: &str = "ramps";
 const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
+const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
+    finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
 
 /// Magic number of the file of an unfinished value, and the version of the format that this crate writes and
 /// reads.
@@ -65,12 +69,20 @@ impl Folder {
         Ok(found)
     }
 
+    /// Returns an error if the folder has records of version 0.3, which this version does not read.
+    pub(super) fn check_format(&self) -> Result<(), StudyError> {
+        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
+            return Err(StudyError::refused(&self.root, OUTDATED));
+        }
+        Ok(())
+    }
+
     /// Returns whether the folder holds a study. A plan alone is not a study: a user may keep plans there,
     /// among other files. A study has a lock file beside its plan from the beginning, soon a README, and then
     /// records. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(LOCK).metadata().is_ok_and(|lock| is_lock(&lock));
-        let has_others = || [README, LOGS].iter().any(|name| self.root.join(name).exists());
+        let has_others = || [README, LOGS, RAMPS].iter().any(|name| self.root.join(name).exists());
         self.plan().exists() && (has_lock || has_others())
     }
 
@@ -78,9 +90,7 @@ impl Folder {
     pub(super) fn prepare(&self) -> Result<Locked, StudyError> {
         self.check_free()?;
         create(&self.root)?;
-        let lock = self.take_lock()?;
-        remove_temporaries(&self.root)?;
-        Ok(lock)
+        self.take_lock()
     }
 
     /// Writes the provenance and the README, except for files that exist already. The caller holds the lock.
@@ -156,14 +166,14 @@ impl Folder {
 
     fn take_lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
-        let file = lock_options().open(&path).map_err(StudyError::io("write", &path))?;
-        Locked::wait(file).map_err(|source| StudyError::NoLock { path, source })
+        let lock = Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })?;
+        remove_temporaries(&self.root)?;
+        Ok(lock)
     }
 
     /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let lock = self.take_lock()?;
-        remove_temporaries(&self.root)?;
         // The process that wrote the plan may have been killed before it wrote the README.
         self.write_about()?;
         Ok(lock)
@@ -180,21 +190,15 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-fn lock_options() -> OpenOptions {
-    let mut options = File::options();
-    options.read(true).write(true).create(true).truncate(false);
-    options
-}
-
 /// Opens a lock file, and creates the file and its folder if necessary.
 pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
-    let opened = lock_options().open(path);
-    let opened = match (&opened, path.parent()) {
+    let open = || File::options().read(true).write(true).create(true).truncate(false).open(path);
+    let opened = match (open(), path.parent()) {
         (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
             create(folder)?;
-            lock_options().open(path)
+            open()
         }
-        _ => opened,
+        (opened, _) => opened,
     };
     opened.map_err(StudyError::io("write", path))
 }

@@ -2,6 +2,7 @@
 //! value is run from its start.
 
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::session::{LOOK, Session};
@@ -162,7 +163,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.has_partial = !matches!(read, Ok(None));
         let read = read.and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
-            study.check_origin(&partial.0, self.ramp, index, &path)?;
+            study.check_origin(&partial.0.origin, self.ramp, index, &path)?;
             value.go_on(partial, &path).map(Some)
         });
         self.session.if_sound(read)
@@ -221,7 +222,10 @@ impl<E: Experiment> Walk<'_, '_, E> {
     ) -> Result<bool, StudyError> {
         let study = self.session.study;
         self.seen.push(study.plan.seen(&record));
-        self.session.open_study()?;
+        // The tables may lack this value, and later ones of the run.
+        if !self.session.is_opened.swap(true, Ordering::Relaxed) {
+            study.folder.mark_incomplete()?;
+        }
         let marks = [
             (Head::LAST, study.plan.next(&self.seen).is_none()),
             (Head::FAILED, record.outcome().reason().is_some()),

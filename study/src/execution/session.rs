@@ -35,7 +35,7 @@ pub(super) struct Session<'a, E: Experiment> {
     /// The others then stop as if interrupted.
     pub(super) broken: AtomicBool,
     /// True once this run has removed the mark of a complete study.
-    is_opened: AtomicBool,
+    pub(super) is_opened: AtomicBool,
 }
 
 impl<'a, E: Experiment> Session<'a, E> {
@@ -119,15 +119,6 @@ impl<'a, E: Experiment> Session<'a, E> {
             }
             other => other,
         }
-    }
-
-    /// Removes the mark of a complete study, once in a run. Call this before the first value that may not be
-    /// in the tables.
-    pub(super) fn open_study(&self) -> Result<(), StudyError> {
-        if self.is_opened.swap(true, Ordering::Relaxed) {
-            return Ok(());
-        }
-        self.study.folder.mark_incomplete()
     }
 
     pub(super) fn must_stop(&self) -> bool {

@@ -29,8 +29,11 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) folder: &'a Path,
 }
 
-/// The saved data of an unfinished value: its origin, the work so far, the state of its run and its driving.
-pub(super) type Partial<E> = (Origin, WorkOf<E>, Checkpoint, Option<Vec<u8>>);
+/// The saved data of an unfinished value.
+pub(super) type Partial<E> = Saved<WorkOf<E>>;
+
+/// The work so far, the state of its run and its driving.
+pub(super) type Saved<W> = (W, Checkpoint, Option<Vec<u8>>);
 
 type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 
@@ -38,6 +41,7 @@ type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Work<S, O> {
+    pub(super) origin: Origin,
     /// The start of the value.
     start: Cycles,
     steps: u64,
@@ -64,6 +68,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
         let work = |steps, measured| Work {
+            origin: self.origin.clone(),
             start,
             steps,
             is_prepared: false,
@@ -76,7 +81,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         {
             let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
             let work = work(self.plan.protocol().steps() - missing, measured);
-            match self.go_on((self.origin.clone(), work, state, driving), self.folder) {
+            match self.go_on((work, state, driving), self.folder) {
                 Err(StudyError::Damaged { .. }) => {}
                 made => return made,
             }
@@ -130,7 +135,7 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// If the data saved in `path` do not belong to this value, or the companion cannot be created.
     pub(super) fn go_on(&'a self, partial: Partial<E>, path: &Path) -> Result<Active<'a, E>, StudyError> {
         let mut driving = self.driving()?;
-        let is_loaded = match (&mut driving, &partial.3) {
+        let is_loaded = match (&mut driving, &partial.2) {
             (Some(driving), Some(bytes)) => driving.load(bytes).is_ok(),
             (driving, bytes) => driving.is_none() && bytes.is_none(),
         };
@@ -141,7 +146,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run, riders })
     }
 
-    fn state_of(&self, (_, work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
+    fn state_of(&self, (work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
         let protocol = self.plan.protocol();
         work.check(protocol)?;
         check(work.start == self.start(), "it starts elsewhere")?;
@@ -304,11 +309,8 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     /// Returns the data from which the unfinished value can continue later.
-    #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
-    pub(super) fn partial(
-        &self,
-    ) -> Result<(&Origin, &WorkOf<E>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
-        Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
+    pub(super) fn partial(&self) -> Result<Saved<&WorkOf<E>>, ExperimentError> {
+        Ok((&self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
     /// Returns the record of the value after its last step. If the value stalled, failed or reached a limit,
@@ -325,7 +327,7 @@ impl<E: Experiment> Active<'_, E> {
         let parts = [state.rule(), state.boundary()];
         let state = value.plan.keeps_state(value.origin.value).then_some(state);
         let contents = Contents {
-            origin: value.origin.clone(),
+            origin: work.origin,
             leg: value.step.leg,
             at: value.step.at,
             outcome,

@@ -192,7 +192,7 @@ impl<E: Experiment> Plan<E> {
         let mut ramps = vec![0];
         for axis in &self.parts.sweep {
             stride /= axis.len();
-            ramps.extend(axis.tried().filter(|index| *index > 0).map(|index| index * stride));
+            ramps.extend(axis.values.tried().filter(|index| *index > 0).map(|index| index * stride));
         }
         for ramp in ramps {
             let disks = self.sound_experiment(ramp, self.at(0))?.disks(0);

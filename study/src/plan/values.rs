@@ -45,7 +45,7 @@ pub(super) use from_file;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Axis {
     parameter: String,
-    values: Values,
+    pub(super) values: Values,
 }
 
 from_file! {
@@ -90,11 +90,6 @@ impl Axis {
     /// Returns the value with this index, or `None` beyond the last value.
     pub fn value(&self, index: usize) -> Option<Scalar> {
         (index < self.len()).then(|| self.values.at(index))
-    }
-
-    /// Returns the indices of the values that are checked when a plan is made.
-    pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
-        self.values.tried()
     }
 
     /// Converts the values of a list to the type of the parameter, so that equal plans have equal files.
