@@ -1,6 +1,6 @@
 //! One run of a study: its blocks of ramps, for all threads, and the data that they share.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::{Control, Progress, Summary};
 use crate::parameters::{self, anywhere};
-use crate::store::{Entries, Entry, Head};
+use crate::store::{Entry, Head};
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
 
 /// Longest time between two checks in which a thread looks for a request to stop.
@@ -29,7 +29,7 @@ pub(super) struct Session<'a, E: Experiment> {
     /// Number of finished steps, and number of steps in all values.
     steps: [AtomicU64; 2],
     /// Files that were damaged and have been replaced.
-    redone: Mutex<Vec<PathBuf>>,
+    redone: Mutex<BTreeSet<PathBuf>>,
     /// True once a thread has met an error.
     ///
     /// The others then stop as if interrupted.
@@ -75,7 +75,16 @@ impl<'a, E: Experiment> Session<'a, E> {
         if self.control.verifies {
             return Ok(());
         }
-        self.skip(self.blocks().strike(&*self.study.store.refreshed()?));
+        let (entries, mut ramps) = (self.study.store.refreshed()?, 0);
+        let Blocks { waiting, elsewhere } = &mut *self.blocks();
+        for blocks in [waiting, elsewhere] {
+            blocks.retain(|block| {
+                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
+                ramps += if is_done { block.len() } else { 0 };
+                !is_done
+            });
+        }
+        self.skip(ramps);
         Ok(())
     }
 
@@ -114,7 +123,7 @@ impl<'a, E: Experiment> Session<'a, E> {
             Err(StudyError::Damaged { path, reason }) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
                 self.study.store.note(&json!({ "damaged": name, "reason": reason }).to_string())?;
-                self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
+                self.redone.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
                 Ok(None)
             }
             other => other,
@@ -148,9 +157,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
         let (failed, warned) = (with(Head::FAILED), with(Head::WARNED));
-        let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
-        redone.sort();
-        redone.dedup();
+        let redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().collect();
         Ok(Summary { finished, failed, warned, total, elsewhere, redone })
     }
 }
@@ -170,19 +177,6 @@ impl Blocks {
     pub(super) fn leave(&mut self, ramps: Range<usize>) {
         self.elsewhere.push_back(ramps);
         self.waiting = begun_anywhere(std::mem::take(&mut self.waiting));
-    }
-
-    /// Removes the finished blocks, and returns the number of their ramps.
-    fn strike(&mut self, entries: &Entries) -> usize {
-        let mut ramps = 0;
-        for blocks in [&mut self.waiting, &mut self.elsewhere] {
-            blocks.retain(|block| {
-                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
-                ramps += if is_done { block.len() } else { 0 };
-                !is_done
-            });
-        }
-        ramps
     }
 
     /// Moves up to `count` blocks of other processes to the waiting blocks, for another attempt.

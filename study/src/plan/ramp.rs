@@ -125,9 +125,9 @@ impl Ramp {
         Ok(Self { refine: Some(width), ..self })
     }
 
-    /// Returns whether a value lies between the first and the last value of the ramp.
-    pub(crate) fn spans(&self, at: f64) -> bool {
-        self.value(0) <= at && at <= self.value(self.values.len() - 1)
+    /// Returns whether a bisection can reach this value.
+    pub(crate) fn bisects(&self, at: f64) -> bool {
+        self.refine.is_some() && self.value(0) <= at && at <= self.value(self.values.len() - 1)
     }
 
     /// Returns the name of the parameter.
