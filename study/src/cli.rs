@@ -174,25 +174,21 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let (all, has_tables) = (study.all_status()?, study.has_tables());
     let ramps = all.len();
     let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
-    let found = [
-        ("done", of(RampStatus::Done)),
-        ("running", of(RampStatus::Running)),
-        ("begun", of(RampStatus::Begun)),
-        ("waiting", of(RampStatus::Waiting)),
-    ];
+    let [done, running, begun, waiting] =
+        [RampStatus::Done, RampStatus::Running, RampStatus::Begun, RampStatus::Waiting].map(of);
+    let (are_done, are_run) = (done.len() == ramps, !running.is_empty());
     let failed = study.failed()?;
     let (spent, left) = study.seconds()?;
     if json {
-        let [done, running, begun, waiting] = found.each_ref().map(|(_, of)| of);
         let object = json!({
             "ramps": ramps, "done": done, "running": running, "begun": begun, "waiting": waiting,
             "failed": failed, "tables": has_tables, "seconds": spent, "seconds_left": left,
         });
         say(&object.to_string())?;
     } else {
-        let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
-        let tables = if has_tables { "tables of all" } else { "no tables of all" };
-        say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
+        let [done, running, begun, waiting] = [done, running, begun, waiting].map(|ramps| ramps.len());
+        let counts = format!("{done} done, {running} running, {begun} begun, {waiting} waiting");
+        say(&format!("{ramps} ramps: {counts}; {}tables of all", if has_tables { "" } else { "no " }))?;
         if left.is_finite() {
             say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
         }
@@ -207,12 +203,12 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
             ))?;
         }
     }
-    Ok(match (found[0].1.len() == ramps, has_tables) {
+    Ok(match (are_done, has_tables) {
         (true, true) if failed.is_empty() => End::Done,
         (true, true) => End::Unfinished,
         (true, false) => End::NoTables,
-        (false, _) if found[1].1.is_empty() => End::Idle,
-        (false, _) => End::Elsewhere,
+        (false, _) if are_run => End::Elsewhere,
+        (false, _) => End::Idle,
     })
 }
 

@@ -183,12 +183,10 @@ impl Values {
         if list.is_empty() {
             return Err(PlanError::varied(parameter, "has no values"));
         }
-        match list.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) {
-            Some(value) => {
-                Err(PlanError::varied(parameter, format!("has a value that is not finite: {value}")))
-            }
-            None => Ok(()),
-        }
+        let Some(value) = list.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) else {
+            return Ok(());
+        };
+        Err(PlanError::varied(parameter, format!("has a value that is not finite: {value}")))
     }
 
     /// Returns a value that occurs twice in the list, or `None` if there is none.
