@@ -1,11 +1,11 @@
-//! The speed of the mean energy loss, by the closed form per point and by the Monte Carlo average per
-//! collision.
+//! The time to compute the mean energy loss: per point by the closed form, per collision by the Monte Carlo
+//! average.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{IsoLine, Maxwellian, MonteCarlo, friction_of_largest_loss, mean_energy_change};
 
-/// Returns points over the plane of Fig. 1.
+/// Returns points spread over the plane of Fig. 1.
 fn points() -> Vec<Frictional> {
     let point = |i: u32| {
         let inelasticity = f64::from(i % 100) * 2e-3;

@@ -15,7 +15,7 @@ fn contacts() -> Vec<Contact> {
     speeds.map(|(closing, slip)| Contact::new(0.02 * closing, 0.02 * slip, 0.5, 0.5 / 3.0)).collect()
 }
 
-/// Returns a rule as a user writes it: restitution that falls with the speed of the impact, over the
+/// Returns a rule as a user would write it: restitution that falls with the speed of the impact, over the
 /// library's friction.
 fn speed_dependent() -> impl CollisionRule {
     let friction = Friction::from_inelasticity(0.05, 0.1).expect("valid");

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use benches::state::{DENSE, DILUTE, Run};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
-/// Returns the time for this many collisions.
+/// Returns the time for `collisions` collisions.
 fn collide(run: &mut Run, collisions: u64) -> Duration {
     let (start, last) = (Instant::now(), run.counters().disk_collisions + collisions);
     while run.counters().disk_collisions < last {

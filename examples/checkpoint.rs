@@ -4,8 +4,8 @@
 //! cargo run --release --features serde --example checkpoint
 //! ```
 //!
-//! It takes less than a second. You learn what a checkpoint holds (all of the state) and what it does not
-//! (rule and walls, which the program makes again), and how to keep a measurement with it.
+//! It takes less than a second. You learn what a checkpoint holds (the whole state), what it does not hold
+//! (rule and walls, which the program creates again), and how to keep a measurement with it.
 
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Checkpoint;
@@ -25,12 +25,12 @@ fn main() -> anyhow::Result<()> {
     let mut series = Series::new(CenterOfMass, SampleTimes::every(10.0)?);
     whole.run_until(500.0, &mut series)?;
 
-    // Half of the run is done. The state and what was measured go to one file, with all bits. A text format
-    // may round: serde_json does, unless its feature `float_roundtrip` is on.
+    // Half of the run is done. The state and the samples go to one file, to the bit. A text format may round:
+    // serde_json does, unless its feature `float_roundtrip` is on.
     let file = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
     whole.checkpoint().write_with(&series, &file)?;
 
-    // A later program makes the rule and the walls again, and resumes the run. A checkpoint refuses another
+    // A later program creates the rule and the walls again, and resumes the run. A checkpoint refuses another
     // rule or another wall; a custom part needs a `fingerprint` for that.
     let (checkpoint, mut resumed) = Checkpoint::read_with::<Series<CenterOfMass>>(&file)?;
     let mut second = Simulation::resume(&checkpoint, rule()?, self::container()?).build()?;

@@ -17,7 +17,7 @@ const QUESTIONS: [&str; 4] = [
     "the factor of q_t (1 - q_t) m v_t²",
     "the jump of the printed form, in κ² q_t (1 - q_n)² / (1 - q_t) m v_n²",
     "the friction of the largest loss at q = 0.1",
-    "the inelasticity from which on the printed form has no largest loss",
+    "the inelasticity above which the printed form has no largest loss",
 ];
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -52,13 +52,14 @@ fn energy_change(rule: &Frictional, closing_speed: f64, slip_speed: f64) -> f64 
     rule.impulse(&contact).energy_change(&contact)
 }
 
-/// Returns the energy that a sticking collision loses by its slip.
+/// Returns the factor in the energy that a sticking collision loses by its slip.
 fn factor() -> anyhow::Result<f64> {
     let (rule, slip) = (Frictional::from_inelasticity(0.0, 0.2, 10.0)?, 0.3);
     Ok(-energy_change(&rule, 1.0, slip) / (0.2 * 0.8 * slip * slip))
 }
 
-/// Returns the difference between the rule, just sliding, and the printed form, still sticking.
+/// Returns the jump of the energy change at the threshold of sliding: the rule, which already slides, minus
+/// the printed form, which still sticks.
 fn jump() -> anyhow::Result<f64> {
     let (normal, tangential, friction) = (0.1, 0.2, 0.3);
     let rule = Frictional::from_inelasticity(normal, tangential, friction)?;
@@ -73,7 +74,8 @@ fn friction() -> anyhow::Result<f64> {
     friction_of_largest_loss(&rule, &Maxwellian::new(1.0)?).ok_or_else(|| anyhow::anyhow!("no largest loss"))
 }
 
-/// Returns the mean loss by the rule, and with three times the tangential term of sticking, as printed.
+/// Returns the mean loss under the rule, and the mean loss with three times the tangential term of sticking,
+/// as printed.
 fn losses(inelasticity: f64, friction: f64) -> anyhow::Result<(f64, f64)> {
     let rule = Frictional::from_inelasticity(inelasticity, inelasticity, friction)?;
     let gas = Maxwellian::new(1.0)?;
@@ -86,7 +88,7 @@ fn frictions() -> impl Iterator<Item = f64> {
     (0..=1200).map(|step| 0.01 * 10_f64.powf(f64::from(step) / 400.0))
 }
 
-/// Returns the inelasticity from which on the printed form has no largest loss, by bisection.
+/// Finds by bisection the inelasticity above which the printed form has no largest loss.
 fn last_maximum() -> anyhow::Result<f64> {
     let (mut with, mut without) = (0.01, 0.2);
     while without - with > 1e-4 {

@@ -4,8 +4,8 @@
 //! cargo run --release --example mixture
 //! ```
 //!
-//! It takes two seconds. You learn kinds of disks, rules by pairs of kinds, and observables of one kind. In a
-//! driven granular gas, the kinds do not have the same temperature.
+//! It takes two seconds. You learn about kinds of disks, rules for pairs of kinds, and observables for one
+//! kind. In a driven granular gas, the kinds do not have the same temperature.
 
 use granular_edmd::collision::RulesByKind;
 use granular_edmd::observable::{BetweenKinds, EnergyChange, OfKind, Temperatures};

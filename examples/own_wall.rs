@@ -18,7 +18,7 @@ struct Hopping {
 }
 
 impl Hopping {
-    /// Returns the time within the period, the time at which it began, and the duration of the hop.
+    /// Returns the time since the period began, the phase at which it began, and the duration of the hop.
     fn moment(&self, phase: f64) -> (f64, f64, f64) {
         let begin = (phase / self.period).floor() * self.period;
         (phase - begin, begin, 0.5 * self.period)
@@ -65,8 +65,8 @@ fn main() -> anyhow::Result<()> {
         laws::check(&base, 0.0, 20.0 * period)?;
         let container = Container::open(20.0)?.with_motion(Wall::Floor, base)?;
         let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
-        // Grains that come to rest on the base leave it at a speed of 0.1 at least; otherwise, the run would
-        // stall.
+        // Grains that come to rest on the base leave it with a speed of at least 0.1; otherwise, the run
+        // would stall.
         let rule = LeastRebound::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?, 0.1)?;
         let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(1.0).build()?;
         simulation.run_until(50.0, &mut ())?;

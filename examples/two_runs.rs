@@ -20,8 +20,8 @@ const BEAT: f64 = std::f64::consts::TAU / 10.0;
 fn main() -> anyhow::Result<()> {
     let container = Container::open(40.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, DISKS, 0.5)?, 0.1, 1)?;
-    // The last bit of the position of a grain on the right. On the left, coordinates are so small that sums
-    // would lose their last bits.
+    // The last bit of the position of a grain on the right. On the left, coordinates are so small that their
+    // last bits would be lost in sums.
     let mut others = disks.clone();
     if let Some(grain) = others.iter_mut().max_by(|a, b| a.position().x.total_cmp(&b.position().x)) {
         let place = grain.position();
@@ -39,7 +39,7 @@ fn main() -> anyhow::Result<()> {
     for (name, tolerance) in [("a billionth", 1e-9), ("a thousandth", 1e-3), ("a radius", 0.5)] {
         let Some(found) = first.differences(&second, tolerance)? else { continue };
         if let Some(apart) = found.apart {
-            println!("t = {:6.2}: disk {} is {name} away from itself", apart.time, apart.id);
+            println!("t = {:6.2}: disk {} is {name} away from its twin", apart.time, apart.id);
         }
         if let (Some(other), 0.5..) = (found.partners, tolerance) {
             let time = other.collisions[0].collision.time;
@@ -47,8 +47,8 @@ fn main() -> anyhow::Result<()> {
         }
     }
 
-    // Within its fluctuations, the roll is the same in both runs, which differ by as much as these
-    // fluctuations.
+    // The mean roll is the same in both runs. They count as different from the first time at which their
+    // rolls differ by more than the roll of one run fluctuates.
     let mut fluctuation: f64 = 0.0;
     for (name, replay) in [("first", &first), ("second", &second)] {
         let mut series = Series::new(OrderParameters, SampleTimes::every(BEAT)?);

@@ -139,10 +139,11 @@ use crate::{Fingerprint, Flight, ParameterError};
 ///    same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
 /// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
-///    wall changes by the impulse along the normal over the [`mass`](Surface::mass), and by the impulse along
-///    the surface over the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of radius R
-///    with a tangential mass counts as the impulse C/R along the surface. No wall changes its position
-///    instantaneously. The result is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
+///    wall changes by the impulse along the normal divided by the [`mass`](Surface::mass), and by the impulse
+///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
+///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall changes its
+///    position instantaneously. The result is [`Reaction::Moved`] if the velocity changes, which needs a
+///    finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
@@ -231,7 +232,7 @@ use crate::{Fingerprint, Flight, ParameterError};
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a boundary",
     label = "not a boundary",
-    note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a custom geometry"
+    note = "use a `granular_edmd::boundary::Container`, or implement `Boundary` for a custom geometry"
 )]
 pub trait Boundary {
     /// Returns the rectangle that holds the centers of all disks at all times.
@@ -273,7 +274,7 @@ pub trait Boundary {
     }
 
     /// Returns, at `time`, the displacement of a wall from its rest position and the phase of its motion: the
-    /// time, less whole periods, as [`WallMotion`](crate::wall::WallMotion) takes it.
+    /// time minus whole periods, as [`WallMotion`](crate::wall::WallMotion) expects it.
     ///
     /// The result is `None` for a wall that does not move, and for a wall that moves together with a wall of
     /// a smaller index, as the bricks of a part do. The phase of a [`Piston`](crate::wall::Piston) is 0. The
@@ -380,7 +381,8 @@ pub trait Boundary {
         Vec::new()
     }
 
-    /// Restores a state that [`state`](Self::state) returned. It holds at the present time origin.
+    /// Restores a state that [`state`](Self::state) returned. The numbers describe the walls at the present
+    /// time origin.
     ///
     /// # Errors
     /// If the numbers are not a state of this boundary.

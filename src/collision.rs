@@ -141,7 +141,7 @@ pub trait CollisionRule {
         None
     }
 
-    /// Returns the rule as data, if it is a rule of this crate, or a remedy or a table of such rules.
+    /// Returns the rule as data if it is a rule of this crate, or a remedy or a table made of such rules.
     ///
     /// Files of walls hold their rules in this form. A custom rule has none.
     fn known(&self) -> Option<KnownRule> {

@@ -138,8 +138,8 @@ impl Disk {
 
     /// Returns the same disk with this id, which identifies the disk as long as it exists.
     ///
-    /// A simulation gives ids from 1 on to the disks that have none, so few programs call this method. The id
-    /// 0 means that the disk has no id yet.
+    /// A simulation assigns ids, starting with 1, to the disks that have none, so few programs call this
+    /// method. The id 0 means that the disk has no id yet.
     ///
     /// # Errors
     /// If the id is above 2^53. Ids stay exact in programs that read tables as floating-point numbers.

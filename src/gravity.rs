@@ -77,8 +77,8 @@ impl Gravity {
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
     pub fn checked(self) -> Result<Self, ParameterError> {
-        // The exit from a cell divides by gravity, and the sign of the infinity decides whether a disk that
-        // rises ever comes back.
+        // The time at which a disk leaves a cell contains a division by gravity. At zero gravity, the sign of
+        // the resulting infinity decides whether a disk that rises ever comes back.
         let rightward = bounded("gravity to the right", self.rightward)?;
         Ok(Self { rightward: rightward + 0.0, downward: bounded("gravity", self.downward)? + 0.0 })
     }

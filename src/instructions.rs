@@ -19,7 +19,7 @@ pub(crate) mod load;
 pub(crate) struct Instructions(Level);
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[allow(dead_code, reason = "not all are chosen from in all builds")]
+#[allow(dead_code, reason = "some builds use only the first level")]
 pub(crate) enum Level {
     /// The instructions on which the build relies.
     #[default]
@@ -33,7 +33,7 @@ pub(crate) enum Level {
 impl Level {
     pub(crate) const fn name(self) -> &'static str {
         match self {
-            Self::Built => "those of the build",
+            Self::Built => "the build's instructions",
             Self::Avx2 => "AVX2",
             Self::Avx512 => "AVX-512",
         }
@@ -93,7 +93,7 @@ impl Instructions {
 
     /// Returns the level of these instructions.
     #[inline]
-    #[allow(dead_code, reason = "nobody asks where there is no choice")]
+    #[allow(dead_code, reason = "unused in builds with only one level")]
     pub(crate) fn level(self) -> Level {
         self.0
     }

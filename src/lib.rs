@@ -29,7 +29,7 @@
 //!     .build()?;
 //!
 //! // Watch the convection rolls, the height and the energy loss for 100 oscillations.
-//! // The time between two samples is no whole number of oscillations, so that they see all phases.
+//! // The sampling interval is not a whole number of oscillations, so that the samples cover all phases.
 //! let times = SampleTimes::every(9.9 * oscillation)?;
 //! let mut series = Series::new((OrderParameters, CenterOfMass), times);
 //! let mut energy = EnergyChange::default();
@@ -60,21 +60,21 @@
 //! | [`boundary`], [`wall`] | the walls around the disks, and their motion |
 //! | [`collision`] | the outcome of a collision |
 //! | [`Disk`] | one grain |
-//! | [`file`](mod@file) | files that are whole or absent, for stores of other packages |
+//! | [`file`](mod@file) | files that are complete or absent, and locks, also for other packages |
 //! | [`statistics`] | means, and errors of correlated samples |
 //!
 //! # Features
 //! | feature | additions |
 //! |---|---|
-//! | `serde` | parameters that serialize through their validating constructors, checkpoints |
+//! | `serde` | parameters and checkpoints can be written and read; reading repeats all checks |
 //! | `rayon` | Monte Carlo on all cores, with the same bits as on one |
 //! | `gzip` | trajectories in files that end in `.gz` |
 //! | `proptest` | random contacts and disks for property tests of custom rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-// The x87 floating-point unit of old x86 processors keeps more digits than a double has. The same inputs
-// would give other bits there.
+// The x87 floating-point unit of old x86 processors computes with more digits than a double has, so the same
+// inputs would give other bits there.
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
 compile_error!("granular-edmd needs SSE2 on x86: build for i686, or with `-C target-feature=+sse2`");
 

@@ -2,13 +2,13 @@
 //!
 //! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] watches a run: the engine reports
 //! the beginning and the end of the run and every [`Collision`] to it, and gives it a snapshot at the times
-//! that it requests. An observer may stop the run. You lend it to a run and read it afterwards. Observers and
-//! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
-//! never changes a trajectory.
+//! that it requests. An observer may stop the run. You lend an observer to a run and read its results
+//! afterwards. Observers and observables compose as tuples and in a `Box`, observers also in a slice, a `Vec`
+//! or an `Option`. Watching never changes a trajectory.
 //!
 //! An [`Accumulator`] adds up snapshots. It gets them from the [`Sampled`] that wraps it in a run, or from
-//! your program. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have their
-//! own clocks, since the sampling interval is part of what they measure.
+//! your program. Observers such as [`Stress`], [`MeanSquaredDisplacement`] and [`Arrivals`] have their own
+//! clocks, since the sampling interval is part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|
@@ -82,12 +82,13 @@
 //! ```
 //!
 //! # Tables
-//! Every measure is a [`Table`]: [`write_csv`](Table::write_csv) writes its results with names, units and
-//! errors. A [`Series`] is a table if its observable is [`Tabular`]; a tuple has the columns of its parts.
+//! Every accumulator and every observer that measures something is a [`Table`]:
+//! [`write_csv`](Table::write_csv) writes its results with names, units and errors. A [`Series`] is a table
+//! if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Errors
 //! Errors do not assume that samples are independent. They come from blocks of consecutive samples or
-//! collisions, as [`block_average`](crate::statistics::block_average) takes them, and an
+//! collisions, by the method of [`block_average`](crate::statistics::block_average), and an
 //! [`Estimate`](crate::statistics::Estimate) says how many independent samples there were. [`Fields`],
 //! [`HeightProfile`] and [`CollisionCounts`] have no errors: repeat the run with other seeds, or keep a
 //! [`Series`] of the number that you need.

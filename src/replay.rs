@@ -131,7 +131,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns the state just before the collision with this number, or `None` if the run had no such
     /// collision.
     ///
-    /// Collisions with disks and walls are counted together from 1 on, as the
+    /// Collisions with disks and walls are counted together, starting with 1, as the
     /// [counters](Simulation::counters) do.
     ///
     /// # Errors
@@ -151,9 +151,6 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
 
     /// Returns the collisions after the absolute time `from`, up to and including `to`.
     ///
-    /// The [time](crate::observable::Collision::time) of a collision is rounded: `time.next_up()` surely
-    /// includes it.
-    ///
     /// # Errors
     /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
@@ -166,14 +163,12 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// Returns a disk's last collisions up to and including an absolute time, at most `count` of them, in
     /// order. The disk is identified by its [id](crate::Disk::id).
     ///
-    /// The [time](crate::observable::Collision::time) of a collision is rounded: `time.next_up()` surely
-    /// includes it.
-    ///
     /// # Errors
     /// If the replay fails where the run did not: a part then returns other results than in the run.
     pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
         let (mut last, mut end) = (Vec::new(), until);
-        for state in self.states.iter().rev().filter(|state| state.time() < until) {
+        // The collisions at the time of the first state may still lie ahead: disks may touch at the start.
+        for state in self.states.iter().rev().filter(|state| state.time() <= until) {
             let mut own = self.played(state.clone(), end)?;
             own.retain(|replayed| replayed.id == id || replayed.partner_id == Some(id));
             last.splice(0..0, own);

@@ -1,6 +1,6 @@
 //! The engine, which advances disks from event to event.
 //!
-//! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
+//! [`Simulation::builder`] checks the disks, gravity and the boundary, and builds a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
 //! it. Between runs, you can change the rule, the boundary and gravity, insert disks ([`Simulation::insert`])
 //! and remove them ([`Simulation::remove`]). During a run, [sinks](crate::boundary::Part::absorbing) take
@@ -11,13 +11,13 @@
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls. Inlets come after all events of disks, in the order in which they were added.
-//! 3. A sample at time $`t`$ includes all events up to and including $`t`$. The time of an event is rounded:
-//!    a run until the [time](crate::observable::Collision::time) of a collision may end just before it.
+//! 3. A sample at time $`t`$ includes all events up to and including $`t`$. A run until the
+//!    [time](crate::observable::Collision::time) of a collision thus includes this collision.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events plus 20 events per disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
-//!    the caller gives again. If they have fingerprints, the checkpoint notices when others are given.
+//!    the caller gives again. If they have fingerprints, the checkpoint notices if the caller gives others.
 //! 6. A part (a rule, boundary, scheduler or observer) that returns an impossible result ends the run with an
 //!    error that names the result. No part can make the engine go back in time, or name a disk or wall that
 //!    does not exist. A collision that is carried out happens at the surface of the partner, up to rounding.
@@ -111,7 +111,8 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     generator: Xoshiro256PlusPlus,
     counters: Counters,
     lookahead: Lookahead,
-    /// Instructions that predictions may use; the bits do not depend on them.
+    /// Processor instructions that predictions may use. The results are the same with any of them, bit for
+    /// bit.
     instructions: Instructions,
     scratch: Scratch,
     inlets: Vec<Inlet>,
@@ -168,7 +169,7 @@ const _: () = {
 struct Scratch {
     /// Buffers for the neighbors of one disk, or of both disks of a collision.
     found: [Vec<u32>; 2],
-    /// The times of all disks.
+    /// Times of the next events of all disks.
     due: Vec<f64>,
     /// Number of disks for which the scheduler has room.
     seats: usize,
@@ -271,20 +272,20 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.gravity
     }
 
-    /// Sets another rule from now on.
+    /// Replaces the rule from now on.
     ///
-    /// The predictions stay, since a rule decides the outcome of a collision and not its time.
+    /// The predictions stay valid, since a rule decides the outcome of a collision and not its time.
     pub fn set_rule(&mut self, rule: R) {
         self.rule = rule;
     }
 
     /// Sets gravity from now on.
     ///
-    /// The time origin of the walls becomes the present time, so that their
-    /// [`state`](crate::boundary::Boundary::state) is the present one.
+    /// The time origin of the walls becomes the present time, so that [`Boundary::state`] gives their present
+    /// state.
     ///
     /// # Errors
-    /// If gravity is not finite, or a component is above 1e60 in magnitude. Also if disks would fall so fast
+    /// If gravity is not finite, if a component is above 1e60 in magnitude, or if disks would fall so fast
     /// that times as late as the present are too coarse. The simulation then stays unchanged.
     pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
         let gravity = gravity.into().checked()?;
@@ -300,7 +301,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Sets other walls from now on.
+    /// Replaces the walls from now on.
     ///
     /// Moving walls take the positions of their motions at the present time. A wall that thereby jumps causes
     /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of

@@ -49,7 +49,7 @@
 //! ```
 //!
 //! # Custom formats
-//! In a plain test, [`laws::check`] checks the contract of a format.
+//! In a unit test, [`laws::check`] checks the contract of a custom format.
 //!
 //! ```
 //! use std::io::{self, BufRead, Write};

@@ -186,10 +186,10 @@ impl AccelerationBounds {
 ///
 /// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
-/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even if the
-/// motion breaks the contract; its documentation says how. Bounds that are too small, a reach that is too
-/// small or a jump toward the disks let disks pass into the wall, which the engine notices at the next
-/// collision with it. Bounds that are too large only cost time.
+/// that is not finite at one of the phases that it tries, none of them negative. [`first_touch`] always ends,
+/// even if the motion breaks the contract; its documentation says how. Bounds that are too small, a reach
+/// that is too small or a jump toward the disks let disks pass into the wall, which the engine notices at the
+/// next collision with it. Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{

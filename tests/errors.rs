@@ -61,7 +61,7 @@ fn errors_about_contents_name_the_file() {
         assert!(error.to_string().contains(file.to_str().unwrap()), "{error}");
     }
     let said = report(errors[0].as_ref());
-    assert!(said.ends_with(": this is not a checkpoint: it does not begin as one"), "{said}");
+    assert!(said.ends_with(": this is not a checkpoint: it does not begin like one"), "{said}");
 }
 
 fn thermal() -> granular_edmd::boundary::Thermal {

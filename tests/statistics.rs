@@ -329,9 +329,13 @@ fn repeats_without_samples_are_left_out() {
 /// The quotient by the width and the edges round differently.
 #[test]
 fn a_number_on_an_edge_is_in_the_bin_that_begins_there() {
-    for (low, high, bins) in [(-1.0, 1.0, 20), (0.1, 0.7, 6), (-0.3, 1e3, 999), (1e9, 1e9 + 7.0, 1000)] {
+    for (low, high, bins) in
+        [(-1.0, 1.0, 20), (0.0, 1.0, 49), (0.1, 0.7, 6), (-0.3, 1e3, 999), (1e9, 1e9 + 7.0, 1000)]
+    {
         let mut histogram = Histogram::new(low, high, bins).unwrap();
         let edges: Vec<f64> = histogram.bins().map(|bin| bin.low).collect();
+        let ends = (edges[0], histogram.bins().last().unwrap().high);
+        assert_eq!(ends, (low, high), "{bins}");
         histogram.extend(edges.iter().copied());
         assert!(histogram.bins().all(|bin| bin.count == 1), "{low} {high} {bins}");
         histogram.extend(edges.iter().map(|edge| edge.next_down()));

@@ -4,11 +4,11 @@
 //! RUSTFLAGS="-C target-cpu=native" cargo run --release -p tools --bin sweep --features studies
 //! ```
 //!
-//! A study of 24 runs is done on one thread and on more, in turn, `ROUNDS` times. The same is done with a
+//! A study of 24 runs is done alternately on one thread and on more, `ROUNDS` times. The same is done with a
 //! loop of plain arithmetic that touches no memory. The gain of the loop is all that the machine can give at
 //! the time, and the quotient of the two gains is the share of it that the study reaches. On a machine with
-//! other work, even this quotient says little. Then look at the time on processors, which is the same on more
-//! threads as on one, as long as the runs do not disturb each other.
+//! other work, even this quotient says little. In that case, look at the processor time, which is the same on
+//! more threads as on one, as long as the runs do not disturb each other.
 
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -27,7 +27,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// Number of runs of a study, so large that no thread waits long for the last run.
 const RUNS: u32 = 24;
 
-/// Seconds of the study and of the arithmetic on this many threads, by the wall clock and on all processors
+/// Seconds of the study and of the arithmetic on `threads` threads, by the wall clock and on all processors
 /// together.
 struct Times {
     threads: usize,
@@ -69,7 +69,7 @@ fn seconds_on_processors() -> f64 {
     tasks.map_or(f64::NAN, |tasks| 1e-9 * tasks.filter_map(nanoseconds).sum::<f64>())
 }
 
-/// Returns the numbers of threads: one, two, and as many as there are.
+/// Returns the numbers of threads: one, two, and as many as the machine has.
 fn threads() -> Vec<usize> {
     let all = available_parallelism().map_or(1, usize::from);
     let mut threads = vec![1, 2, all.max(1)];

@@ -1,12 +1,12 @@
-//! The time of a collision in vessels of few and many bricks, divided by that in a plain box.
+//! The time per collision in vessels of few and many bricks, divided by the time in a plain box.
 //!
 //! ```sh
 //! cargo run --release -p tools --bin vessels
 //! ```
 //!
-//! Each vessel holds an elastic gas of 400 disks without gravity, at an area fraction of 0.4. All vessels run
-//! in turn, `ROUNDS` stretches of `COLLISIONS` each, and the least time of each vessel counts. Collisions
-//! with walls count, too.
+//! Each vessel holds an elastic gas of 400 disks without gravity, at an area fraction of 0.4. The vessels run
+//! alternately, for `ROUNDS` intervals of `COLLISIONS` collisions each, with disks or walls, and the shortest
+//! time of each vessel counts.
 
 use std::f64::consts::{PI, TAU};
 use std::process::ExitCode;

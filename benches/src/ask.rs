@@ -1,12 +1,12 @@
-//! The settings that the environment and the command line give. They are variables and not flags, so that the
-//! flags of the other benches may be given to all benches.
+//! Settings from the environment and the command line. Most are environment variables and not flags, so that
+//! criterion's flags can be passed to all benches.
 
 use std::env;
 use std::path::PathBuf;
 
 use crate::Outcome;
 
-/// Returns whether everything is to run once, for a moment, as by `cargo bench -- --test`.
+/// Returns whether everything should run only once and briefly, as under `cargo bench -- --test`.
 pub fn is_test() -> bool {
     env::args().any(|argument| argument == "--test")
 }

@@ -37,8 +37,8 @@ pub fn load() -> String {
     text.split_whitespace().next().unwrap_or("unknown").to_owned()
 }
 
-/// Returns the place of a folder of this name for what a program builds or writes by the way: beside those in
-/// which cargo keeps the programs.
+/// Returns the path of a folder of this name for temporary builds and files of a program, beside the folders
+/// in which cargo keeps the programs.
 pub fn working_folder(name: &str) -> Outcome<PathBuf> {
     let program = std::env::current_exe()?;
     let built = program.ancestors().nth(2).ok_or("the program lies in no folder of cargo's")?;

@@ -1,4 +1,4 @@
-//! The paper's box with a thousand disks, or a wider one with as many more.
+//! The paper's box with a thousand disks, or a wider box with proportionally more disks.
 
 use std::error::Error;
 use std::fmt;
@@ -42,7 +42,7 @@ pub const DILUTE: State = State { gravity: 0.015_625, friction: 0.03, inelastici
 pub const DENSE: State = State { gravity: 0.015_625, friction: 0.1, inelasticity: 0.05 };
 
 impl State {
-    /// Puts these disks into a box as many times wider than the paper's.
+    /// Puts these disks into a box that is `boxes` times as wide as the paper's.
     pub fn run<S: EventScheduler>(&self, disks: Vec<Disk>, boxes: usize, scheduler: S) -> Outcome<Run<S>> {
         let rule = Frictional::from_inelasticity(self.inelasticity, self.inelasticity, self.friction)?;
         let rule = ContactDuration::new(rule, CONTACT_DURATION)?;
@@ -50,7 +50,7 @@ impl State {
         Ok(run.scheduler(scheduler).build()?)
     }
 
-    /// Returns a thousand disks in the paper's box, which have forgotten their lattice after this many
+    /// Returns a thousand disks in the paper's box, which have forgotten their lattice after `oscillations`
     /// oscillations.
     pub fn settled(&self, seed: u64, oscillations: u32) -> Outcome<Run> {
         let disks = initial::lattice(&container(1)?, DISKS, 0.5)?;
@@ -66,7 +66,7 @@ fn container(boxes: usize) -> Outcome<Container> {
     Ok(Container::closed(WIDTH * boxes as f64, HEIGHT)?.with_motion(Wall::Floor, base)?)
 }
 
-/// Goes on for this many oscillations of the base.
+/// Continues the run for `oscillations` oscillations of the base.
 pub fn oscillate<S: EventScheduler>(run: &mut Run<S>, oscillations: u32) -> Outcome<()> {
     run.run_until(run.time() + f64::from(oscillations) * OSCILLATION, &mut ())?;
     Ok(())

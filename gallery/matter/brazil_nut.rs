@@ -69,7 +69,7 @@ const LARGEST: f64 = 16.0;
 /// Height below which the grains are packed at first.
 const PACKED: f64 = 24.0;
 
-/// Samples per oscillation, and the number of them that make a point of the picture.
+/// Number of samples per oscillation, and number of samples that are averaged for a point of the picture.
 const SAMPLES: u32 = 20;
 const POINT: usize = 2 * SAMPLES as usize;
 
@@ -110,7 +110,7 @@ fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box
     let floor = Sinusoidal::new(AMPLITUDE, 2.0)?;
     let container = Container::open(WIDTH)?.with_motion(Wall::Floor, floor)?;
     let start = initial_disks(&container, diameter, density, arguments.seed)?;
-    // Grains lie on each other for moments; they need a contact duration.
+    // Grains lie on each other for short times, so the rule needs a contact duration.
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.3)?, 1e-3)?;
     let mut simulation = Simulation::builder(rule, container).disks(start.clone()).gravity(1.0).build()?;
 
@@ -199,7 +199,7 @@ const BASE: Look = Look::line(QUIET, "2 3").with_width(1.0);
 /// The mean height of the grains.
 const GRAIN: Look = Look::line(QUIET, "4 3").with_width(1.4);
 
-/// Draws an intruder at first and at its highest, and all heights over time.
+/// Draws an intruder at the start and at its highest position, and all heights over time.
 fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / (LEVELS.1 - LEVELS.0);
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];

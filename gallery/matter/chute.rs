@@ -27,13 +27,13 @@ use gallery::progress::Progress;
 use gallery::results::Results;
 use gallery::sheet::Sheet;
 
-/// Speed over height of grains on a rough slope.
+/// Speed of grains on a rough slope as a function of height.
 #[derive(Parser)]
 struct Arguments {
     /// Angles of the slope, in degrees.
     #[arg(long, value_delimiter = ',', default_value = "16,18,20,22", value_parser = positive)]
     angles: Vec<f64>,
-    /// Time for which each profile is measured, after as long a time without, in units of √(d/g).
+    /// Time for which each profile is measured, after an equal time to settle, in units of √(d/g).
     #[arg(long, default_value_t = 100.0, value_parser = positive)]
     time: f64,
     /// Measures for a time of 10 at most.

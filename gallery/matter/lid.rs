@@ -37,7 +37,7 @@ struct Arguments {
     /// Pressures of the lids, in T/d².
     #[arg(long, value_delimiter = ',', default_value = "1,2,4,6,8,9,10,12,16,20", value_parser = positive)]
     pressures: Vec<f64>,
-    /// Time for which each is measured, after as long a time without, in units of d √(m/T).
+    /// Time for which each lid is measured, after an equal time to settle, in units of d √(m/T).
     #[arg(long, default_value_t = 400.0, value_parser = positive)]
     time: f64,
     /// Measures for a time of 10 at most.
@@ -49,7 +49,7 @@ struct Arguments {
 
 const DISKS: usize = 288;
 
-/// Width of the box, and the height of the lid at first. Sixteen disks in a row fit at a distance of 1.07.
+/// Width of the box, and the initial height of the lid. Sixteen disks in a row fit at a distance of 1.07.
 const WIDTH: f64 = 17.1;
 const HEIGHT: f64 = 24.0;
 
@@ -59,13 +59,13 @@ const MASS: f64 = 50.0;
 /// Distance of centers below which disks are neighbors: about the first minimum of g(r).
 const RANGE: f64 = 1.5;
 
-/// Distance from floor and lid from which on disks count for the filling.
+/// Distance from floor and lid beyond which disks count for the filling, which is the packing fraction.
 const EDGE: f64 = 2.0;
 
 /// The pressure at which fluid and hexatic phase are in balance, in T/d² (Bernard and Krauth).
 const FREEZING: f64 = 9.185;
 
-/// A lid, and means and errors of what lies under it.
+/// A lid, with means and errors for the disks under it.
 struct Lid {
     pressure: f64,
     filling: Estimate,
@@ -89,7 +89,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     write(arguments, &lids).map_err(Failure::run)
 }
 
-/// Presses disks by a lid of this weight over the width.
+/// Presses disks with a lid whose weight, divided by the width, is `pressure`.
 fn pressed(arguments: &Arguments, pressure: f64) -> Result<Lid, Box<dyn Error>> {
     // A light lid rises; the stops are far away. The disks are packed while the lid is held.
     let piston = Piston::new(MASS, [-6.0 * HEIGHT, 0.9 * HEIGHT])?.with_force(pressure * WIDTH)?;
@@ -103,7 +103,7 @@ fn pressed(arguments: &Arguments, pressure: f64) -> Result<Lid, Box<dyn Error>> 
     let time = if arguments.quick { arguments.time.min(10.0) } else { arguments.time };
     let mut progress = Progress::of(format!("pressure {pressure}")).until(2.0 * time);
     run.run_until(time, &mut progress)?;
-    // A window with soft edges, which do not notice the layers of a crystal.
+    // The window has soft edges, so that the layers of a crystal at the edges do not affect the filling.
     let filling = measured_by(|snapshot: &Snapshot<'_>| {
         let size = snapshot.wall_point(lid).map_or(f64::NAN, |point| point.y) - 2.0 * EDGE;
         let phase = |disk: &Disk| PI * ((disk.position().y - EDGE) / size).clamp(0.0, 1.0);
@@ -155,7 +155,7 @@ fn write(arguments: &Arguments, lids: &[Lid]) -> Result<(), Box<dyn Error>> {
     arguments.results.finish_table("lid", table, Some(&draw(lids)))
 }
 
-/// Returns the filling at a pressure: of the fluid below the transition, of the crystal above.
+/// Returns the filling at a pressure: the fluid's below the transition, the crystal's above.
 fn theory(pressure: f64) -> f64 {
     let (mut low, mut high) = (0.0, 0.9);
     for _ in 0..60 {
@@ -174,7 +174,7 @@ const COLUMN: f64 = 420.0;
 /// Height of the box that is shown.
 const SHOWN: f64 = 22.0;
 
-/// Draws two lids, and the filling and the order under all.
+/// Draws the disks under two lids, and the filling and the order under all lids.
 fn draw(lids: &[Lid]) -> Sheet {
     let unit = (TALL - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];

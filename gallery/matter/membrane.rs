@@ -30,13 +30,13 @@ use gallery::progress::Progress;
 use gallery::results::Results;
 use gallery::sheet::Sheet;
 
-/// The osmotic pressure of a solution on a piston, over the density of the solute.
+/// The osmotic pressure of a solution on a piston, as a function of the density of the solute.
 #[derive(Parser)]
 struct Arguments {
-    /// Numbers of solute disks, 100 at most.
+    /// Numbers of solute disks, at most 100.
     #[arg(long, value_delimiter = ',', default_value = "0,15,30,45,60", value_parser = clap::value_parser!(u32).range(..=100))]
     solutes: Vec<u32>,
-    /// Time for which each pressure is measured, in units of d √(m/T) at first.
+    /// Time for which each pressure is measured, in units of d √(m/T) with the initial temperature.
     #[arg(long, default_value_t = 12000.0, value_parser = positive)]
     time: f64,
     /// Measures for a time of 200 at most.
@@ -59,7 +59,7 @@ const MEMBRANE: f64 = 0.5 * WIDTH;
 const STIFFNESS: f64 = 1.0;
 const SLACK: f64 = 1.0;
 
-/// Time before the measurement, in intervals in which crossings are counted.
+/// Time before the measurement, and the length of the intervals in which crossings are counted.
 const SETTLE: f64 = 400.0;
 const INTERVAL: f64 = 5.0;
 
@@ -72,9 +72,9 @@ struct Osmosis {
     densities: [f64; 3],
     /// Osmotic pressure over the temperature, and its error.
     pressure: [f64; 2],
-    /// Times, and the solvent that has come into the solution since the time before, less what went out.
+    /// Times, and the net number of solvent disks that have entered the solution since the previous time.
     inflow: Vec<(f64, f64)>,
-    /// The same in equilibrium, in a unit of time.
+    /// The net number in equilibrium, per unit of time.
     exchange: Estimate,
     /// The disks and the position of the piston at the end.
     shot: Vec<Disk>,

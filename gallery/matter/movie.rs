@@ -48,7 +48,7 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Takes 5 frames at most, after 20 oscillations at most.
+    /// Records at most 5 frames, after at most 20 oscillations.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -137,7 +137,8 @@ fn heights(disks: &[Disk], layers: &[u8]) -> [f64; LAYERS.len()] {
     })
 }
 
-/// A picture of palette colors: 0 is paper, 1 the walls, and from 2 on the shades of each layer.
+/// A picture of palette colors: 0 is paper, 1 the walls, and the numbers from 2 up are the shades of each
+/// layer.
 struct Canvas {
     width: usize,
     height: usize,

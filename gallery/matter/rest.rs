@@ -34,13 +34,14 @@ use gallery::sheet::Sheet;
 /// Grains that come to rest, under each remedy: events, height, heat and creep.
 #[derive(Parser)]
 struct Arguments {
-    /// End of each run, in the time in which a grain falls half a diameter.
+    /// End of each run, in units of √(d/g), the time in which a grain falls half a diameter.
     #[arg(long, default_value_t = 200.0, value_parser = positive)]
     end: f64,
-    /// Most collisions of a run, in millions; the same run ends there on any machine.
+    /// Largest number of collisions of a run, in millions; unlike a time limit, it ends the run at the same
+    /// event on any machine.
     #[arg(long, default_value_t = 6.0, value_parser = positive)]
     collisions: f64,
-    /// Takes a flat floor, with no grains glued to it.
+    /// Uses a flat floor, with no grains glued to it.
     #[arg(long)]
     flat: bool,
     /// Runs to time 40 at most, for a million collisions at most.
@@ -135,7 +136,7 @@ struct Heap {
     /// Mean kinetic energy of a grain's motion, over the time in which the heap is measured; `None` for a run
     /// that ended before.
     heat: Option<f64>,
-    /// Mean distance that a grain creeps in that time, per time.
+    /// Mean distance that a grain creeps, per unit of time, over the same time.
     creep: f64,
     disks: Vec<Disk>,
     glued: Vec<Disk>,
@@ -296,7 +297,7 @@ fn in_words(name: &str) -> &str {
     }
 }
 
-/// The look of a run that its limit ended.
+/// The look of a run that ended at its limit.
 const CUT: Look = Look::marks(INK, Mark::Disk).open();
 
 /// A number of a heap.

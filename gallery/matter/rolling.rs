@@ -1,8 +1,8 @@
 //! Rolling friction: disks that roll to rest, and grains that flow down a rough slope more slowly.
 //!
-//! A lone disk rolls on a floor. Rolling friction of the coefficient μ takes the torque `μmgR` from it, so
-//! it slows at `2μg/3`, as a disk in lasting contact would. Below, 140 grains flow down a slope, and a line
-//! across it counts them.
+//! A lone disk rolls on a floor. Rolling friction of the coefficient μ exerts the torque `μmgR` on it, so it
+//! decelerates at `2μg/3`, as a disk in lasting contact would. In another run, 140 grains flow down a slope,
+//! and a line across it counts them.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin rolling
@@ -35,7 +35,7 @@ struct Arguments {
     /// Coefficients of rolling friction.
     #[arg(long, value_delimiter = ',', default_value = "0,0.1,0.2,0.4", value_parser = non_negative)]
     coefficients: Vec<f64>,
-    /// Time for which each flow is measured, after as long a time without, in units of √(d/g).
+    /// Time for which each flow is measured, after an equal time to settle, in units of √(d/g).
     #[arg(long, default_value_t = 80.0, value_parser = positive)]
     time: f64,
     /// Measures for a time of 10 at most.
@@ -81,7 +81,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     write(arguments, &all.map_err(Failure::run)?).map_err(Failure::run)
 }
 
-/// Returns the rule of all runs: disks at rest tremble, friction 0.5, and rolling friction.
+/// Returns the rule of all runs: a least rebound, friction 0.5, and rolling friction.
 fn rule(coefficient: f64, least: f64) -> Result<impl CollisionRule, ParameterError> {
     RollingFriction::new(LeastRebound::new(Frictional::from_restitution(0.7, 0.0, 0.5)?, least)?, coefficient)
 }
@@ -104,7 +104,7 @@ fn rolling_speed(coefficient: f64, time: f64) -> f64 {
     (SPEED - 2.0 / 3.0 * coefficient * time).max(0.0)
 }
 
-/// Returns the grains that flow down a slope in a unit of time, and the grains at the end.
+/// Returns the number of grains that flow down a slope per unit of time, and the grains at the end.
 fn flow(arguments: &Arguments, coefficient: f64) -> Result<(Estimate, Vec<Disk>), Box<dyn Error>> {
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps()?);
     let grains = initial::homogeneous(initial::Radii::uniform(0.4, 0.5)?.draw(GRAINS, 1), 1.0)?;
@@ -141,7 +141,8 @@ const HEADER: f64 = 88.0;
 const HEIGHT: f64 = 330.0;
 const COLUMN: f64 = 480.0;
 
-/// Draws the speeds and the flow over the coefficient, and the slope with the first and the last.
+/// Draws the speeds, the flow as a function of the coefficient, and the slope with the first and the last
+/// coefficient.
 fn draw(all: &[Rolled]) -> Result<Sheet, Box<dyn Error>> {
     let mut sheet = Sheet::new(2.0 * COLUMN, HEADER + 2.0 * HEIGHT);
     let about = "Grains of diameters from 0.8 d to d: r = 0.7, κ = 0.5, rolling friction μ; above, a disk on a floor; below, 140 on a rough slope of 20°, blue if slower than 0.5 √(gd), red if faster than 1.5";

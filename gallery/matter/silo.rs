@@ -1,9 +1,9 @@
-//! A silo: how fast grains flow through an outlet, over its width.
+//! A silo: how fast grains flow through an outlet, depending on its width.
 //!
 //! 600 grains stand on the floor of a silo, with an outlet that is shut by a gate. The gate is taken out. A
-//! sink below takes the grains out that have left, and an inlet puts them in again on top, so that the flow
-//! continues at a constant filling. In two dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}` for an
-//! outlet of width `D` and grains of diameter `d`.
+//! sink below removes the grains that have left, and an inlet inserts them again on top, so that the flow
+//! continues with a constant number of grains. For an outlet of width `D` and grains of
+//! diameter `d` in two dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}`.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin silo
@@ -33,7 +33,7 @@ use gallery::progress::Progress;
 use gallery::results::Results;
 use gallery::sheet::Sheet;
 
-/// Flow out of a silo over the width of its outlet.
+/// Flow out of a silo as a function of the width of its outlet.
 #[derive(Parser)]
 struct Arguments {
     /// Widths of the outlets, in diameters of a grain.
@@ -42,7 +42,7 @@ struct Arguments {
     /// Time for which each flow is measured, in units of the square root of diameter over gravity.
     #[arg(long, default_value_t = 200.0, value_parser = positive)]
     time: f64,
-    /// Seed of the first motion of the grains.
+    /// Seed of the initial velocities and of the inlet.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Measures for a time of 10 at most.
@@ -66,7 +66,7 @@ const BEGIN: f64 = 20.0;
 /// Time between two refills.
 const REFILL: f64 = 0.25;
 
-/// Heights between which grains are put in again, and their speed.
+/// Heights between which grains are inserted again, and their speed.
 const TOP: [f64; 2] = [36.0, 38.0];
 const FALL: f64 = 2.0;
 
@@ -76,7 +76,7 @@ const INTERVALS: f64 = 40.0;
 /// Time after the gate opens at which the picture is taken.
 const SHOT: f64 = 6.0;
 
-/// Height of a layer of one color, and the kind of grains that were put in again.
+/// Height of a layer of one color, and the kind of grains that were inserted again.
 const LAYER: f64 = 3.0;
 const AGAIN: Kind = Kind::new(99);
 
@@ -168,7 +168,7 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
 }
 
 impl Law {
-    /// Fits a line to `W^{2/3}` over `D`.
+    /// Fits a line to `W^{2/3}` as a function of `D`.
     fn of(flows: &[Flow]) -> Option<Self> {
         let points: Vec<(f64, f64)> =
             flows.iter().map(|flow| (flow.outlet, flow.rate.mean().powf(2.0 / 3.0))).collect();
@@ -264,7 +264,7 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
     sheet.legend_inside(&panel, &names);
 }
 
-/// Returns the color of the layer of a grain, or the color of grains that came in again.
+/// Returns the color of the layer of a grain, or the color of grains that were inserted again.
 fn color(grain: &Disk) -> &'static str {
     const LAYERS: [&str; 3] = [BLUE, SKY, "#c9ced6"];
     let layer = usize::from(grain.kind().number());

@@ -1,8 +1,8 @@
 //! Single changes of the paper's box, which may move the collapse at small friction to where the paper has
 //! it.
 //!
-//! At g = 0.002025 and κ = 0.005, inelasticity grows in steps of 0.01 until the disks are collapsed, three
-//! times for each cause. The paper's mean ⟨dE⟩ of the collapse, −0.614, is at q = 0.18 here; the box as
+//! At g = 0.002025 and κ = 0.005, inelasticity grows in steps of 0.01 until the disks have collapsed, with
+//! three seeds for each cause. The paper's mean ⟨dE⟩ of the collapse, −0.614, is at q = 0.18 here; the box as
 //! stated collapses at smaller q. Each row changes one thing.
 //!
 //! ```text
@@ -37,7 +37,7 @@ const EVERY: u32 = 20;
 /// The collapse under single changes of the paper's box.
 #[derive(Parser)]
 struct Arguments {
-    /// Oscillations of each value; the first half is discarded.
+    /// Oscillations at each value; the first half is discarded.
     #[arg(long, default_value_t = 16_000)]
     oscillations: u32,
     /// Number of seeds.
@@ -142,7 +142,7 @@ impl Cause {
     }
 }
 
-/// The first inelasticity, at which all boxes have two rolls, the step, and the last one.
+/// The first inelasticity, at which all boxes have two rolls; the step; and the number of values.
 const FIRST: f64 = 0.1;
 const STEP: f64 = 0.01;
 const STEPS: u32 = 15;
@@ -155,7 +155,7 @@ struct Seen {
     regime: ConvectiveRegime,
 }
 
-/// Lets inelasticity grow until the disks are collapsed at two values, one after the other.
+/// Increases the inelasticity until the disks are collapsed at two consecutive values.
 fn ramp(cause: Cause, seed: u64, oscillations: u32) -> Result<Vec<Seen>, Box<dyn Error + Send + Sync>> {
     let first = cause.experiment(FIRST);
     let mut run = Simulation::builder(first.rule()?, first.boundary()?)
@@ -165,7 +165,7 @@ fn ramp(cause: Cause, seed: u64, oscillations: u32) -> Result<Vec<Seen>, Box<dyn
     let (mut all, mut done): (Vec<Seen>, u32) = (Vec::new(), 0);
     for step in 0..STEPS {
         let q = FIRST + STEP * f64::from(step);
-        // The base is at its rest position at the end of each period, so none jumps.
+        // Every base is at its rest position at the end of each period, so replacing it causes no jump.
         run.set_rule(cause.experiment(q).rule()?);
         run.set_boundary(cause.experiment(q).boundary()?)?;
         all.push(measure(&mut run, q, done, oscillations)?);

@@ -99,7 +99,7 @@ fn plan(
 /// the model has changed.
 fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
     gallery::say!(
-        "transitions along {parameter}; ± is the standard error over independent ramps, and over a step"
+        "transitions along {parameter}; ± is the standard error from independent ramps and from a step"
     );
     gallery::say!(
         "| t_c | {} | changed, first | last value | stalled |",

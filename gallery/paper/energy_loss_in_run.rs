@@ -30,7 +30,7 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Measures for 200 oscillations after 200, not for 2000 after 2000.
+    /// Settles and measures for 200 oscillations each, not for 2000 each.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -38,13 +38,13 @@ struct Arguments {
 }
 
 impl Arguments {
-    /// Returns the number of oscillations before measuring, and while measuring.
+    /// Returns the number of oscillations before the measurement, which is also the number during it.
     fn oscillations(&self) -> f64 {
         if self.quick { 200.0 } else { 2000.0 }
     }
 }
 
-/// Parts of the measured time, whose scatter gives the errors.
+/// Number of parts of the measured time; the scatter of the parts gives the errors.
 const PARTS: u32 = 80;
 
 /// Energy changes and temperatures by height.

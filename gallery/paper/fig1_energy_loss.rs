@@ -2,8 +2,8 @@
 //! inelasticity.
 //!
 //! The example writes `fig1_energy_loss.svg` and `.png` (both panels), `fig1_energy_loss.csv` (the lines) and
-//! `fig1_largest_loss.csv` (the friction of the largest loss for each inelasticity). It also compares closed
-//! form and Monte Carlo on a few points.
+//! `fig1_largest_loss.csv` (the friction of the largest loss for each inelasticity). It also compares the
+//! closed form with Monte Carlo averages at a few points.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin fig1_energy_loss -- --out out
@@ -35,7 +35,7 @@ struct Arguments {
     /// Seed of the Monte Carlo comparison.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Takes fewer collisions for the Monte Carlo comparison.
+    /// Uses fewer collisions for the Monte Carlo comparison.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]

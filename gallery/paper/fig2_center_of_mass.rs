@@ -28,7 +28,7 @@ use gallery::sheet::Sheet;
 struct Arguments {
     #[command(flatten)]
     common: gallery::studies::Common,
-    /// A base that redraws the normal velocity only.
+    /// Uses a base that redraws the normal velocity only.
     #[arg(long)]
     slip: bool,
 }

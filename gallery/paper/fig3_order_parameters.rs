@@ -9,8 +9,8 @@
 //! cargo run --release -p gallery --all-features --bin fig3_order_parameters -- --quick
 //! ```
 //!
-//! The example writes `fig3_order_parameters.svg` and `.png`, and the tables of the study. With `--down` the
-//! picture shows both ways of friction. After an interruption, the same command continues.
+//! The example writes `fig3_order_parameters.svg` and `.png`, and the tables of the study. With `--down`, the
+//! picture shows growing and falling friction. After an interruption, the same command continues.
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -29,7 +29,7 @@ use gallery::sheet::Sheet;
 struct Arguments {
     #[command(flatten)]
     common: gallery::studies::Common,
-    /// Up and down again, to see the hysteresis.
+    /// Lets friction grow and fall again, to show the hysteresis.
     #[arg(long)]
     down: bool,
 }
@@ -127,7 +127,7 @@ fn draw(arguments: &Arguments, records: &[Record], study: &Study<VibratedBox>) -
     sheet
 }
 
-/// Returns the axes of a panel. Only the lowest has numbers and a name of its friction.
+/// Returns the axes of a panel. Only the lowest panel has numbers and a name at its friction axis.
 fn layout(lowest: bool) -> Layout {
     let layout = panel::axes((0.5 * STEP, 15.5 * STEP), (-MOST, MOST)).with_x_tick_step(0.01);
     let layout = layout.with_y_tick_step(0.1).with_y_tick_format(TickFormat::Fixed(1));
@@ -152,7 +152,7 @@ fn add_panel(sheet: &mut Sheet, place: Place, records: &[Record], quantity: Quan
         let samples = samples.map(|(index, sample)| (at(index), quantity(sample)));
         sheet.marks(&panel, WAYS[usize::from(down)], samples);
     }
-    // The samples hide the band: its edges go over them.
+    // The samples hide the band, so its edges are drawn over them.
     for sign in [-1.0, 1.0] {
         let edge = noise.iter().map(|&(friction, half)| panel.at((friction, sign * half)));
         sheet.line(edge.collect(), INK, 1.0);

@@ -3,7 +3,7 @@
 //! The system has 1000 disks in the vibrated box, with `g = 0.015625`, `q = 0` and friction 0.0605. The
 //! samples of a run form up to three clouds: one roll of either sense, and two rolls. A finite number of
 //! disks makes the state jump between the clouds, and not every run visits all of them. The example does some
-//! independent runs, and draws one that shows most clusters.
+//! independent runs, and draws one of those that show the most clusters.
 //!
 //! ```text
 //! cargo run --release -p gallery --all-features --bin fig4_clusters -- --quick
@@ -86,7 +86,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     gallery::say!("{three} of {} runs show three clusters", runs.len());
     print_weights(&runs);
     write_clusters(&runs, study.folder())?;
-    // The first of the runs with most clusters is shown.
+    // The first of the runs with the most clusters is shown.
     let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
     let path = study.folder().join("fig4_clusters");
     draw(arguments, &study, shown).write(&path)?;
@@ -184,7 +184,7 @@ fn add_legend(sheet: &mut Sheet, run: &Run) {
     sheet.legend((MARGINS[0], 124.0), &names.into_iter().chain(others).collect::<Vec<_>>());
 }
 
-/// Draws a circle about the origin, within which a gas at rest would be.
+/// Draws a circle about the origin, within which the samples of a gas at rest would lie.
 fn noise(run: &Run) -> Plot {
     let radius = 3.0 * run.record.thermal_noise();
     let circle =

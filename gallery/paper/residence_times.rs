@@ -1,4 +1,4 @@
-//! The time for which a roll keeps its sense, and for which two rolls last where one is stable, too.
+//! The time for which a roll keeps its sense, and for which two rolls last where one roll is stable, too.
 //!
 //! The example reads the order parameters that `docs/reproduction/protocols/long` has recorded, a million
 //! oscillations for each value, names the state of each sample, and counts how long states last. It writes
@@ -28,14 +28,14 @@ use gallery::sheet::Sheet;
 /// Residence times of one roll of either sense, and of two rolls, from runs of a million oscillations.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder of the studies; the kept ones unless given.
+    /// Folder of the studies; by default, the runs kept with the repository.
     #[arg(long, value_name = "FOLDER")]
     studies: Option<PathBuf>,
-    /// Oscillations that two rolls must last so as not to be a fluctuation of one roll, and the other way
-    /// around.
+    /// Shortest stay that counts, in oscillations: two rolls that last less are a fluctuation of one roll,
+    /// and vice versa.
     #[arg(long, default_value_t = 2000)]
     shortest: u64,
-    /// Reads the first tenth of each run.
+    /// Reads only the first tenth of each run.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -78,7 +78,7 @@ struct Value {
     /// Oscillations of the shortest stay that counts.
     shortest: u64,
     states: Vec<State>,
-    /// Mean of the larger order parameter, over the noise of a gas at rest.
+    /// Mean of the larger order parameter, divided by the noise of a gas at rest.
     strength: f64,
 }
 
@@ -89,8 +89,8 @@ impl Value {
     }
 
     /// Returns how long one roll keeps its sense; `None` where two rolls have more than a quarter of the
-    /// time. Two rolls between two stays of one roll do not count, nor does a moment of one roll between
-    /// stays of two.
+    /// time. Two rolls between two stays of one roll do not count, nor does a short time with one roll
+    /// between stays of two.
     fn sense(&self) -> Option<Residence> {
         let are_two = self.two_rolls().unwrap_or_else(|| vec![false; self.states.len()]);
         let alone = self.states.iter().zip(are_two).filter(|(state, two)| !two && **state != State::TwoRolls);
@@ -113,8 +113,8 @@ impl Value {
         (self.strength >= 8.0).then(|| without_short(&are_two, (self.shortest / self.every) as usize))
     }
 
-    /// Returns the time of samples over the number of ends; so the last stay, whose end is not seen, counts,
-    /// too. The stays are independent, and their number has the error of a count.
+    /// Returns the total time of the samples divided by the number of ends, so that the last stay, whose end
+    /// is not seen, counts, too. The stays are independent, so their number has the error of a count.
     fn residence(&self, samples: usize, ends: usize) -> Option<Residence> {
         let mean = (samples as u64 * self.every) as f64 / ends as f64;
         (ends > 0).then(|| Residence { mean, error: mean / (ends as f64).sqrt(), ends })
@@ -145,7 +145,8 @@ impl Residence {
     }
 }
 
-/// Returns a series of two values in which stays shorter than this many samples belong to the stay before.
+/// Returns a series of two values in which stays shorter than `least` samples are merged into the stay
+/// before.
 fn without_short(series: &[bool], least: usize) -> Vec<bool> {
     let mut steady: Vec<bool> = Vec::with_capacity(series.len());
     for stay in series.chunk_by(|before, after| before == after) {
@@ -155,10 +156,10 @@ fn without_short(series: &[bool], least: usize) -> Vec<bool> {
     steady
 }
 
-/// Names the state of each sample. A state lasts until the order parameter of another one is above three
-/// times the noise of a gas at rest, and by twice the noise on its side of Ψ₂ = 2 |Ψ₁|, between one roll that
-/// leans to a side and two rolls: less would count noise as changes. Samples before the first such sample are
-/// left out.
+/// Names the state of each sample. A state lasts until the order parameter of another state is above three
+/// times the noise of a gas at rest, and the sample lies on that state's side of Ψ₂ = 2 |Ψ₁|, the border
+/// between one roll and two, by at least twice the noise. With smaller margins, noise would count as changes.
+/// Samples before the first one that meets both conditions are left out.
 fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
     let (least, margin) = (3.0 * noise, 2.0 * noise);
     let mut now = None;

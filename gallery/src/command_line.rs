@@ -20,7 +20,7 @@ pub fn main<A: Parser, E: Into<Failure>>(run: impl FnOnce(&A) -> Result<(), E>) 
     }
 }
 
-/// Makes the folder for the results, if there is none.
+/// Creates the folder for the results if it does not exist.
 pub fn make_folder(out: &Path) -> Result<(), Failure> {
     fs::create_dir_all(out).map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))
 }
@@ -40,7 +40,7 @@ fn parse<A: Parser>() -> A {
 
 const NO_WHOLE_NUMBER: &str = "must be a whole number, not below 0";
 
-/// Returns a message of clap's without the usage that follows it.
+/// Returns a message of clap without the usage that follows it.
 fn in_one_line(message: &str) -> String {
     let told = message.lines().map(str::trim);
     let told = told.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));

@@ -6,8 +6,8 @@ use kuva::prelude::{Plot, ScatterPlot};
 /// Distance by which disks are drawn too small, so that touching disks look separate.
 pub const GAP: f64 = 0.4;
 
-/// Returns disks in their colors, for a panel with this many units of the sheet to a unit of length. On the
-/// sheet, their radii are smaller by a gap.
+/// Returns disks in their colors, for a panel on which a unit of length is `unit` units of the sheet. On the
+/// sheet, the radii are smaller by `gap`.
 pub fn faces<'a, C: Into<String>>(
     disks: impl Iterator<Item = &'a Disk> + Clone,
     unit: f64,

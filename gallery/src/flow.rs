@@ -1,4 +1,4 @@
-//! A mean flow as arrows: square cells, and those that are full enough for an arrow.
+//! A mean flow as arrows, one in each square cell that holds enough disks.
 
 use granular_edmd::ParameterError;
 use granular_edmd::boundary::Region;
@@ -9,7 +9,7 @@ use kuva::prelude::{Plot, QuiverPlot};
 
 use crate::look::INK;
 
-/// Returns fields on square cells over a region, with this many columns.
+/// Returns fields on square cells over a region, in `columns` columns.
 pub fn on_squares(
     min: DVec2,
     max: DVec2,
@@ -31,8 +31,8 @@ pub struct Arrows {
 }
 
 impl Arrows {
-    /// Takes the cells that hold at least this share of what the fullest cell holds. The longest arrow is
-    /// this many cells long.
+    /// Creates the arrows of all cells that hold at least the fraction `share` of the disks in the fullest
+    /// cell. The longest arrow is `cells` cells long.
     pub fn of(fields: &Fields, share: f64, cells: f64) -> Self {
         let most = fields.iter().map(|cell| cell.count).max().unwrap_or(0);
         let enough = (share * most as f64).max(1.0);

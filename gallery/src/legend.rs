@@ -8,17 +8,17 @@ const INSET: f64 = 12.0;
 /// Space around a legend that is free of lines and of the middles of marks.
 const CLEAR: f64 = 6.0;
 
-/// Largest distance of the places by which a line is known.
+/// Largest distance between the points that stand for a line.
 const STEP: f64 = 3.0;
 
-/// What is drawn in the panels of a sheet, as places on it.
+/// Points of a sheet at which something is drawn in its panels.
 #[derive(Default)]
 pub struct Drawn {
     places: Vec<(f64, f64)>,
 }
 
 impl Drawn {
-    /// Adds a line through these corners; a single one is a mark.
+    /// Adds a line through these corners; a single corner is a mark.
     pub fn add(&mut self, corners: &[(f64, f64)]) {
         self.places.extend(corners.first());
         for ends in corners.windows(2) {
@@ -30,7 +30,7 @@ impl Drawn {
     }
 
     /// Returns the places of the columns of a legend, one or two, in the first corner of a panel where it
-    /// hides nothing. A column is this wide, and each entry this high.
+    /// hides nothing. The pair is the width of a column and the height of an entry.
     pub fn free_corner(
         &self,
         panel: &Panel,

@@ -1,7 +1,7 @@
 //! Letters as outlines, for pictures made of pixels.
 //!
-//! Labels are short and their scripts simple, so each letter stands behind the one before. A shaper of text
-//! for all languages would take as long to compile as all else that draws.
+//! Labels are short and their scripts simple, so the letters are just placed one after another. A text shaper
+//! for all languages would take as long to compile as all other code that draws.
 
 use std::fmt::Write;
 
@@ -12,12 +12,12 @@ use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-/// The fonts of letters; the first that has a letter gives it.
+/// The fonts of letters. Each letter comes from the first font that has it.
 pub struct Letters {
     fonts: Vec<Vec<u8>>,
 }
 
-/// A line of text: where it stands, and how.
+/// A line of text, with its place and its style.
 struct Line<'a> {
     place: (f64, f64),
     content: &'a str,
@@ -28,8 +28,8 @@ struct Line<'a> {
 }
 
 impl Letters {
-    /// Returns the fonts that kuva brings, so that letters look the same on all machines, and appear on those
-    /// without fonts. kuva gives access to them only inside a picture.
+    /// Returns the fonts that kuva contains, so that letters look the same on all machines, and appear on
+    /// machines without fonts. kuva gives access to them only inside a picture.
     pub fn of_kuva() -> Result<Self, String> {
         let picture = SvgBackend::new().with_embedded_font(true).render_scene(&Scene::new(1.0, 1.0));
         let coded = picture.split("base64,").skip(1).map(|text| text.split('\'').next().unwrap_or_default());

@@ -1,7 +1,7 @@
 //! The looks of series: colors, marks and dashes.
 //!
-//! Series differ by mark and dash as well as by color, so that a picture can be read in gray, too, and by
-//! those who see fewer colors.
+//! Series differ by mark and dash as well as by color, so that a picture can also be read in gray, and by
+//! color-blind readers.
 
 use kuva::prelude::{LinePlot, LineStyle, Plot};
 use kuva::render::render::{PathData, Primitive};
@@ -112,7 +112,7 @@ impl Look {
         self.dash.filter(|dash| !dash.is_empty()).map(str::to_owned)
     }
 
-    /// Returns a mark about this place of a sheet. A white edge parts marks that touch each other.
+    /// Returns a mark about this place of a sheet. A white edge separates marks that touch each other.
     pub fn mark(&self, (x, y): (f64, f64)) -> Option<Primitive> {
         let mark = self.mark?;
         let size = self.size;

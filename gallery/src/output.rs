@@ -1,8 +1,7 @@
 //! Standard output, which a reader may close at any time.
 //!
 //! `println!` panics if the reader has gone, and then a program's files are not written. Here, a closed pipe
-//! ends what is printed and nothing else, and any other failure ends the program with an error, after its
-//! work.
+//! only ends the printing, and any other failure ends the program with an error, after its work.
 
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
@@ -38,7 +37,7 @@ pub fn line(text: Arguments<'_>) {
     }
 }
 
-/// Prints what a run noticed and survived, on standard error.
+/// Prints the warnings of a run on standard error.
 pub fn warn(warnings: &[Warning]) {
     for warning in warnings {
         complain(format_args!("warning: {warning}"));
@@ -50,7 +49,7 @@ pub fn complain(text: Arguments<'_>) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Leaves standard output to the numbers as JSON.
+/// Reserves standard output for the numbers as JSON.
 pub fn leave_to_json() {
     FOR_JSON.store(true, Ordering::Relaxed);
 }
@@ -61,7 +60,7 @@ pub fn json(text: &str) -> io::Result<()> {
     written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
 }
 
-/// Returns the failure to print something, if any; a closed pipe is none.
+/// Returns an error if printing has failed. A closed pipe is not a failure.
 pub fn end() -> Result<(), Failure> {
     let failed = FAILED.lock().unwrap_or_else(PoisonError::into_inner).take();
     match failed.or_else(|| io::stdout().flush().err()) {

@@ -1,13 +1,13 @@
-//! A few colors for many.
+//! A palette of few colors for a picture of many.
 
 use std::collections::BTreeMap;
 
-/// Most colors of a palette.
+/// Largest number of colors in a palette.
 const MOST: usize = 256;
 
 type Color = [u8; 3];
 
-/// At most 256 colors, and for each color of a picture the one that stands for it.
+/// At most 256 colors and, for each color of a picture, the palette color that replaces it.
 pub struct Palette {
     colors: Vec<Color>,
     index: BTreeMap<Color, u8>,
@@ -35,7 +35,7 @@ impl Palette {
         Self { colors: groups.iter().map(Group::color).collect(), index }
     }
 
-    /// Returns the number of the color that stands for this one of the picture.
+    /// Returns the number of the palette color that replaces this color of the picture.
     pub fn index(&self, color: Color) -> u8 {
         self.index.get(&color).copied().unwrap_or_default()
     }
@@ -46,7 +46,7 @@ impl Palette {
     }
 }
 
-/// Colors for which one will stand, and the number of pixels of each.
+/// Colors that one palette color will replace, and the number of pixels of each.
 struct Group {
     colors: Vec<(Color, u64)>,
     channel: usize,
@@ -82,7 +82,7 @@ impl Group {
     }
 
     /// Returns the most frequent color if it has half of the pixels, so that plain areas stay as they are,
-    /// else the mean.
+    /// and otherwise the mean.
     fn color(&self) -> Color {
         let all: u64 = self.colors.iter().map(|(_, count)| count).sum();
         let frequent = self.colors.iter().max_by_key(|(_, count)| count);

@@ -72,7 +72,8 @@ impl Drop for Progress {
     }
 }
 
-/// An observer that shows how far a run is. It has no clock: a run that hardly progresses is shown, too.
+/// An observer that shows how far a run is. It counts collisions and has no sampling times, so it also shows
+/// a run whose time hardly advances.
 pub struct Until {
     progress: Progress,
     end: f64,

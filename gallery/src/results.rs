@@ -25,7 +25,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// Makes the folder, if there is none, and checks before a long run that there is one for the JSON.
+    /// Creates the folder if it does not exist, and checks before a long run that the folder of the JSON file
+    /// exists.
     pub fn make_folder(&self) -> Result<(), Failure> {
         make_folder(&self.out)?;
         if self.json_is_printed() {
@@ -66,7 +67,7 @@ impl Results {
         self.finish_picture(name, picture, numbers)
     }
 
-    /// Writes a table of this name by a function, the picture and the numbers.
+    /// Writes a table of this name with a function, and then the picture and the numbers.
     pub fn finish_with(
         &self,
         name: &str,
@@ -86,7 +87,7 @@ impl Results {
         self.write_json(numbers)
     }
 
-    /// Writes numbers as JSON, if that is asked for.
+    /// Writes numbers as JSON, if requested.
     pub fn write_json(&self, numbers: &Value) -> Result<(), Box<dyn Error>> {
         let Some(path) = &self.json else { return Ok(()) };
         let text = serde_json::to_string_pretty(numbers)?;
@@ -117,7 +118,7 @@ impl Results {
         self.write_tables_as_json(&[(name, table)])
     }
 
-    /// Writes tables as JSON under these names, if that is asked for: each row as an object.
+    /// Writes tables as JSON under these names, if requested: each row as an object.
     pub fn write_tables_as_json(&self, tables: &[(&str, PathBuf)]) -> Result<(), Box<dyn Error>> {
         if self.json.is_none() {
             return Ok(());

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of the kept runs of this name, wherever a program is called.
+/// Returns the folder of the kept runs of this name, wherever a program is started.
 pub fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs").join("reproduction/runs").join(name)
 }
@@ -12,7 +12,7 @@ pub fn folder(name: &str) -> PathBuf {
 ///
 /// # Errors
 ///
-/// If there is no such folder: then the message says how to get it.
+/// If there is no such folder. The message says how to get it.
 pub fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let failed = |error: std::io::Error| {
         let path = folder.display();

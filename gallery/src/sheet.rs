@@ -42,7 +42,7 @@ impl Sheet {
         Self { scene, drawn: Drawn::default() }
     }
 
-    /// Makes the sheet higher, and returns its height before.
+    /// Makes the sheet higher, and returns its previous height.
     pub const fn grow(&mut self, by: f64) -> f64 {
         let before = self.scene.height;
         self.scene.height += by;
@@ -151,7 +151,7 @@ impl Sheet {
             let [from, to] = ends.map(|end| panel.at(panel.nearest(end)));
             self.drawn.add(&[from, to]);
             self.line(vec![from, to], look.color, 1.0);
-            // Caps across the ends: up for a bar that lies.
+            // Caps across the ends: vertical ones for a horizontal bar.
             let cap = if from.1 == to.1 { (0.0, 3.0) } else { (3.0, 0.0) };
             for (x, y) in [from, to] {
                 self.line(vec![(x - cap.0, y - cap.1), (x + cap.0, y + cap.1)], look.color, 1.0);
@@ -162,7 +162,7 @@ impl Sheet {
     /// Adds the names of series in the first corner of a panel where they hide nothing that was drawn before,
     /// or below the sheet if there is none.
     pub fn legend_inside(&mut self, panel: &Panel, entries: &[(Look, &str)]) {
-        // Single words may be wider than their number of letters says.
+        // Single words may be wider than their number of letters suggests.
         let longest = entries.iter().map(|(_, name)| width(name, SMALL) + 12.0).fold(0.0, f64::max);
         let column = widest_sample(entries) + 8.0 + longest;
         let columns = self.drawn.free_corner(panel, (column, LINE), entries.len());

@@ -24,7 +24,7 @@ pub struct Common {
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Does this ramp alone, counted from 0: to share the work among processes.
+    /// Runs this ramp alone, counted from 0, to share the work among processes.
     #[arg(long)]
     ramp: Option<usize>,
     #[command(flatten)]
@@ -58,7 +58,7 @@ impl Common {
     }
 }
 
-/// Returns the paper's vibrated box at this gravity, with the contact duration that our figures take.
+/// Returns the paper's vibrated box at this gravity, with the contact duration of all figures.
 pub fn vibrated_box(gravity: f64) -> VibratedBox {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     VibratedBox::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
@@ -85,7 +85,7 @@ pub fn complete<E: Experiment>(
     }
     if summary.warned > 0 {
         let logs = folder.join("logs/*.jsonl");
-        crate::say!("{} values have warnings; {} say of what", summary.warned, logs.display());
+        crate::say!("{} values have warnings; see {}", summary.warned, logs.display());
     }
     if study.all_status()?.iter().all(|status| *status == RampStatus::Done) {
         return Ok(Some(study));
@@ -98,7 +98,7 @@ pub fn complete<E: Experiment>(
     Ok(None)
 }
 
-/// Runs a study and shows its progress, until it is done or Ctrl-C comes.
+/// Runs a study and shows its progress, until it is done or Ctrl-C is pressed.
 fn watched(run: impl FnOnce(&Control<'_>) -> Result<Summary, StudyError>) -> Result<Summary, Box<dyn Error>> {
     stop_on_ctrl_c()?;
     let progress = Progress::of("study");
@@ -106,7 +106,7 @@ fn watched(run: impl FnOnce(&Control<'_>) -> Result<Summary, StudyError>) -> Res
     Ok(run(&Control::default().with_progress(&show).with_interrupt(&STOP))?)
 }
 
-/// Sets the handler of Ctrl-C, once; more calls do nothing.
+/// Sets the handler of Ctrl-C once; further calls do nothing.
 fn stop_on_ctrl_c() -> Result<(), ctrlc::Error> {
     let handler = || {
         if STOP.swap(true, Ordering::Relaxed) {

@@ -205,7 +205,7 @@ impl Field<'_> {
         sum * (high - low)
     }
 
-    /// Returns the length of a horizontal line on which centers are free.
+    /// Returns the total length of the free intervals of a horizontal line.
     fn length(&self, height: f64, curves: &[Curve]) -> f64 {
         let Region { min, max, .. } = self.region;
         let mut ends: Vec<f64> = curves.iter().flat_map(|curve| curve.crossings(height)).collect();

@@ -102,7 +102,7 @@ struct Sight {
     weight: f64,
 }
 
-/// The relation of the nearest point of a brick to a given point.
+/// The nearest point of a brick, as seen from a given point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
     pub(super) distance: f64,

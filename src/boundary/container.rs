@@ -15,7 +15,8 @@ use crate::quantity::{accept, positive};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
 
-/// A rectangular container with its lower left corner at the origin, such as the paper's box.
+/// A rectangular container, such as the paper's box. Its lower left corner is at the origin unless it is
+/// [shifted](Self::shifted).
 ///
 /// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
 /// normal (which points inward), its own rule, a temperature, or a kind.
@@ -124,9 +125,9 @@ impl Container {
     /// Returns the same container with a wall that moves along its normal. The normal points inward.
     ///
     /// # Errors
-    /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`check_finite`](crate::wall::check_finite) examines. Also if the wall is a piston
-    /// already, or the opposite wall is a piston that could meet this one.
+    /// If the container has no such wall, if the motion gives numbers that are not finite at one of the
+    /// phases that [`check_finite`](crate::wall::check_finite) examines, if the wall is a piston already, or
+    /// if the opposite wall is a piston that could meet this one.
     pub fn with_motion(
         mut self,
         wall: Wall,
@@ -147,8 +148,8 @@ impl Container {
     /// Only the stops of a piston keep it away from the opposite wall: walls do not collide with each other.
     ///
     /// # Errors
-    /// If the container has no such wall, or the motion of the piston has numbers that are not finite. Also
-    /// if the wall already has a motion, or the piston's highest stop is beyond the nearest position of the
+    /// If the container has no such wall, the motion of the piston has numbers that are not finite, the wall
+    /// already has another motion, or the piston's highest stop is beyond the nearest position of the
     /// opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));
@@ -231,7 +232,7 @@ impl Container {
         self.height
     }
 
-    /// Returns the index of a wall, if the wall exists.
+    /// Returns the index of a wall, or `None` if the container has no such wall.
     pub fn index(&self, wall: Wall) -> Option<usize> {
         self.planes.iter().position(|plane| plane.wall == wall)
     }
@@ -276,7 +277,7 @@ crate::gate::from_file! {
         if !has(Wall::Floor) {
             container = container.with_periodic_ends()?;
         }
-        // The walls in the file must be the container's present walls, in their order.
+        // The walls in the file must be the container's present walls, in the same order.
         if !walls.iter().map(|plane| plane.wall).eq(container.planes.iter().map(|plane| plane.wall)) {
             return Err("no container has just these walls in this order".into());
         }

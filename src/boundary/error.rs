@@ -59,7 +59,7 @@ pub enum VesselError {
         parts: Vec<String>,
     },
     /// The vessel has a part or a wall of this name already.
-    #[error("the vessel has a part or a wall of its container \"{name}\" already")]
+    #[error("the name \"{name}\" already belongs to a part of the vessel or to a wall of its container")]
     Duplicate {
         /// The name.
         name: String,

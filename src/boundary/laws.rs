@@ -36,12 +36,12 @@ const PLACES: usize = 10_000;
 /// Largest time origin of a flight, in units of the time that a disk takes to cross the domain.
 const LATEST: f64 = 100.0;
 
-/// Kinds and sizes of the disks, alternately.
+/// Kinds of the disks, and their sizes relative to the given radius. The check cycles through both lists.
 const KINDS: [u16; 8] = [0, 1, 0, 2, 0, 3, 300, 7];
 const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 
-/// Checks that a boundary keeps its contract with disks of this radius and down to 0.3 of it, on random
-/// flights at about this speed and from rest.
+/// Checks that a boundary keeps its contract with disks of this radius and of radii down to 0.3 times it, on
+/// random flights at about this speed and from rest.
 ///
 /// Each of four hundred disks, of the kinds 0 to 3, 7 and 300, flies from a free position, with or without
 /// gravity, at various times and speeds. Each wall that it touches reflects it, for up to four flights in a
@@ -73,8 +73,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// check changes the boundary's time origin.
 ///
 /// # Errors
-/// The first violation that the check finds, with the flight on which it was found. The page "Validation"
-/// says which planted faults the check finds.
+/// Returns the first violation that the check finds, with the flight on which it was found. The page
+/// "Validation" says which planted faults the check finds.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall, laws};
@@ -118,7 +118,7 @@ fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation>
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
     let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;
     require!(PART, "domain", is_rectangle;
-        "the domain {domain} is no rectangle with a finite bottom and sides");
+        "the domain {domain} is not a rectangle with a finite bottom and sides");
     let is_inside = domain.left <= interior.left
         && interior.right <= domain.right
         && domain.bottom <= interior.bottom

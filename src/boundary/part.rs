@@ -77,9 +77,9 @@ impl Part {
     /// Returns the same part as a sink that takes a disk out of the run at its first touch.
     ///
     /// Observers see the touch as a last collision with the wall ([`Response::Absorbing`]).
-    /// [`Arrivals`](crate::observable::Arrivals) counts them, and an [`Inlet`](crate::simulation::Inlet) puts
-    /// disks in. A removal takes the same time however many disks there are: the last disk gets the index of
-    /// the removed disk.
+    /// [`Arrivals`](crate::observable::Arrivals) counts these collisions, and an
+    /// [`Inlet`](crate::simulation::Inlet) puts disks in. A removal takes the same time however many disks
+    /// there are: the last disk gets the index of the removed disk.
     ///
     /// [`Response::Absorbing`]: super::Response::Absorbing
     #[must_use]
@@ -92,7 +92,7 @@ impl Part {
     /// Disks may overlap such a part: it is a line that their centers must not pass. A center arrives when it
     /// is within 1e-7 radii of the line, on a side on which the brick is free. A center that begins on the
     /// line, or behind a one-sided brick, does not arrive. At times later than $`10^8R/v`$, the position of a
-    /// line that moves without a period is rounded more than this, and centers may pass.
+    /// line that moves without a period has a rounding error above this distance, and centers may pass.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -231,7 +231,7 @@ impl Part {
 
     /// Returns the phase of the motion at a time origin.
     ///
-    /// Both remainders are exact. Their difference is rounded as a phase is, not as a late time is.
+    /// Both remainders are exact. Their difference has the rounding error of a phase, not of a late time.
     pub(super) fn phase(&self, origin: f64) -> Phase {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }

@@ -10,7 +10,7 @@ use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall of a container: the disks stay on one side of a line.
 ///
-/// Files do not hold its position, which follows from the size of the container.
+/// Files do not hold its position, which follows from the size and the corner of the container.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, rename = "ContainerWall"))]

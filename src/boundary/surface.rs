@@ -131,9 +131,9 @@ impl<'a> Surface<'a> {
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Response<'a> {
-    /// The wall follows the collision rule of the disks, as a partner of infinite mass.
+    /// The wall follows the collision rule of the disks, as a partner with the masses of the surface.
     Shared,
-    /// The wall follows its own rule, as a partner of infinite mass.
+    /// The wall follows its own rule, as a partner with the masses of the surface.
     Rule(&'a dyn CollisionRule),
     /// The wall re-emits the disk thermally.
     Thermal(Thermal),

@@ -32,7 +32,7 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 ///
 /// A disk must clear the container's walls and each part: two blocks make a hopper, and a polygon can have
 /// pegs in it. Parts may overlap, and may reach beyond the container. Parts are repeated across periodic
-/// sides: a part that extends beyond one side enters again at the other, however far it extends. They are
+/// sides: a part that extends beyond one side enters again at the other, however far it extends. Parts are
 /// added, replaced and removed by name, even between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
@@ -188,10 +188,10 @@ impl Vessel {
     /// The walls of the part come after the walls of all other parts.
     ///
     /// # Errors
-    /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
-    /// walls. Also if the part extends over more than 64 periods of the container in one direction, or 256 in
-    /// both, or its motion is lost in the rounding of its coordinates. Also if the part takes out centers and
-    /// either turns or has a motion whose acceleration is not exactly known. The vessel then stays unchanged.
+    /// If a part or a wall of the container already has this name, if the vessel would have more than 2¹⁶
+    /// walls, if the part extends over more than 64 periods of the container in one direction or more than
+    /// 256 in both together, or if its motion is lost in the rounding of its coordinates. The vessel then
+    /// stays unchanged.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));

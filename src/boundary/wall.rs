@@ -10,7 +10,7 @@ use crate::{ParameterError, Violation};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Wall {
-    /// The base, at height 0.
+    /// The floor.
     Floor,
     /// The lid.
     Lid,

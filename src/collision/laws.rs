@@ -4,8 +4,8 @@
 //! impulse and its opposite at the contact point. The rule is responsible for separation, energy and
 //! friction, and for symmetry.
 //!
-//! [`check`] calls a rule for tens of thousands of contacts, the same contacts for the same seed, and fits
-//! into a plain test:
+//! [`check`] calls a rule for tens of thousands of contacts, the same contacts for the same seed, and takes
+//! one line in a unit test:
 //!
 //! ```
 //! use granular_edmd::collision::laws::{self, Promises};

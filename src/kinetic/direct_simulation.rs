@@ -112,8 +112,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
         finite("time", end)?;
         accept(end >= self.time, "time", "at least the present one", end)?;
         while self.time < end {
-            // The bounds are computed anew at intervals, because a cooling gas becomes slow and drivings
-            // change disks.
+            // The bounds are computed anew at intervals, because a cooling gas becomes slow and the driving
+            // changes disks.
             let largest = |of: fn(&Disk) -> f64| self.disks.iter().map(of).fold(0.0, f64::max);
             (self.widest, self.fastest) =
                 (2.0 * largest(Disk::radius), largest(|disk| disk.velocity().length()));

@@ -4,11 +4,10 @@ use super::Maxwellian;
 use super::bisection::boundary;
 use crate::collision::Frictional;
 
-/// Returns the static friction at which the mean energy loss is largest, for the other coefficients of
-/// `rule`.
+/// Returns the static friction at which the mean energy loss is largest, with the inelasticities of `rule`.
 ///
-/// The ratio $`\rho = \kappa_d/\kappa_s`$ also stays unchanged (1 if the rule has no friction). At a
-/// stationary point the sticking probability $`s`$ depends on $`\rho`$ and $`q_t`$ alone; for $`\rho = 1`$
+/// The ratio $`\rho = \kappa_d/\kappa_s`$ is kept, too (1 if the rule has no friction). At a stationary point
+/// the sticking probability $`s`$ depends on $`\rho`$ and $`q_t`$ alone; for $`\rho = 1`$
 ///
 /// ```math
 /// s = \sqrt{\frac{2(1-q_t)}{1-2q_t}} - 1,\qquad

@@ -5,13 +5,14 @@ use crate::{Disk, Kind};
 
 /// A filter: an observable or observer that sees only disks of one kind.
 ///
-/// Its snapshots hold only these disks, in their order. It passes on the collisions in which a disk of the
-/// kind takes part. The snapshots at the start and at the end of a run hold only disks of the kind, too.
+/// The snapshots that it passes on hold only these disks, in unchanged order. It also passes on the
+/// collisions in which a disk of the kind takes part. The snapshots at the start and at the end of a run hold
+/// only disks of the kind, too.
 ///
 /// In a collision with a disk of another kind, only one disk of the kind takes part. A rate per disk, such as
 /// [`rate_per_disk`](super::CollisionCounts::rate_per_disk), counts both partners as disks of the kind, and
-/// is then too high. Instead, add up the collisions [between](super::BetweenKinds) each pair of kinds: two
-/// disks for a collision within the kind, one for any other.
+/// is then too high. Instead, add up the collisions [between](super::BetweenKinds) each pair of kinds, and
+/// count two disks of the kind for a collision within it, and one for a collision with another kind.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -16,7 +16,7 @@ use crate::boundary::direction;
 /// circular mean (Bai and Breen 2008): the direction of $`\sum m_i e^{2\pi i x_i/L}`$, as a position in the
 /// domain. It moves along with the disks, even across the seam. If the disks are symmetric about it, it is
 /// their center of mass. It is NaN if the sum vanishes, as for disks that are spread evenly, and mostly noise
-/// if the sum nearly vanishes. For the path of a center, use displacements of
+/// if the sum nearly vanishes. To follow the center over time, use displacements of
 /// [unwrapped](crate::boundary::Domain::unwrapped) positions.
 ///
 /// ```
@@ -55,7 +55,8 @@ impl Observable for CenterOfMass {
     }
 }
 
-/// Returns the circular mean of a coordinate, from `low` on; NaN if the disks have no mean direction.
+/// Returns the circular mean of a coordinate, between `low` and `low + period`; NaN if the disks have no mean
+/// direction.
 fn circular_mean(
     snapshot: &Snapshot<'_>,
     mass: f64,

@@ -10,8 +10,8 @@ use crate::collision::Regime;
 
 /// An observer that counts collisions by partner and regime, and gives their rates.
 ///
-/// A run ends with an error if it has other walls at the indices of walls that were hit: clear the observer
-/// before such a run, or use another one.
+/// A run ends with an error if the index of a wall that was hit now belongs to another wall: clear the
+/// observer before such a run, or use another one.
 ///
 /// ```
 /// use granular_edmd::observable::CollisionCounts;

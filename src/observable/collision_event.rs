@@ -16,7 +16,8 @@ pub enum Partner {
 /// A collision that has just happened.
 ///
 /// At a thermal wall, the contact describes the arriving disk, and the impulse is the whole impulse on that
-/// disk. The wall also draws a new spin for the disk; only [`Self::energy_change`] includes its energy.
+/// disk. The wall also draws a new spin for the disk; only [`Self::energy_change`] includes the energy of
+/// this spin.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -36,8 +37,7 @@ pub enum Partner {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Collision {
-    /// Absolute time of the collision, rounded: a run until this time may end just before the collision, and
-    /// a run until `time.next_up()` includes it.
+    /// Absolute time of the collision. A run until this time includes the collision.
     pub time: f64,
     /// Index of the disk.
     pub disk: usize,
@@ -55,12 +55,13 @@ pub struct Collision {
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,
-    /// Velocities of the disk and of its partner after the collision; the velocity of the surface for a wall.
+    /// Velocities of the disk and of its partner after the collision; for a wall, the velocity of its
+    /// surface.
     pub velocities: [DVec2; 2],
     /// Change of the kinetic energy of the disk, and of its partner if that is a disk.
     ///
-    /// A moving wall gives or takes energy. [`Impulse::energy_change`] is the change in the frame of the
-    /// wall.
+    /// A moving wall gives energy to the disk or takes energy from it. [`Impulse::energy_change`] is the
+    /// change in the frame of the wall.
     pub energy_change: f64,
 }
 

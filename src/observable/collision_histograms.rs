@@ -65,7 +65,7 @@ impl CollisionHistograms {
 
     /// Returns the same histograms for the collisions with the wall of this index.
     ///
-    /// A run ends with an error if there is no such wall, or if its index named another wall before.
+    /// A run ends with an error if there is no such wall, or if its index belonged to another wall before.
     pub fn with_wall(self, wall: usize) -> Self {
         Self { wall: Some(wall), ..self }
     }
@@ -109,7 +109,8 @@ impl Observer for CollisionHistograms {
             return;
         }
         let (closing, slip) = (collision.contact.closing_speed(), collision.contact.slip_speed());
-        // Two surfaces at rest have no angle: their quotient is NaN, which a histogram leaves out.
+        // Without a relative velocity there is no angle of impact: the quotient is NaN, which a histogram
+        // leaves out.
         self.obliqueness.push(slip / (closing * closing + slip * slip).sqrt());
         self.closing_speed.push(closing);
         self.impulse.push(collision.impulse.normal());

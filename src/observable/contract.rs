@@ -29,7 +29,7 @@ pub trait Observable {
     fn measure(&self, snapshot: &Snapshot<'_>) -> Self::Value;
 }
 
-/// The error of an observer that makes a run fail: any error, or a text.
+/// An error with which an observer makes a run fail: any error, or a string.
 ///
 /// It is an error like any other, so `?` converts it into `Box<dyn Error>` and into the error types of other
 /// crates.
@@ -55,9 +55,9 @@ crate::error::from_causes! { ObserverError from &str, String, std::io::Error, Pa
 /// An observer's decision on the run: continue, stop, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
-/// An observer of a run, which receives each collision, and samples at the times that it requests.
+/// An observer of a run. It receives every collision, and a sample at each time that it requests.
 ///
-/// All methods have a default, which does nothing. All times are absolute, as in
+/// By default, all methods do nothing, and `next_sample` requests no sample. All times are absolute, as in
 /// [`Simulation::time`](crate::Simulation::time).
 ///
 /// # Guarantees of the engine
@@ -68,16 +68,16 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
 ///    run. The sample includes all events up to and including its time, up to rounding. A time before the
 ///    start of the run is sampled at the start.
-/// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
-///    or fails the run, no further event happens.
+/// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If a verdict
+///    stops the run or makes it fail, no further event happens.
 /// 5. `on_insert` is called when an inlet lets a disk in, and `on_remove` when a sink takes a disk out, so an
 ///    observer knows all disks at all times.
 /// 6. Whatever an observer does, the trajectory has the same bits as without the observer, as far as the run
 ///    goes.
 ///
-/// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions only, and no start, samples
-/// or end. A verdict that fails ends the step with an error. A verdict that stops has no effect, since the
-/// caller takes each step.
+/// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions, insertions and removals, but
+/// no start, samples or end. A verdict that fails ends the step with an error. A verdict that stops has no
+/// effect, since the caller decides on each step.
 ///
 /// # Guarantees of an observer
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
@@ -151,7 +151,7 @@ pub trait Observer {
     }
 }
 
-/// Returns the verdict of an observer, which fails the run if the observer has noted a fault.
+/// Returns the verdict of an observer, which makes the run fail if the observer has noted a fault.
 #[inline]
 pub(crate) fn verdict<E: Into<ObserverError>>(fault: &mut Option<E>) -> Verdict {
     // The engine asks for a verdict after each collision, so the usual verdict comes first and writes

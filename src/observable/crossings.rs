@@ -23,7 +23,7 @@ use crate::{Disk, ParameterError};
 /// [`BetweenKinds`](super::BetweenKinds), which hides other collisions, or under the driving of a study.
 ///
 /// A disk that a wall [absorbs](crate::boundary::Part::absorbing_centers) at the segment has not crossed it:
-/// count such disks by [`Arrivals`](super::Arrivals).
+/// count such disks with [`Arrivals`](super::Arrivals).
 ///
 /// ```
 /// use granular_edmd::observable::{Crossings, SampleTimes};
@@ -131,7 +131,8 @@ impl Crossings {
         counts.map(|(&there, &back)| (there as f64 - back as f64) / self.stretch.sample_times.interval())
     }
 
-    /// Ends the flight of a disk at this time, counts its crossings, and begins the next one.
+    /// Replaces the flight of a disk with `next`, and counts the crossings of the old flight up to the start
+    /// of `next`.
     fn go_on(&mut self, id: u64, next: Free) {
         // A filter by kind passes on collisions with disks of other kinds, whose flights are not followed.
         if let Some(flight) = self.flights.get_mut(&id) {

@@ -12,7 +12,7 @@ pub struct EnergyPerDisk {
     pub translational: f64,
     /// Rotational energy, ⟨½ I ω²⟩.
     pub rotational: f64,
-    /// Potential energy, ⟨−m **g**·**r**⟩, which is zero at the origin, with unwrapped positions.
+    /// Potential energy, ⟨−m **g**·**r**⟩, from unwrapped positions. It is zero at the origin.
     pub potential: f64,
 }
 

@@ -16,10 +16,10 @@ use crate::statistics::BlockedMean;
 /// mean whose error accounts for these correlations. At a moving or thermal wall, the energy change is the
 /// change of the disk's energy, including the work of the wall.
 ///
-/// A run ends with an error if it belongs to another system than the previous run, goes back in time, or has
-/// other walls at the indices of walls that were hit. Clear the observer before such a run, or use another
-/// one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) is the mean over several
-/// systems.
+/// A run ends with an error if it belongs to another system than the previous run, if it goes back in time,
+/// or if the index of a wall that was hit now belongs to another wall. Clear the observer before such a run,
+/// or use another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) gives the mean
+/// over several systems.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;

@@ -26,8 +26,8 @@ pub struct EnergyChangeLayer {
 }
 
 impl EnergyChangeLayer {
-    /// Returns the mean energy change over the temperature in this layer, ⟨dE⟩/T, or `None` before there are
-    /// collisions and a temperature.
+    /// Returns the mean energy change divided by the temperature in this layer, ⟨dE⟩/T, or `None` before
+    /// there are collisions and a temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {
         let temperature = self.translational_temperature.mean();
         (self.energy_change.count() > 0 && temperature > 0.0).then(|| self.energy_change.mean() / temperature)
@@ -60,8 +60,8 @@ pub struct EnergyChangeProfile {
 impl EnergyChangeProfile {
     /// Creates a profile of `layers` layers from the height `bottom` to `top`.
     ///
-    /// Collisions and disks outside are left out. A run ends with an error if the whole profile is outside
-    /// the domain.
+    /// Collisions and disks outside the profile are left out. A run ends with an error if the whole profile
+    /// is outside the domain.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
@@ -76,7 +76,7 @@ impl EnergyChangeProfile {
         &self.layers
     }
 
-    /// Returns the energy change over the local temperature, averaged over collisions: ⟨dE/T(y)⟩.
+    /// Returns the energy change divided by the local temperature, averaged over collisions: ⟨dE/T(y)⟩.
     ///
     /// The result is `None` before a layer has collisions and a temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {

@@ -41,7 +41,7 @@ pub struct FieldCell {
 /// [`Boundary::area`](crate::boundary::Boundary::area) gives at each sample; a run ends with an error if the
 /// boundary does not know it. Temperatures are taken about the mean velocity *of the cell*, over all samples.
 /// A flow that changes between samples, such as a roll that reverses, counts as temperature. If $`n`$ disks
-/// are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$, for independent samples.
+/// are seen in a cell in independent samples, its temperatures are too small by a factor $`1 - 1/n`$.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
@@ -75,8 +75,7 @@ pub struct Fields {
 impl Fields {
     /// Creates fields over the cells of a grid.
     ///
-    /// Disks outside are left out. A run ends with an error if the whole grid is outside the
-    /// domain.
+    /// Disks outside the grid are left out. A run ends with an error if the whole grid is outside the domain.
     pub fn new(grid: Grid) -> Self {
         let (sums, free) = (vec![CellSums::default(); grid.count()], vec![0.0; grid.count()]);
         Self { grid, sums, free, samples: 0, shares: FreeShares::default() }

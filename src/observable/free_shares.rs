@@ -45,8 +45,8 @@ pub(super) fn check_area(
 ) -> Result<(), ParameterError> {
     let is_known = |region: &Region| start.free_share(region).is_some();
     let all_are_known = is_known(region) || parts.into_iter().all(|part| is_known(&part));
-    let requirement = "known: implement Boundary::area, take parts with an inside for all kinds of disks, or \
-                       measure in a region to which no wall comes";
+    let requirement = "known: implement Boundary::area, let parts with an inside stop all kinds of disks, or \
+                       measure in a region that no wall enters";
     accept(all_are_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)
 }
 

@@ -104,7 +104,7 @@ impl Grid {
 
 /// Checks that a range overlaps another one, with an error that names the range's lower end.
 fn meets(name: &'static str, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> Result<(), ParameterError> {
-    let requirement = "where some of the measure is inside the domain";
+    let requirement = "such that part of the measured region is inside the domain";
     accept(low < to && high > from, name, requirement, low).map(|_| ())
 }
 

@@ -33,7 +33,7 @@ impl DenseLayer {
 
     /// Returns the densest layer of a profile, or the lowest of several equally dense ones.
     ///
-    /// The profile gives heights and packing fractions from the bottom up.
+    /// The profile consists of heights and packing fractions, from the bottom up.
     ///
     /// ```
     /// use granular_edmd::observable::DenseLayer;
@@ -63,9 +63,9 @@ impl DenseLayer {
 /// \Big/ \langle A(y_k, y_k + \Delta y)\rangle.
 /// ```
 ///
-/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor,
-/// [`Boundary::area`](crate::boundary::Boundary::area) gives it. A bin without free area has the packing
-/// fraction 0. A run ends with an error if the boundary does not know its area.
+/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and above a moving
+/// floor, [`Boundary::area`](crate::boundary::Boundary::area) gives it. A bin without free area has the
+/// packing fraction 0. A run ends with an error if the boundary does not know its area.
 ///
 /// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins smaller than a
 /// diameter. In the paper's box, bins of one diameter resolve a compact layer and average over its rows.
@@ -89,7 +89,7 @@ impl DenseLayer {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HeightProfile {
     bins: Bins,
-    /// Areas of disks over the area of the bin, summed over the samples.
+    /// Areas of disks divided by the area of the bin, summed over the samples.
     sums: Vec<f64>,
     /// Free shares of the area of the bin, summed over the samples.
     free: Vec<f64>,
@@ -101,8 +101,8 @@ pub struct HeightProfile {
 impl HeightProfile {
     /// Creates a profile of `bins` bins from the height `bottom` to `top`.
     ///
-    /// Disks outside are left out. A run ends with an error if the whole profile is outside the
-    /// domain.
+    /// Parts of disks outside the profile are left out. A run ends with an error if the whole profile is
+    /// outside the domain.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.

@@ -26,15 +26,15 @@ pub struct Hexatic {
 /// \psi_6(j) = \frac1{n_j}\sum_k e^{6i\theta_{jk}} .
 /// ```
 ///
-/// Neighbors are the disks whose centers are within a range. A disk without neighbors has no order, ψ6 = 0;
-/// disks at walls have neighbors on one side. All values are NaN without disks, and if the range is above
-/// half of a period of the domain.
+/// Two disks are neighbors if the distance between their centers is within the range. A disk without
+/// neighbors has no order, ψ6 = 0; disks at walls have neighbors on one side. All values are NaN without
+/// disks, and if the range is above half of a period of the domain.
 ///
 /// ```
 /// use granular_edmd::observable::HexaticOrder;
 /// use granular_edmd::prelude::*;
 ///
-/// // A triangular lattice of distance 1.25, periodic both ways.
+/// // A triangular lattice of lattice constant 1.25, periodic in both directions.
 /// let (distance, row) = (1.25, 1.25 * 0.75_f64.sqrt());
 /// let place = |k: u32| DVec2::new(f64::from(k % 8) + 0.5 * f64::from(k / 8 % 2), f64::from(k / 8));
 /// let disk = |k: u32| Disk::new(place(k) * DVec2::new(distance, row), 0.5);

@@ -63,7 +63,8 @@ impl<V> Lags<V> {
         let Some(places) = self.places.take() else { return };
         let (now, rounding) = (places_in(start), ROUNDING * start.mean(Disk::radius));
         let is_elsewhere = |before: &DVec2, now: &DVec2| f64::from(before.distance(*now) > rounding);
-        // A disk with a lower id than others is not new: it has come back after runs without it.
+        // A disk whose id is not larger than all earlier ids is not new: it has come back after runs without
+        // it.
         let comes_back = now.iter().any(|(id, _)| id <= self.largest_id && !places.has(id));
         if comes_back || places.mean_with(&now, is_elsewhere) > 0.0 {
             self.forget_samples();

@@ -13,7 +13,7 @@ use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "observer";
 
-/// Largest number of samples in a short run of the script, and in the last run.
+/// Largest numbers of samples: in a short run of the script, and in the last run.
 const SAMPLES: usize = 50;
 const MANY_SAMPLES: usize = 10_000;
 
@@ -37,7 +37,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// make a new one for a measurement. The page "Validation" says which planted faults the check finds.
 ///
 /// # Errors
-/// The first broken promise.
+/// Returns the first broken promise.
 ///
 /// ```
 /// use granular_edmd::observable::laws::check;
@@ -123,8 +123,8 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(End { now: self.now, next: self.wanted, goes_on })
     }
 
-    /// Runs collisions until the next sample, or a few collisions if no sample is requested. Between them, a
-    /// disk comes in and is taken out.
+    /// Runs collisions until the next sample, or a few collisions if no sample is requested. Between the
+    /// collisions, a disk comes in and is taken out.
     fn collide(&mut self) -> Result<bool, Violation> {
         let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
         let guest = disk(0, self.collisions).and_then(|disk| disk.with_id(1 + self.collisions as u64)).ok();

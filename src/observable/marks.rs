@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A mark that is unique in this process; 0 until it is assigned.
 ///
-/// It is not written to files, and measurements that differ only in marks are equal.
+/// It is not written to files, and measurements that differ only in marks compare equal.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Mark(usize);
 

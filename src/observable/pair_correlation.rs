@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// ```math
 /// g(r) = \frac{A\,\langle N_{ij}(r)\rangle}
-/// {\langle N_i\rangle\langle N_j\rangle\,(1 - \delta_{ij}/N)\; 2\pi r\,\Delta r} .
+/// {\langle N_i\rangle\langle N_j\,(1 - \delta_{ij}/M_j)\rangle\; 2\pi r\,\Delta r} .
 /// ```
 ///
 /// If the number of disks in the box varies, its mean square enters, too: the denominator has the factor
@@ -30,8 +30,8 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// $`N_{ij}(r)`$ counts the pairs of a disk $`i`$ in a region and a partner $`j`$ anywhere, by the distance
 /// between their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area
-/// is $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners
-/// among the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the
+/// is $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`M_j - 1`$
+/// partners in the box. Shells have their exact areas. In a periodic box, the
 /// region is the whole domain. At walls, the region ends at a distance of `range` from the sides and ends of
 /// the domain, so that all shells lie inside. In a vessel with walls inside, give a region by
 /// [`within`](Self::within) that keeps the same distance from all walls. Where the density varies, under
@@ -67,11 +67,11 @@ pub struct PairCorrelation {
     bins: Bins,
     kinds: Option<[Kind; 2]>,
     region: Option<Region>,
-    /// Numbers of pairs over the area of the shell, for each bin.
+    /// Numbers of pairs divided by the area of the shell, for each bin.
     pairs: Vec<BlockedMean>,
     /// Number of disks in the region, around which pairs are counted.
     centers: RunningMean,
-    /// Number of partners in the region, over its area.
+    /// Number of partners in the region, divided by its area.
     partner_density: RunningMean,
     /// Numbers of possible centers in the box, of possible partners of each center, and of pairs.
     numbers: [RunningMean; 3],
@@ -150,12 +150,12 @@ impl PairCorrelation {
         };
         let (is_left, requirement) = (
             region.min.cmplt(region.max).all() && region.max.is_finite(),
-            "less than half of the distance between walls, or have a region",
+            "less than half of the distance between walls, unless a region is given",
         );
         accept(is_left, "range of the correlation", requirement, self.range())?;
         let shells = grown(region, self.range() * (1.0 - ROUNDING), &domain);
         let is_inside = inside(shells, &room).is_ok() && snapshot.is_clear(&shells);
-        let requirement = "less than the distance of the region from all walls: give a region away from them";
+        let requirement = "less than the distance of the region from all walls: choose another region";
         accept(is_inside, "range of the correlation", requirement, self.range())?;
         Ok(region)
     }

@@ -25,7 +25,7 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
 /// out, and so is a sampling time at the start, within rounding. A run of $`n`$ intervals therefore gives
 /// $`n`$ samples, the first after one interval. This holds for a run from time 0, from another start, from a
-/// checkpoint, or after a run to settle. There are two exceptions:
+/// checkpoint, or after a settling run. There are two exceptions:
 /// - A run that starts exactly at the first time of `starting_at` takes a sample there.
 /// - A clock that has run before continues. If the next run starts at the upcoming sampling time, within
 ///   rounding, it takes the sample there, since the previous run ended just before it. A run in pieces thus

@@ -37,7 +37,7 @@ use crate::ParameterError;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not add up snapshots",
     label = "an `Accumulator` is expected here",
-    note = "an observer with a clock of its own, such as a `Series`, needs no `Sampled` around it"
+    note = "an observer with its own clock, such as a `Series`, needs no `Sampled` around it"
 )]
 pub trait Accumulator {
     /// Adds a snapshot.

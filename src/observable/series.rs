@@ -73,7 +73,7 @@ impl<Q: Observable> Series<Q> {
         self.times.iter().copied().zip(&self.values)
     }
 
-    /// Returns the mean of a number that a closure takes from each value, with its error from blocks
+    /// Returns the mean of a number that a closure computes from each value, with an error from blocks
     /// ([`block_average`]).
     ///
     /// # Errors

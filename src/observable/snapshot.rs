@@ -104,7 +104,7 @@ impl<'a> Snapshot<'a> {
         self.time
     }
 
-    /// Returns the disks, in the order in which they were given to the simulation.
+    /// Returns the disks, in the order of their indices.
     pub fn disks(&self) -> &[Disk] {
         match &self.disks {
             Disks::Given(disks) => disks,
@@ -162,8 +162,8 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Returns the walls that move: the index of each, its displacement from its position at rest, and the
-    /// phase of its motion. The phase is the time, less whole periods, as
-    /// [`WallMotion`](crate::wall::WallMotion) takes it.
+    /// phase of its motion. The phase is the time minus whole periods, as
+    /// [`WallMotion`](crate::wall::WallMotion) expects it.
     ///
     /// Walls that move together, as the bricks of a part do, appear once.
     ///
@@ -249,7 +249,7 @@ impl<'a> Snapshot<'a> {
     /// Returns the walls as polylines, without the edges of the domain, for pictures.
     ///
     /// They come from the [`wall_lines`](Boundary::wall_lines) of the run's boundary at this time. A snapshot
-    /// that was not made by a simulation has no walls.
+    /// without a boundary has no walls.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

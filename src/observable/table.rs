@@ -13,14 +13,14 @@ pub(super) const ENERGY: &str = "energy";
 
 /// A measurement whose results are rows of numbers, each number with a name and a unit.
 ///
-/// All measures of this module are tables: a [`Series`] has a row for each time, a
+/// All measurements of this module are tables: a [`Series`] has a row for each time, a
 /// [`PairCorrelation`](super::PairCorrelation) for each distance, [`Fields`](super::Fields) for each cell. A
 /// number with an error has three columns: its mean `x`, its standard error `x_error`, and `x_samples`, the
 /// number of independent samples behind it. In a column `wall`, collisions of two disks have the value `NaN`.
-/// A `Sampled` measure is written like the measure inside it.
+/// A [`Sampled`](super::Sampled) accumulator is written like the accumulator itself.
 ///
 /// # Contract
-/// Each row has one number for each heading, in their order.
+/// Each row has one number for each heading, in the same order.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -36,7 +36,7 @@ pub(super) const ENERGY: &str = "energy";
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no table",
+    message = "`{Self}` is not a table",
     note = "a `Series` is one if its observable is `Tabular`"
 )]
 pub trait Table {

@@ -38,14 +38,14 @@ impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
 /// An observable whose values are rows of numbers, each number with a name and a unit.
 ///
 /// [`OrderParameters`](super::OrderParameters), [`CenterOfMass`](super::CenterOfMass),
-/// [`Energies`](super::Energies), [`Temperatures`](super::Temperatures) and
-/// [`TemperaturesAboutFlow`](super::TemperaturesAboutFlow) are tabular, and so are tuples of them, and an
-/// [`OfKind`](super::OfKind) around them. [`named`](super::MeasuredBy::named) makes a closure
-/// tabular.
+/// [`Energies`](super::Energies), [`Temperatures`](super::Temperatures),
+/// [`TemperaturesAboutFlow`](super::TemperaturesAboutFlow) and [`HexaticOrder`](super::HexaticOrder) are
+/// tabular, and so are tuples of them, and an [`OfKind`](super::OfKind) around them.
+/// [`named`](super::MeasuredBy::named) makes a closure tabular.
 ///
 /// # Contract
-/// `add_numbers` adds one number for each heading, in their order. Names consist of ASCII letters, digits and
-/// underscores.
+/// `add_numbers` adds one number for each heading, in the same order. Names consist of ASCII letters, digits
+/// and underscores.
 ///
 /// ```
 /// use granular_edmd::observable::{Heading, Observable, Snapshot, Tabular};

@@ -28,7 +28,7 @@ impl Temperature {
     }
 }
 
-/// The horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN
+/// The horizontal, vertical and rotational temperature of all disks, in the frame of the container; NaN
 /// without disks.
 ///
 /// The flow of convection rolls counts as temperature here, but contributes only a small part

@@ -39,7 +39,7 @@ pub struct TemperaturesAboutFlow {
 impl TemperaturesAboutFlow {
     /// Creates temperatures about the mean velocity in each cell of this grid.
     ///
-    /// Disks outside are left out.
+    /// Disks outside the grid are left out.
     pub const fn new(grid: Grid) -> Self {
         Self { grid }
     }

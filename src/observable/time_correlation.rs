@@ -85,7 +85,7 @@ impl Observable for Velocities {
 /// let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
 /// run.run_until(100.0, &mut correlation)?;
 /// let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
-/// // Twice the temperature at once, and less later.
+/// // Twice the temperature at a lag of 0, and less at later lags.
 /// let temperature = run.measure(&Temperatures).translational();
 /// assert!((values[0] - 2.0 * temperature).abs() < 1e-9 && values[1] < 0.9 * values[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

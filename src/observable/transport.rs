@@ -41,7 +41,7 @@ type Moments = [DVec2; MOMENTS];
 /// \lambda = \frac1{2AT^2}\frac{d}{dt}\langle Q_x^2\rangle .
 /// ```
 ///
-/// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
+/// Both independent shears and both directions of heat are averaged, and shear uses the symmetric part of
 /// $`W`$. Energy includes translation and rotation, so smooth and perfectly rough disks are possible, even
 /// with couples that conserve the energy. Velocities are relative to the center of mass. All integrals are
 /// exact; samples only set the lags.
@@ -222,7 +222,7 @@ impl TransportCoefficients {
         self.lags[0].iter().zip(self.lags[2].iter()).map(|((time, shear), (_, heat))| (time, [shear, heat]))
     }
 
-    /// Returns the mean translational temperature about the center of mass: twice the energy over the
+    /// Returns the mean translational temperature about the center of mass: twice the energy divided by the
     /// $`2(N-1)`$ degrees of freedom.
     pub fn temperature(&self) -> f64 {
         self.temperature.mean()

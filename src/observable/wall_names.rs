@@ -5,7 +5,7 @@ use super::marks::Mark;
 use crate::ParameterError;
 
 /// The names of all walls in the latest run. Like marks, they are not written to files, and measurements that
-/// differ only in them are equal.
+/// differ only in these names compare equal.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WallNames {
     walls: Mark,

@@ -20,9 +20,9 @@ use crate::statistics::{BlockedMean, Estimate};
 /// are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so $`p`$ is positive
 /// where disks push the wall. The shear stress $`\tau`$ is positive where disks drag the wall along the
 /// tangent, which is the normal turned counterclockwise (to the left on a floor). Each interval between two
-/// samples gives one value, and the errors come from blocks of these values. A disk comes back to a wall that
-/// it has hit, so the values of short intervals are anticorrelated, and their errors are up to three times
-/// too large. Choose intervals with many collisions.
+/// samples gives one value, and the errors come from blocks of these values. A disk that has hit a wall
+/// cannot hit it again immediately, so the values of short intervals are anticorrelated, and their errors are
+/// up to three times too large. Choose intervals with many collisions.
 ///
 /// A run ends with an error if an index names no wall, or another wall than before.
 ///
@@ -33,7 +33,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// use granular_edmd::observable::{SampleTimes, WallStress};
 /// use granular_edmd::{Disk, Simulation};
 ///
-/// // A ball of speed 3 between floor and lid, 2 apart for its center: each touch is 3 + 3, every 4/3.
+/// // A ball of speed 3 bounces between floor and lid; its center moves 2 up and 2 down. Every 4/3, it
+/// // gives the floor the impulse 3 + 3.
 /// let container = Container::closed(5.0, 3.0)?;
 /// let floor = container.index(Wall::Floor).unwrap();
 /// let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.0, 3.0))?;

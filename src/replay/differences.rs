@@ -17,7 +17,8 @@ const HALVINGS: u32 = 40;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Differences {
-    /// The first collision of a disk with other partners; `None` if all partners are the same.
+    /// The first collision in which a disk meets different partners in the two runs; `None` if all partners
+    /// are the same.
     pub partners: Option<OtherPartner>,
     /// The first time at which a disk is farther from its position in the other run than the tolerance;
     /// `None` if no disk is farther away than that at the end of any interval.

@@ -10,7 +10,7 @@ use crate::simulation::{RunError, Simulation};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Replayed {
-    /// Number of the collision, counted from 1 on.
+    /// Number of the collision, counted from 1.
     pub number: u64,
     /// Id of the disk whose event it was.
     pub id: u64,

@@ -10,7 +10,7 @@ use super::{BucketQueue, EventScheduler, TournamentTree};
 /// flat, so one number serves both kinds of work.
 pub(crate) const LARGE_SYSTEM: usize = 30_000;
 
-/// A [`TournamentTree`] for fewer than 30 000 disks, and a [`BucketQueue`] from there on.
+/// A [`TournamentTree`] for fewer than 30 000 disks, and otherwise a [`BucketQueue`].
 ///
 /// ```
 /// use granular_edmd::scheduler::{BySize, EventScheduler};

@@ -28,7 +28,7 @@ const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
 /// version.
 ///
 /// # Errors
-/// The first broken law. A scheduler that panics is not caught.
+/// The first broken law. A panic of the scheduler is not caught.
 ///
 /// ```
 /// use granular_edmd::scheduler::{BySize, EventScheduler, laws};

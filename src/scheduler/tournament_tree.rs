@@ -11,8 +11,9 @@ use wide::Wide;
 
 /// A tournament: the earliest disk of each match enters the next round, until one disk is left.
 ///
-/// Processors that compare four or eight times at once play matches of 32 disks. Others play matches of four,
-/// and so do all with more than 32 768 disks. The results are the same.
+/// Processors with vector instructions, which compare the times of four or eight disks at once, play matches
+/// of 32 disks. Other processors play matches of four, and with more than 32 768 disks, all do. The results
+/// are the same.
 #[derive(Debug, Clone, Default)]
 pub struct TournamentTree {
     instructions: Instructions,

@@ -17,8 +17,8 @@ use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
 
-/// Smallest allowed speed other than 0. The squares of slower disks would vanish, and with them their
-/// collisions.
+/// Smallest allowed speed other than 0. The square of a smaller speed would be rounded to 0, and no collision
+/// of the disk would be found.
 const SLOWEST: f64 = 1e-100;
 
 /// Largest number of walls that a boundary may have.
@@ -40,7 +40,7 @@ pub struct SimulationBuilder<R, B, S = BySize> {
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// Starts to build a simulation from the collision rule of the disks and the walls around the disks.
     ///
-    /// The rule also serves walls without their own rule.
+    /// The rule also applies to walls without their own rule.
     ///
     /// ```
     /// use granular_edmd::glam::DVec2;
@@ -112,11 +112,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     /// Builds the simulation.
     ///
     /// # Errors
-    /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude, or a disk moves at
-    /// a speed below 1e-100. Also if there are too many disks or walls, or times at the start are too coarse
-    /// for such fast disks. Also if the domain is not finite (only its top may be infinite) or is too small
-    /// for the disks, or a disk is outside, overlaps a wall or another disk, or just fills a hollow of a
-    /// wall; the error names the disk.
+    /// The build fails if
+    /// - gravity or the start time is not finite, or gravity is above 1e60 in magnitude;
+    /// - a disk moves at a speed below 1e-100 that is not 0, or the disks are so fast that times as late as
+    ///   the start are too coarse for them;
+    /// - there are too many disks or walls, two disks have the same id, or there are no ids left;
+    /// - the domain is not finite (only its top may be infinite), or is too small for the disks;
+    /// - a disk is outside, overlaps a wall or another disk, or just fills a hollow of a wall; the error
+    ///   names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         let gravity = self.gravity.checked()?;
         finite("start time", self.start_time)?;

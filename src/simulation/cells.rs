@@ -190,7 +190,7 @@ impl Cells {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
     }
 
-    /// Returns the class of a disk: the number of its grid, from the smallest cells on.
+    /// Returns the class of a disk: the number of its grid, counted from the smallest cells.
     #[cfg(feature = "serde")]
     pub(super) fn class(&self, disk: usize) -> u8 {
         self.layers.as_ref().map_or(0, |layers| layers.classes[disk])

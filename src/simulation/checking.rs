@@ -1,11 +1,10 @@
 //! Checks of the results that the engine receives: collisions happen where surfaces touch, no event is lost,
 //! and no disk leaves the domain.
 //!
-//! All parts may be the user's code. None of them can make the engine panic. However, a wall at another
-//! position than it reports, or a scheduler that loses events, would let a run end as if nothing had
-//! happened. The engine therefore checks where a check costs next to nothing: at each wall collision, at each
-//! new largest overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a
-//! run ends.
+//! Every part may be the user's code. No part can make the engine panic. However, a wall at another position
+//! than it reports, or a scheduler that loses events, would let a run end as if nothing had happened. The
+//! engine therefore checks where a check costs next to nothing: at each wall collision, at each new largest
+//! overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a run ends.
 
 use glam::DVec2;
 
@@ -106,7 +105,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// Positions are rounded relative to their distance from the origin, and to the distance traveled since
     /// the epoch. The time of a touch is rounded as absolute times are, since some walls know only absolute
-    /// times. During this error of the time, both the disk and the wall move.
+    /// times. Both the disk and the wall move during this error of the time.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);
@@ -160,7 +159,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         RunError::FalseContact { disk, partner, wall: self.name_of(partner), depth, time: self.time() }
     }
 
-    /// Returns the name of a wall.
+    /// Returns the name of the partner if it is a wall.
     pub(super) fn name_of(&self, partner: Partner) -> Option<String> {
         let Partner::Wall(wall) = partner else { return None };
         Some(self.boundary.wall_name(wall).into_owned())

@@ -30,7 +30,7 @@ use crate::{Disk, Fingerprint};
 const SEAL: Seal = Seal::new(*b"GRANEDMD", 9);
 
 /// A saved run: everything on which its future depends, except its rule and its boundary. The state of walls
-/// that [react](Boundary::react) is kept.
+/// that [react](Boundary::react) is included.
 ///
 /// A resumed run continues bit for bit, even under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were truncated,
@@ -116,7 +116,7 @@ pub enum CheckpointError {
         source: Box<CheckpointError>,
     },
     /// The bytes are not a checkpoint.
-    #[error("this is not a checkpoint: it does not begin as one")]
+    #[error("this is not a checkpoint: it does not begin like one")]
     NotACheckpoint,
     /// The checkpoint has another version of the format.
     #[error("the checkpoint has format version {found}; this crate reads version {known}")]
@@ -147,12 +147,10 @@ pub enum CheckpointError {
         given: Domain,
     },
     /// The rule differs from the rule of the saved run.
-    #[error("the checkpoint is of a run with another rule; `with_another_rule` takes this one on purpose")]
+    #[error("the checkpoint is of a run with another rule; `with_another_rule` allows the given one")]
     AnotherRule,
     /// The boundary differs from the boundary of the saved run.
-    #[error(
-        "the checkpoint is of a run with another boundary; `with_another_boundary` takes this one on purpose"
-    )]
+    #[error("the checkpoint is of a run with another boundary; `with_another_boundary` allows the given one")]
     AnotherBoundary,
     /// The disks do not fit into the other boundary that the caller allowed.
     #[error("the disks of the checkpoint do not fit into the boundary")]

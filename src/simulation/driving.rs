@@ -5,7 +5,8 @@
 //! | [`WhiteNoise`] | random kicks, which conserve the total momentum |
 //! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
 //!
-//! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop knows nothing of it.
+//! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop does not know about
+//! drivings.
 
 pub mod laws;
 mod noise;
@@ -43,16 +44,16 @@ use crate::{Disk, ParameterError};
 /// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
 /// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults the check finds. If a
-/// driving draws random numbers in the order of the list, the check finds a memory by the position in the
-/// list only if each kick there resembles the previous one. The engine refuses disks that overlap, a change
-/// of their number, and a clock that stands still.
+/// driving draws random numbers in the order of the list and remembers disks by their position in it, the
+/// check finds this only if each kick at a position resembles the previous one there. The engine refuses
+/// disks that overlap, a change of their number, and a clock that stands still.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::Driving;
 ///
-/// /// Takes a tenth of the spin of every disk each unit of time.
+/// /// Takes away a tenth of every disk's spin per unit of time.
 /// struct Bearings(SampleTimes);
 ///
 /// impl Driving for Bearings {
@@ -92,7 +93,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// depend on how a run is cut into pieces.
     ///
     /// The observer watches a run from each kick to the next, with `on_start` and `on_end`, and thus sees the
-    /// velocities on both sides of a kick. The observer gets the samples of a single run.
+    /// velocities on both sides of a kick. The observer gets the same samples as in a single run.
     ///
     /// # Errors
     /// The errors of [`Self::run`], and the errors of kicks: [`RunError::Driving`].

@@ -20,13 +20,15 @@ use crate::observable::{Collision, Observer, Partner};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns the disk whose event is next and the offset of the event, if it is not after the offset `end`.
+    /// Returns the disk whose event is next and the offset of the event, if it is not after the absolute time
+    /// `end`.
     #[inline(always)]
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
-        // The comparison is not `due <= end`, since a time that is not a number must be noticed, and must not
-        // end the run.
-        if due > end { None } else { Some((disk, due)) }
+        // Observers know the rounded absolute time of a collision. If the offset of `end` were compared, a
+        // run until that time could end just before the collision. The comparison is not `<=`, since a time
+        // that is not a number must be noticed, and must not end the run.
+        if self.clock.origin + due > end { None } else { Some((disk, due)) }
     }
 
     /// Carries out the next event of `disk`, and returns it if it is a collision.

@@ -89,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
         let nobody = earliest.partner as usize >= self.bodies.len();
-        // Without a partner, the disk's own index is used, since the count of some disk is read in any case.
+        // Without a partner, the disk's own index is used, since a count is read in any case.
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
         // A known collision keeps the count of its own prediction. With the partner's present count, a
         // prediction that the partner's last collision has outdated would count as valid.

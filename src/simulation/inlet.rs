@@ -14,10 +14,10 @@ use crate::{Disk, Kind, ParameterError};
 /// An inlet: it lets disks into a run, at set times and at random positions in a rectangle.
 ///
 /// At each opening, an inlet from [`new`](Self::new) lets in one disk, and an inlet from
-/// [`refill`](Self::refill) all disks that sinks have removed since the last opening. A disk for which it
-/// finds no room waits until the inlet opens again, and the other disks wait behind it. A disk that enters
-/// has a new [id](Disk::id) and the largest index, and has collided with nothing yet. An insertion takes the
-/// same time however many disks there are.
+/// [`refill`](Self::refill) lets in all disks that sinks have removed since the last opening. A disk for
+/// which it finds no room waits until the inlet opens again, and the other disks wait behind it. A disk that
+/// enters has a new [id](Disk::id) and the largest index, and has collided with nothing yet. An insertion
+/// takes the same time however many disks there are.
 ///
 /// An inlet and its waiting disks are part of the state of a run, and therefore of its checkpoints.
 ///
@@ -25,7 +25,7 @@ use crate::{Disk, Kind, ParameterError};
 /// use granular_edmd::prelude::*;
 /// use granular_edmd::simulation::Inlet;
 ///
-/// // A shower of four grains for each unit of time, onto a floor that takes them out.
+/// // A shower of four grains per unit of time, onto a floor that takes them out.
 /// let container = Container::open(10.0)?.absorbing(Wall::Floor)?;
 /// let mut run = Simulation::builder(Elastic, container).gravity(1.0).build()?;
 /// let grain = Disk::new(DVec2::ZERO, 0.5)?.with_velocity(DVec2::new(0.0, -2.0))?;
@@ -99,7 +99,7 @@ impl Inlet {
         Self::of(places, Source::TakenOut { velocity, kind: None }, times, seed)
     }
 
-    /// Returns the same inlet for disks of this kind, whatever kind they had.
+    /// Returns the same inlet, whose disks all enter with this kind.
     #[must_use]
     pub fn with_kind(mut self, new: Kind) -> Self {
         match &mut self.source {
@@ -109,7 +109,7 @@ impl Inlet {
         self
     }
 
-    /// Returns the number of disks that wait for room, or for the next time.
+    /// Returns the number of disks that wait for room, or for the next opening.
     pub fn waiting(&self) -> usize {
         self.waiting.len()
     }

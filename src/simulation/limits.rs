@@ -8,16 +8,16 @@ use super::{Counters, RunEnd};
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two checks of the wall clock and of the flag of another thread. The number is
-/// large enough that the checks cost next to nothing, and small enough that a limit is noticed immediately,
-/// even if each event takes all the steps that a search for a moving wall may take.
+/// Number of events between two checks of the wall clock and of the flag that interrupts the run. The number
+/// is large enough that the checks cost next to nothing, and small enough that a limit is noticed
+/// immediately, even if each event takes all the steps that a search for a moving wall may take.
 const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
 /// flag that another thread sets.
 ///
-/// [`Simulation::run`](crate::Simulation::run) says which of them ended the run. In each case, the next run
-/// continues with the bits that the run would have had without the limit. Observers end runs by their
+/// [`Simulation::run`](crate::Simulation::run) returns which of them ended the run. In each case, the next
+/// run continues with the bits that the run would have had without the limit. Observers end runs by their
 /// [verdict](crate::observable::Observer::verdict).
 ///
 /// ```

@@ -12,11 +12,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Replaces each disk by the result of `change` for its index and its present state.
     ///
     /// The order, the [ids](Disk::id) and the times of the last collisions are kept. All events are predicted
-    /// anew. For the bits, see [`insert`](Self::insert).
+    /// anew. As after [`insert`](Self::insert), the run then has the same bits under every scheduler.
     ///
     /// # Errors
-    /// If `change` fails, a disk with another position, radius or kind does not fit, or a disk becomes so
-    /// fast that times as late as the present are too coarse. The simulation then stays unchanged.
+    /// If `change` fails, a disk does not fit at its new position, with its new radius or as its new kind, or
+    /// a disk becomes so fast that times as late as the present are too coarse. The simulation then stays
+    /// unchanged.
     ///
     /// ```
     /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};

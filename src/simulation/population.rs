@@ -19,13 +19,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// All events are predicted anew. The run then has the same bits under every scheduler, and even if it is
     /// resumed from a checkpoint taken before or after. The counters keep counting. The new disks have
-    /// collided with nothing yet, and may be of any size and kind. A disk that was removed keeps its
+    /// collided with nothing yet, and may be of any size and kind. A disk that was removed before keeps its
     /// [id](Disk::id); a disk without an id gets a new one.
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk, or has the id of another; the error
-    /// names its index. Also if there would be too many disks, the domain is too small for a disk, or a disk
-    /// is so fast that times as late as the present are too coarse. The simulation then stays unchanged.
+    /// names its index. The insertion also fails if there would be too many disks, the domain is too small
+    /// for a disk, or a disk is so fast that times as late as the present are too coarse. The simulation then
+    /// stays unchanged.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;
@@ -64,10 +65,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(indices)
     }
 
-    /// Removes the disks that `chosen` selects by their index and state, and returns them in their order.
+    /// Removes the disks that `chosen` selects by their index and state, and returns them in the same order.
     ///
-    /// The other disks stay in their order: the index of each becomes smaller by the number of disks removed
-    /// before it. The disks keep their [ids](Disk::id). For the bits, see [`insert`](Self::insert).
+    /// The other disks keep their order: the index of each becomes smaller by the number of disks removed
+    /// before it. The disks keep their [ids](Disk::id). As after [`insert`](Self::insert), the run then has
+    /// the same bits under every scheduler.
     ///
     /// # Errors
     /// If the boundary's domain cannot hold the other disks any more, which happens only if the boundary
@@ -91,7 +93,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(removed)
     }
 
-    /// Predicts all events anew after disks were added or removed.
+    /// Predicts all events anew after disks were changed, added or removed.
     pub(super) fn begin_anew(&mut self) {
         self.lookahead = Lookahead::default();
         self.ledger.has_source = true;

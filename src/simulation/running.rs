@@ -48,7 +48,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Errors
     /// If the end is not finite or is before the present, if the run hardly progresses, if a rule, boundary,
     /// scheduler or observer returns an impossible result, if times become too coarse, or if an observer
-    /// fails. The simulation then keeps the state of that time.
+    /// fails. The simulation then keeps the state in which it noticed the error.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
         limits: &Limits<'_>,
@@ -101,11 +101,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Advances to the next collision and returns it, unless the collision is after the absolute time `end`.
     ///
-    /// If there is none, the run advances to `end`, and the result is `None`.
+    /// If no collision comes before `end`, the run advances to `end`, and the result is `None`.
     ///
-    /// The observer sees only the collision: `on_start`, `on_sample` and `on_end` are not called, so the
-    /// observer's clock stands still. If the observer fails, the step returns an error. A verdict to stop has
-    /// no effect, since the caller decides on each step.
+    /// The observer receives the collision, and the disks that inlets insert and sinks remove. `on_start`,
+    /// `on_sample` and `on_end` are not called, so the observer's clock stands still. If the observer fails,
+    /// the step returns an error. A verdict to stop has no effect, since the caller decides on each step.
     ///
     /// ```
     /// # use granular_edmd::glam::DVec2;
@@ -197,8 +197,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         watch: &Watch<'_>,
         observer: &mut O,
     ) -> Outcome<Reached> {
-        // The epoch may move with each event, which changes the offset of `stop`.
-        while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
+        while let Some((disk, due)) = self.next_due(stop) {
             if self.clock.is_look_due()
                 && let Some(end) = self.look(watch, disk, due)?
             {
@@ -208,8 +207,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
-        // The difference is rounded, and must not set the run back to a time before its last event.
-        self.clock.now = self.clock.now.max(stop - self.clock.origin);
+        self.clock.advance_to(stop);
         Ok(Reached::Time)
     }
 

@@ -110,7 +110,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Returns whether a wall's geometry approaches a disk at another speed than the wall's surface reports.
     ///
-    /// The depth of a larger disk at rest grows at the speed of the wall.
+    /// If the disk is enlarged and held at rest, the depth of its overlap grows at the speed of the wall.
     fn moves_otherwise(&self, disk: usize, wall: usize, due: f64) -> bool {
         let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
         let probe = self.probe(disk).with_position(self.bodies.position(disk, due));

@@ -127,7 +127,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // The lookahead holds indices, of which the last one no longer exists.
         self.lookahead.forget();
         self.make_room();
-        // The scheduler cannot remove a disk. For it, a disk that is never due is as good as removed.
+        // The scheduler cannot remove a disk. To the scheduler, a disk that is never due is as good as
+        // removed.
         self.scheduler.set(last, f64::INFINITY);
         if disk != last {
             self.schedule(disk);
@@ -177,7 +178,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 }
 
-/// Checks that inlets are in the domain of a boundary, and that it has room for their models.
+/// Checks that inlets are in the domain of a boundary, and that the boundary has room for their models.
 pub(super) fn check_inlets<B: Boundary + ?Sized>(boundary: &B, inlets: &[Inlet]) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for inlet in inlets {

@@ -107,7 +107,8 @@ pub enum Warning {
         /// The name of that wall.
         name: String,
     },
-    /// A thousand disks or more wait at an inlet. The inlet may have no room at all, as inside a part.
+    /// A thousand disks or more wait at an inlet. The inlet may have no room at all, for example if it lies
+    /// inside a part.
     DisksWait {
         /// Index of the inlet.
         inlet: usize,

@@ -13,8 +13,8 @@ use crate::simulation::{Limits, RunError};
 /// Number of pairs of measured intervals.
 const ROUNDS: usize = 201;
 
-/// Number of ratios on either side of the interval. In 201 tosses of a coin, fewer than 79 or more than 122
-/// heads have a probability of 0.0018.
+/// Number of ratios outside the interval on each side. In 201 tosses of a coin, fewer than 79 or more than
+/// 122 heads have a probability of 0.0018.
 const OUTSIDE: usize = 78;
 
 /// Runs a copy of the simulation for `collisions` collisions, with disks or walls, and returns the report.
@@ -179,7 +179,7 @@ impl fmt::Display for Comparison {
             Finding::Unknown => "not known, as no two disks collided",
         };
         write!(formatter, "{median:.4} (quartiles {low:.4}–{high:.4}) ")?;
-        writeln!(formatter, "times the time of a collision: {finding}")?;
+        writeln!(formatter, "times as long per collision: {finding}")?;
         write!(formatter, "the median lies in {:.4}–{:.4}; ", interval[0], interval[1])?;
         writeln!(formatter, "equal code at another address alone makes 1 or 2 %")?;
         let [first, other] = nanoseconds.map(|quartiles| quartiles.median);

@@ -11,6 +11,8 @@ const MOST_BINS: usize = 1 << 20;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(crate) struct Bins {
     low: f64,
+    high: f64,
+    #[cfg_attr(feature = "serde", serde(skip))]
     width: f64,
     count: usize,
 }
@@ -24,19 +26,13 @@ impl Bins {
             "finite and above the lower one",
             high,
         )?;
-        Self { low, width: (high - low) / count as f64, count }.checked()
-    }
-
-    fn checked(self) -> Result<Self, ParameterError> {
-        let Self { low, width, count } = self;
-        finite("lower end of the bins", low)?;
         accept((1..=MOST_BINS).contains(&count), "number of bins", "in 1..=2^20", count as f64)?;
-        positive("width of a bin", width)?;
-        finite("upper end of the bins", self.edge(count))?;
-        let is_resolved = self.edge(1) > low && self.edge(count) > self.edge(count - 1);
+        let width = positive("width of a bin", (high - low) / count as f64)?;
+        let bins = Self { low, high, width, count };
+        let is_resolved = bins.edge(1) > low && high > bins.edge(count - 1);
         let is_usable = is_resolved && (1.0 / width).is_finite();
         accept(is_usable, "width of a bin", "above the rounding of its edges", width)?;
-        Ok(self)
+        Ok(bins)
     }
 
     /// Checks that there is one entry for each bin.
@@ -56,7 +52,8 @@ impl Bins {
 
     /// Returns the lower edge of a bin.
     pub(crate) fn edge(&self, bin: usize) -> f64 {
-        self.low + bin as f64 * self.width
+        // The product is rounded, but the last edge must be exactly the number that the user gave.
+        if bin == self.count { self.high } else { self.low + bin as f64 * self.width }
     }
 
     pub(crate) fn middle(&self, bin: usize) -> f64 {
@@ -85,5 +82,5 @@ impl Bins {
 }
 
 crate::gate::from_file! {
-    Bins { low: f64, width: f64, count: usize } => Self { low, width, count }.checked()
+    Bins { low: f64, high: f64, count: usize } => Self::new(low, high, count)
 }

@@ -10,13 +10,14 @@ const LARGEST: f64 = 1e100;
 /// Returns the mean of a time series, with an error that accounts for its autocorrelation (Flyvbjerg &
 /// Petersen 1989).
 ///
-/// Pairs of neighbors are replaced by their mean, again and again. The naive error of the blocked series,
+/// Pairs of neighbors are replaced by their mean, repeatedly. The naive error of the blocked series,
 ///
 /// ```math
 /// \epsilon_B^2 = \frac{1}{n_B(n_B-1)}\sum_i (x_i^{(B)}-\bar x)^2,
 /// ```
 ///
-/// grows with the block size $`B`$ until blocks are independent. The smallest blocks give the error for which
+/// grows with the block size $`B`$ until blocks are independent. The error is taken from the smallest blocks
+/// for which
 /// 1. $`B^3 > 2n(\epsilon_B/\epsilon_1)^4`$: shorter blocks leave a bias that is larger than the scatter of
 ///    $`\epsilon_B`$ itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
 /// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
@@ -62,7 +63,7 @@ const LARGEST: f64 = 1e100;
 /// ```
 pub fn block_average(samples: &[f64]) -> Result<Estimate, ParameterError> {
     accept(samples.len() >= 2, "number of samples", "at least 2", samples.len() as f64)?;
-    let largest = "finite and at most 1e100 in size";
+    let largest = "finite and at most 1e100 in magnitude";
     samples
         .iter()
         .try_for_each(|&sample| accept(sample.abs() <= LARGEST, "sample", largest, sample).map(|_| ()))?;

@@ -73,14 +73,14 @@ impl Estimate {
         Self { mean, standard_error, samples, correlated_samples, basis }
     }
 
-    /// Returns the same error about another mean.
+    /// Returns an estimate with this mean and the same error.
     ///
     /// The error of a ratio, for example, is the error of the mean of its residuals.
     pub fn about(self, mean: f64) -> Self {
         Self { mean, ..self }
     }
 
-    /// Returns the estimate of a multiple of the samples.
+    /// Returns the estimate for samples that are all multiplied by a factor.
     pub(crate) fn scaled(self, factor: f64) -> Self {
         let standard_error = self.standard_error * factor.abs();
         Self { mean: self.mean * factor, standard_error, ..self }
@@ -109,7 +109,7 @@ impl Estimate {
         self.correlated_samples
     }
 
-    /// Returns the number of independent samples with the same information: the number of samples over
+    /// Returns the number of independent samples with the same information: the number of samples divided by
     /// [`correlated_samples`](Self::correlated_samples).
     pub fn independent_samples(&self) -> f64 {
         self.samples as f64 / self.correlated_samples.max(1.0)
@@ -117,9 +117,9 @@ impl Estimate {
 
     /// Returns whether the error can be trusted.
     ///
-    /// If not, the error is only a lower bound: the series is too short for its correlations
-    /// ([`block_average`](super::block_average) has the numbers), all samples are equal, or there are fewer
-    /// than two samples.
+    /// If not, the error is only a lower bound: the series is too short for its correlations (see the table
+    /// of [`block_average`](super::block_average)), all samples are equal, or there are fewer than two
+    /// samples.
     pub const fn is_converged(&self) -> bool {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }

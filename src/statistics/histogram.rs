@@ -25,7 +25,7 @@ pub struct Histogram {
     counts: Vec<u64>,
     below: u64,
     above: u64,
-    /// Number of all numbers, inside and outside the bins.
+    /// Count of all numbers, inside and outside the bins.
     count: u64,
     /// The counts at the end of the last block.
     before: Vec<u64>,
@@ -43,7 +43,7 @@ pub struct HistogramBin {
     pub high: f64,
     /// Count of the numbers in the bin.
     pub count: u64,
-    /// Density: the fraction of all numbers that are in the bin, over its width; NaN without numbers.
+    /// Density: the fraction of all numbers that are in the bin, divided by its width; NaN without numbers.
     ///
     /// Before there are two blocks, its error assumes independent numbers: √(p(1 − p)/n)/w for the share p
     /// and the width w. Such an error is reported as a lower bound.

@@ -5,14 +5,15 @@ use super::RunningMean;
 /// Smallest number of blocks with a meaningful scatter. The error of eight blocks is uncertain by a quarter.
 const FEWEST_BLOCKS: u64 = 8;
 
-/// Smallest number of independent samples of an error that can be trusted.
+/// Smallest number of independent samples from which an error can be trusted.
 ///
 /// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. If
 /// half of this number were enough, every tenth series of 30 independent samples would be called converged,
 /// with an error too small by a third.
 pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
-/// Excess of a trusted error over its blocks' error, times the number of independent samples.
+/// Relative excess of a trusted error over the error from its blocks, times the number of independent
+/// samples.
 ///
 /// A series is called converged if its error is small, and some errors are small by chance. Trusted errors
 /// are therefore too small on average, especially errors from few samples. With this excess, the true mean
@@ -20,9 +21,9 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 
-/// Largest effect on the mean of samples that fill no block, in errors of the blocks. In a long series this
-/// effect is about a tenth of an error; if it exceeds this limit, the blocks do not show the scatter of the
-/// whole series.
+/// Largest allowed change of the mean by the last samples, which fill no block, in units of the error from
+/// the blocks. In a long series this effect is about a tenth of an error; if it exceeds this limit, the
+/// blocks do not show the scatter of the whole series.
 const LARGEST_REST: f64 = 1.0;
 
 /// Rounding of means, relative to the error of independent samples.
@@ -48,7 +49,7 @@ impl BlockError {
     }
 }
 
-/// Returns the error of the smallest blocks from which on the error no longer grows, and the same error
+/// Returns the error from the smallest blocks beyond which the error no longer grows, and the same error
 /// raised by the share that [`EXCESS`] gives. Returns `None` if the error cannot be trusted. The levels are
 /// for sizes 1, 2, 4, ….
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {

@@ -3,8 +3,8 @@
 use super::Estimate;
 use super::plateau::FEWEST_INDEPENDENT;
 
-/// Smallest number of repeats whose scatter is meaningful, as with blocks: eight, whose lengths may differ a
-/// little.
+/// Smallest number of repeats whose scatter is meaningful: eight, as with blocks. The limit is slightly
+/// lower, so that the lengths of the eight may differ a little.
 const ENOUGH: f64 = 7.5;
 
 /// Variance between runs, relative to the variance that their errors explain, above which the runs differ.
@@ -29,7 +29,7 @@ impl Estimate {
     /// scatter of two or three runs, however, may be small by chance; the errors of the runs then count. The
     /// estimate has converged if the estimates of all runs have converged, if $`k`$ is about eight or more,
     /// or if the runs together have 120 independent samples by this error, the number that a single run
-    /// needs. It has not if all samples are equal. Runs without samples are left out.
+    /// needs. It has not converged if all samples are equal. Runs without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};
@@ -67,7 +67,7 @@ impl Estimate {
             run.samples() as f64 / samples as f64 * run.standard_error() * run.standard_error()
         });
         let count = runs.len() as f64;
-        // In this form, runs of equal lengths count exactly.
+        // In this form, the effective number of runs of equal lengths is exact.
         let squares: f64 = runs.iter().map(|run| run.samples() as f64 * run.samples() as f64).sum();
         let effective = samples as f64 * samples as f64 / squares;
         let differ = scatter / (count - 1.0) > DIFFERENT * within;

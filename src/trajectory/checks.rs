@@ -45,9 +45,9 @@ const DEEPEST: f64 = 0.5;
 fn advice(share: f64, settings: &Settings) -> &'static str {
     match (settings.tolerance, settings.shrinks) {
         _ if share > DEEPEST => "two disks lie nearly at the same place",
-        (_, false) => "a tolerance or shrunk radii accept them",
+        (_, false) => "set a tolerance or shrink the radii to accept them",
         (Some(_), true) => "a larger tolerance accepts them",
-        (None, true) => "they are too many for radii to shrink",
+        (None, true) => "there are too many of them to shrink radii",
     }
 }
 

@@ -44,7 +44,7 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
             let [cell, known] = [text, first].map(|text| cells(text, divider).nth(place).unwrap_or_default());
             let name = table.columns[place].name.as_str();
             if cell != known {
-                let requirement = "the same in all rows, for a table holds one state";
+                let requirement = "the same in all rows, since a table holds one state";
                 return Err(ReadError::unexpected(line, name, requirement, cell));
             }
             if table.time.is_none() && name.eq_ignore_ascii_case(TIME) {
@@ -63,7 +63,8 @@ fn common(columns: &[Column]) -> Vec<usize> {
     (0..columns.len()).filter(|&place| is_common(&columns[place])).collect()
 }
 
-/// Returns whether a row begins with a name in quotes for which there is no column, as R writes it.
+/// Returns whether a row begins with a name in quotes for which there is no column, as in tables written by
+/// R.
 fn has_name(row: &str, divider: Option<char>, columns: usize) -> bool {
     let has_bare_cell = row.matches('"').count() <= 2 * columns;
     row.starts_with('"') && has_bare_cell && cells(row, divider).count() == columns + 1

@@ -32,7 +32,7 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
         && table.has(Position, 0)
         && [0, 1].iter().any(|&axis| table.has(Unwrapped, axis))
     {
-        table.notes.push("unwrapped positions are ignored, for the file has no box".to_owned());
+        table.notes.push("unwrapped positions are ignored, since the file has no box".to_owned());
     }
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
     let ordered = kinds::ordered(&table).filter(|_| !is_numbered).unwrap_or_default();
@@ -260,20 +260,20 @@ impl Row<'_> {
         Ok(self.either("velocity", self.get(Velocity, axis), by_momentum, 0.0)?.unwrap_or_default())
     }
 
-    /// Returns the angle. From an orientation alone, it is known only within a turn.
+    /// Returns the angle. An orientation alone determines it only up to whole turns.
     fn angle(&self) -> Result<f64, ReadError> {
         let half = match (self.get(Orientation, 2), self.get(Orientation, 3)) {
             (Some(z), Some(w)) => Some(libm::atan2(z, w)),
             _ => None,
         };
         let Some(angle) = self.get(Angle, 0) else { return Ok(half.map_or(0.0, |half| 2.0 * half)) };
-        // An angle of many turns has few digits within a turn. The writer made the orientation from its sine
-        // and cosine, so these are compared.
+        // An angle of many turns has few digits left for its position within a turn. The writer made the
+        // orientation from its sine and cosine, so these are compared.
         let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);
         }
-        Err(contradiction("angle", &format!("{angle} and that of the orientation"), self.line))
+        Err(contradiction("angle", &format!("{angle}, and another one in the orientation"), self.line))
     }
 
     /// Returns the kind: from its number if possible, or else from a type, or else from a name.

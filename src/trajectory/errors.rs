@@ -18,7 +18,7 @@ use crate::observable::ObserverError;
 #[non_exhaustive]
 pub enum RecordError {
     /// A file or folder of this name exists already.
-    #[error("{} is there already and is not overwritten; choose another name", path.display())]
+    #[error("{} already exists and is not overwritten; choose another name", path.display())]
     Exists {
         /// The path.
         path: PathBuf,
@@ -45,10 +45,10 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// The file has no whole frame after which a recorder could continue.
+    /// The file has no complete frame after which a recorder could continue.
     ///
     /// The file stays unchanged.
-    #[error("{} has no whole frame to go on from; it is left as it is", path.display())]
+    #[error("{} has no complete frame to continue from; it is left unchanged", path.display())]
     NoFrame {
         /// The path.
         path: PathBuf,
@@ -56,7 +56,7 @@ pub enum RecordError {
     /// The file belongs to another run, since it has another frame, or no frame, at a time of this run.
     ///
     /// The file stays unchanged.
-    #[error("{} is of another run: it goes to time {}, and has {} at time {}", path.display(), Readable(*.last),
+    #[error("{} belongs to another run: it ends at time {}, and has {} at time {}", path.display(), Readable(*.last),
         if *.is_there { "another frame" } else { "no frame" }, Readable(*.time))]
     AnotherRun {
         /// The path.
@@ -69,8 +69,8 @@ pub enum RecordError {
         is_there: bool,
     },
     /// The run begins after the time of a frame that the file lacks.
-    #[error("{} ends at time {}, so a run from time {} on would leave out the frame at time {}; go on from an \
-        earlier checkpoint, or accept the gap by SampleTimes::starting_at", path.display(), Readable(*.last),
+    #[error("{} ends at time {}, so a run from time {} on would leave out the frame at time {}; continue from an \
+        earlier checkpoint, or accept the gap with SampleTimes::starting_at", path.display(), Readable(*.last),
         Readable(*.time), Readable(*.missed))]
     Gap {
         /// The path.
@@ -97,7 +97,7 @@ impl RecordError {
         move |source| Self::Io { action, path, source }
     }
 
-    /// Creates the error of a name that a format cannot use.
+    /// Creates the error for a name that a format cannot use.
     pub(super) fn unusable(path: &Path, reason: &str) -> Self {
         Self::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason))
     }
@@ -133,7 +133,7 @@ pub enum ReadError {
         /// The error of the system.
         source: io::Error,
     },
-    /// The input fails, or is not text.
+    /// The input cannot be read, or is not text.
     #[error("cannot read line {line}")]
     Io {
         /// Number of the line.
@@ -178,7 +178,7 @@ pub enum ReadError {
         source: ParameterError,
     },
     /// A name or value appears twice.
-    #[error("line {line}: {what} stands in line {first} already")]
+    #[error("line {line}: {what} is already in line {first}")]
     Doubled {
         /// Number of the second line.
         line: usize,
@@ -218,11 +218,11 @@ pub enum ReadError {
         share: f64,
         /// Number of overlaps, counted up to eight for each disk.
         count: usize,
-        /// The settings that accept the overlaps, or the reason why no setting should.
+        /// The settings that accept the overlaps, or the reason why none does.
         advice: &'static str,
     },
     /// The file does not have the frame.
-    #[error("there is no frame of {wanted}: the file has {count}")]
+    #[error("there is no frame with {wanted}: the file has {count}")]
     NoFrame {
         /// Number or step of the frame.
         wanted: String,

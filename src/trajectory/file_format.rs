@@ -28,14 +28,14 @@ enum Form {
 
 /// GSD, the binary format of HOOMD-blue.
 ///
-/// Readers can go directly to any frame. A frame has half of the bytes of [`ExtendedXyz`], with numbers in
-/// single precision, so it is for analysis: a run that starts from it does not continue with the same bits.
-/// The name of the file must not end in `.gz`.
+/// Readers can go directly to any frame. A frame takes half as many bytes as in [`ExtendedXyz`]. Its numbers
+/// are in single precision, so it is meant for analysis: a run that starts from it does not continue with the
+/// same bits. The name of the file must not end in `.gz`.
 ///
 /// | chunk | |
 /// |---|---|
 /// | `particles/typeid`, `types` | number of the [`Kind`](crate::Kind); its name is the number |
-/// | `particles/position` | from the center of the box; of an open box, from the middle of its bottom |
+/// | `particles/position` | from the center of the box; in an open box, from the middle of its bottom |
 /// | `particles/velocity`, `mass`, `image` | as in [`Disk`](crate::Disk) |
 /// | `particles/diameter` | twice the radius |
 /// | `particles/orientation`, `angmom`, `moment_inertia` | rotation about the third axis |

@@ -1,5 +1,5 @@
-//! Frames of a trajectory, and the trait of the formats in which they are written, one after another into a
-//! file. Formats with an index, or of several files, implement `Layout` (`sink.rs`) directly.
+//! Frames of a trajectory, and the trait of the formats that write them one after another into a file.
+//! Formats with an index, or with several files, implement `Layout` (`sink.rs`) directly.
 
 use std::io::{self, BufRead, Read, Write};
 
@@ -38,8 +38,7 @@ impl<'a> Frame<'a> {
 /// 1. `write_frame` depends on the frame alone: written twice, the same frame gives the same bytes.
 /// 2. `skip_frame` skips exactly the bytes that `write_frame` wrote, and returns the time of the frame to the
 ///    bit, even for a negative zero.
-/// 3. `skip_frame` returns `None` for a frame that is cut short at any byte, as a process that is killed
-///    leaves it.
+/// 3. `skip_frame` returns `None` for a frame that is cut short at any byte, for example by a killed process.
 ///
 /// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults the
 /// check finds.

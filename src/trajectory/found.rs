@@ -13,7 +13,7 @@ pub(super) struct Found<'a> {
 }
 
 impl<'a> Found<'a> {
-    /// A frame of text, and the function that reads it.
+    /// Creates a frame from its text and the function that reads it.
     pub(super) fn in_text(
         text: Text,
         step: Option<u64>,
@@ -26,7 +26,7 @@ impl<'a> Found<'a> {
                     return Err(ReadError::End { line, what: "a line break".to_owned() });
                 }
                 (true, ..) => {
-                    let note = "the last line has no line break: its last number may be cut";
+                    let note = "the last line has no line break: its last number may be cut short";
                     table.notes.push(note.to_owned());
                 }
                 _ => {}

@@ -100,7 +100,7 @@ impl Shape {
 fn write_chunks(frame: &Frame<'_>, out: &mut Vec<u8>) -> io::Result<()> {
     let (snapshot, disks, shape) = (frame.snapshot(), frame.snapshot().disks(), Shape::of(frame));
     let Ok(count) = u32::try_from(disks.len()) else {
-        return Err(io::Error::other("a file of GSD has room for 2^32 disks"));
+        return Err(io::Error::other("a GSD file has room for 2^32 disks"));
     };
     let (center, [width, height]) = seen_box(snapshot);
     out.write_all(&(frame.number() as u64).to_le_bytes())?;

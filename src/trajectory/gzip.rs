@@ -110,7 +110,7 @@ fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) ->
     } else if is_frame || ending.starts_with(&packed) {
         Ok(())
     } else {
-        Err(no_frame("frames of the checksum that follows them", "others"))
+        Err(no_frame("frames that match the checksum after them", "others"))
     }
 }
 

@@ -25,8 +25,8 @@ impl State {
     /// without a box gets one around the disks. The format has no place for angles, inertia factors, periodic
     /// directions and walls.
     ///
-    /// A [`Reader`](super::Reader) reads the file back to the same bits, except that a mass may differ by one
-    /// rounding.
+    /// A [`Reader`](super::Reader) reads the file back to the same bits, except that a mass may differ by a
+    /// rounding error.
     ///
     /// # Errors
     /// If the writer fails.

@@ -28,8 +28,8 @@ use crate::disk::numbered;
 /// `fs`, and ends above the highest disk. The format has no place for inertia factors, gravity and walls that
 /// move.
 ///
-/// The time is a column since some programs, such as MDAnalysis, know no `ITEM: TIME`. Only a frame without
-/// disks has that item; [`TimedLammpsDump`] has it in all frames.
+/// The time is a column, since some programs, such as MDAnalysis, do not know `ITEM: TIME`. Only a frame
+/// without disks has that item; [`TimedLammpsDump`] has it in all frames.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;

@@ -12,7 +12,7 @@ use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "format";
 
-/// Number of rounds in which all frames are written, alternately or each frame twice.
+/// Number of rounds plus one. In odd rounds, each frame is written twice in a row; in even rounds, once.
 const ROUNDS: usize = 40;
 
 /// Numbers of the frames.
@@ -83,7 +83,7 @@ fn check_torn(format: &dyn Format, number: usize, frame: &[u8]) -> Result<(), Vi
     let passed = (1..written).find(|&kept| !matches!(format.skip_frame(&mut &frame[..kept]), Ok(None)));
     let kept = passed.unwrap_or_default();
     require!(PART, "cut short", passed.is_none();
-        "frame {number}, cut after {kept} of its {written} bytes, does not answer `None`");
+        "frame {number}, cut after {kept} of its {written} bytes, is not reported as `None`");
     Ok(())
 }
 

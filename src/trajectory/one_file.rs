@@ -43,7 +43,7 @@ impl OneFile {
         let mut packing = Packing::of(path)?;
         let file = media::reopen(path)?;
         let frames = packing.frames(&mut BufReader::new(file.file()), &*format);
-        let Frames { times, digests, end } = frames.map_err(RecordError::io("go on in", path))?;
+        let Frames { times, digests, end } = frames.map_err(RecordError::io("continue", path))?;
         let mut file = Growing::new(path, file, end, packing.ending());
         if !times.is_empty() {
             packing.mend(&mut file).map_err(RecordError::io("write to", path))?;

@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::Disk;
 use crate::boundary::Domain;
 
-/// Disks of similar size, in squares a little wider than the largest of them.
+/// Disks of similar size, in squares a little wider than the largest disk.
 ///
 /// With squares for one size only, a single giant would make every disk a neighbor of every other.
 struct Class {

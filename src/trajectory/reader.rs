@@ -58,14 +58,14 @@ use crate::quantity::non_negative;
 /// assert_eq!((run.disks()[0].velocity().x, run.disks()[0].radius()), (3.0, 0.46875));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-/// A table of positions alone, such as from a picture:
+/// The next example reads a table of positions alone, for example from a picture:
 /// ```
 /// # use granular_edmd::trajectory::Reader;
 /// let state = Reader::new().with_radius(0.5)?.with_density(2.0)?.read_from("x;y\n1;2\n3;4\n".as_bytes())?;
 /// assert_eq!(state.disks()[1].mass(), std::f64::consts::FRAC_PI_2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-/// The first frame of a trajectory, and all of them:
+/// The last example reads the first frame of a trajectory, and then all frames:
 /// ```
 /// # use granular_edmd::trajectory::Reader;
 /// let frame = "1\nProperties=pos:R:2:radius:R:1 Time=0\n1 2 0.5\n";
@@ -102,14 +102,14 @@ impl Reader {
         Self { frame: Choice::Number(-1), settings }
     }
 
-    /// Returns the same reader for the frame of this number, counted from 0, or from the end if it is
+    /// Returns the same reader for the frame with this number, counted from 0, or from the end if it is
     /// negative: −1 is the last frame. Other frames are not checked.
     #[must_use]
     pub const fn with_frame(self, number: isize) -> Self {
         Self { frame: Choice::Number(number), ..self }
     }
 
-    /// Returns the same reader for the frame of this step, as dumps of LAMMPS and GSD number their frames.
+    /// Returns the same reader for the frame with this step number, as in dumps of LAMMPS and GSD files.
     #[must_use]
     pub const fn with_step(self, step: u64) -> Self {
         Self { frame: Choice::Step(step), ..self }
@@ -173,10 +173,10 @@ impl Reader {
     /// Reads a frame of an input.
     ///
     /// # Errors
-    /// If the input fails, is compressed and the feature is missing, is of no known format, or does not have
-    /// the frame. Also if a needed part is missing, a number cannot be read or is out of range, columns
-    /// contradict each other, or an id appears twice. Also if disks overlap, are outside the box, or do not
-    /// lie in a plane. The error names the line.
+    /// If the input cannot be read, is compressed and the feature is missing, is of no known format, or does
+    /// not have the frame. Also if a needed part is missing, a number cannot be read or is out of range,
+    /// columns contradict each other, or an id appears twice. Also if disks overlap, are outside the box, or
+    /// do not lie in a plane. The error names the line.
     pub fn read_from(&self, input: impl BufRead) -> Result<State, ReadError> {
         self.state(source::frames(input)?)
     }

@@ -95,7 +95,7 @@ impl Recorder {
         Ok(Self::new(format.into().reopen(path.as_ref())?, times).going_on())
     }
 
-    /// Creates a recorder that continues a file, or begins one that is absent or empty.
+    /// Creates a recorder that continues a file, or begins it if it is absent or empty.
     ///
     /// It suits a run that is restarted automatically after it was killed, perhaps before the first frame.
     ///
@@ -142,7 +142,7 @@ impl Recorder {
     /// A run records its first frame after one interval.
     ///
     /// # Errors
-    /// If the frame cannot be written, or the file reaches this time already and does not have this frame.
+    /// If the frame cannot be written, or if the file already reaches this time without having this frame.
     pub fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         self.sink.record(snapshot)
     }

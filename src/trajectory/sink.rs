@@ -6,7 +6,7 @@ use super::{Frame, RecordError};
 use crate::file::{Growing, Locked};
 use crate::observable::Snapshot;
 
-/// The file of a recording, or of its times, with the times of its frames.
+/// The file of a recording or, for a series, the file of its times; with the times of the frames.
 pub(super) struct Sink {
     pub(super) file: Growing<Locked>,
     pub(super) times: Vec<f64>,

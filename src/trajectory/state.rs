@@ -9,7 +9,7 @@ use crate::{Disk, Gravity};
 ///
 /// A [`Reader`](super::Reader) reads it from a file. No two disks overlap by more than the reader's
 /// tolerance, and no center is outside the box. [`build`](crate::simulation::SimulationBuilder::build) checks
-/// them against the walls.
+/// the disks against the walls.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
@@ -79,8 +79,8 @@ impl State {
         self.gravity
     }
 
-    /// Returns the names of kinds that the file gives, in the order of their numbers from 0 on. This order is
-    /// alphabetical, unless the file numbers the kinds.
+    /// Returns the names of kinds that the file gives, in the order of their numbers, starting with 0. This
+    /// order is alphabetical, unless the file numbers the kinds.
     ///
     /// The list is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {

@@ -23,7 +23,7 @@ pub(super) struct Table {
     pub(super) lines: Vec<usize>,
     /// The index by which the values refer to each name.
     names: HashMap<String, usize>,
-    /// The names that the file gives to the numbers of kinds, from 0 on.
+    /// The names that the file gives to the numbers of kinds, starting with 0.
     pub(super) kind_names: Vec<String>,
     /// True if types count from 1, and densities are densities of spheres.
     pub(super) is_of_lammps: bool,

@@ -9,9 +9,9 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Smallest room for a step, in units of the rounding error. It makes sure that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
-/// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
-/// within a few periods, each of which takes a few tens of steps. A search that has taken more steps returns
-/// to its caller, which resumes the search later.
+/// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search finds a
+/// touch within a few periods, each of which takes a few tens of steps. A search that has taken more steps
+/// returns to its caller, which resumes the search later.
 const MOST_STEPS: u32 = 256;
 
 /// The result of a search for the first touch: the touch, or the time up to which there is none.
@@ -106,7 +106,7 @@ impl Approach {
 
 /// Returns the first time, not later than `until`, at which the surface touches the wall and closes further.
 ///
-/// On a piece on which the wall accelerates by at most $`a_{max}`$, the gap is never below the parabola with
+/// In a piece in which the wall accelerates by at most $`a_{max}`$, the gap is never below the parabola with
 /// that acceleration. The search steps to the root of the parabola, where the gap is still open, and repeats
 /// until the gap is closed. One step is exact if the acceleration is constant. Otherwise, the steps shrink
 /// quadratically, down to the rounding error of the gap. The search never steps over a contact. A gap that is
@@ -252,7 +252,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         }
     }
 
-    /// Returns the end of a bounce that begins at `start`, or `None` if the bounce rises above rounding.
+    /// Returns the end of a bounce that begins at `start`, or `None` if the bounce rises above the rounding
+    /// error of the gap.
     ///
     /// The gap itself does not show when such a bounce is over. However, the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and

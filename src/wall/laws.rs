@@ -267,7 +267,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             + self.length_rounding(before, &bounds)
             + self.speed_rounding(before, &bounds) * wait;
         require!(PART, "jump", jump <= slack;
-            "at phase {until:?}, where a piece ends, it jumps to the disks by {jump:?}");
+            "at phase {until:?}, where a piece ends, it jumps toward the disks by {jump:?}");
         let is_told = self.jumps || jump >= -slack - 1e-6 * (self.high - self.low);
         require!(PART, "jump", is_told;
             "at phase {until:?} it jumps by {jump:?}, but says that it never jumps");

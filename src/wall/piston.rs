@@ -19,8 +19,9 @@ use crate::{Fingerprint, ParameterError};
 /// between two impacts: a parabola or a sine, without a time step. Each disk that hits the wall changes the
 /// wall's velocity by $`\Delta_n/M`$, as the collision rule says for partners of the masses $`m`$ and $`M`$.
 /// The wall is guided, so an impulse along its surface does not move it. A stop takes all of the wall's
-/// velocity: the wall rests there as long as the force presses it against the stop. A wall that arrives at a
-/// stop with less than 1e-7 of its speed turns around there without touching the stop.
+/// velocity: the wall rests there as long as the force presses it against the stop. A wall that has almost
+/// stopped when it arrives at a stop (less than 1e-7 of its previous speed is left) turns around there
+/// without touching the stop.
 ///
 /// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall from a piston. A
 /// checkpoint keeps the present state of the wall; a file of the container keeps only its state at the start.

@@ -676,8 +676,8 @@ fn files_of_disks_are_converted() {
     for (arguments, status, reason) in [
         (["a.png"].as_slice(), 2, "a.png must end in one of .xyz, .extxyz, .lammpstrj, .dump"),
         (&["xyz"], 2, "xyz must end in one of"),
-        (&["b.csv", "--frame", "2"], 1, "there is no frame of number 2: the file has 2"),
-        (&["b.csv", "--step", "6"], 1, "there is no frame of step 6: the file has 2"),
+        (&["b.csv", "--frame", "2"], 1, "there is no frame with number 2: the file has 2"),
+        (&["b.csv", "--step", "6"], 1, "there is no frame with step 6: the file has 2"),
         (&["b.csv", "--frame", "first"], 2, "invalid value 'first'"),
         (&["b.csv", "--tolerance", "-1"], 2, "tolerance must be finite and not negative, but is -1"),
         (&["b.csv", "--radius", "0"], 2, "radius must be finite and positive, but is 0"),

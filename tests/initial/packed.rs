@@ -105,7 +105,7 @@ fn pistons_that_move_are_added_afterwards() {
     };
     assert_eq!(packed(piston).unwrap().len(), 400);
     let error = packed(piston.with_force(40.0).unwrap()).unwrap_err().to_string();
-    let expected = "way of the wall \"lid\" in a unit of time must be 0 while disks are packed (add the piston \
+    let expected = "displacement of the wall \"lid\" in a unit of time must be 0 while disks are packed (add the piston \
                     afterwards), but is 10";
     assert_eq!(error, expected);
 }

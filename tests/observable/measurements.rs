@@ -239,8 +239,8 @@ fn forged_measurements_are_refused() -> Outcome {
         assert!(refused::<EnergyChangeProfile>(forged(&**profile, at, number)), "{at}");
     }
     for (at, number) in [
-        ("/bins/width", json!(-1.0)),
-        ("/bins/width", json!(1e308)),
+        ("/bins/high", json!(-1.0)),
+        ("/bins/high", json!(null)),
         ("/bins/count", json!(0)),
         ("/sums", json!([0.0])),
     ] {

@@ -80,8 +80,8 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
     let said = reason(Container::periodic(20.0, 12.0)?, &mut pairs);
     assert!(said.contains("range of the correlation must be at most half of the period, but is 7"), "{said}");
     let said = reason(Container::closed(20.0, 12.0)?, &mut pairs);
-    assert!(said.contains("or have a region, but is 7"), "{said}");
-    assert!(reason(Container::open(20.0)?, &mut pairs).contains("or have a region, but is 7"));
+    assert!(said.contains("unless a region is given, but is 7"), "{said}");
+    assert!(reason(Container::open(20.0)?, &mut pairs).contains("unless a region is given, but is 7"));
     let moment = Snapshot::new(0.0, &[], Container::periodic(20.0, 20.0)?.domain(), 0.0).with_wall_count(5);
     let said = PairCorrelation::new(1.0, 3)?.check(&moment).unwrap_err().to_string();
     assert!(said.contains("range of the correlation must be less than the distance of the region"), "{said}");

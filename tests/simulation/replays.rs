@@ -68,6 +68,30 @@ fn any_collision_is_made_again() {
 }
 
 #[test]
+fn the_time_of_a_collision_is_a_time_up_to_which_it_is_played() {
+    for start in [-7.3, 0.0, 2.7, 1e4] {
+        let container = Container::closed(15.0, 15.0).unwrap();
+        let disks = initial::lattice(&container, 60, 0.4).unwrap();
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, 4).unwrap();
+        let run = Simulation::builder(Elastic, container).disks(disks).starting_at(start).build().unwrap();
+        let mut replay = Replay::new(run, 1.7).unwrap();
+        replay.run_until(start + 20.0).unwrap();
+        let all = replay.collisions(f64::NEG_INFINITY, start + 20.0).unwrap();
+        // Disks that touch two walls at the start have two collisions at the same time.
+        let until = |time| &all[..all.partition_point(|replayed| replayed.collision.time <= time)];
+        for (number, replayed) in all.iter().enumerate() {
+            let (id, time) = (replayed.id, replayed.collision.time);
+            let last = until(time).iter().rfind(|last| last.id == id || last.partner_id == Some(id));
+            assert_eq!(replay.last_collisions_of(id, time, 1).unwrap(), [last.unwrap().clone()]);
+            let state = replay.at(time).unwrap().unwrap();
+            assert_eq!(state.counters().collisions(), until(time).len() as u64, "{time:?}");
+            let to = all[(number + 3).min(all.len() - 1)].collision.time;
+            assert_eq!(replay.collisions(time, to).unwrap(), until(to)[until(time).len()..], "{time:?}");
+        }
+    }
+}
+
+#[test]
 fn runs_that_are_the_same_have_no_differences_and_others_have_them_where_they_are() {
     let replay = |run: Gas| {
         let mut replay = Replay::new(run, 0.5).unwrap();

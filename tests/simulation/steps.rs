@@ -32,6 +32,26 @@ proptest! {
         let told = simulation.counters();
         prop_assert_eq!((told.disk_collisions, told.wall_collisions), (collisions, wall_collisions));
     }
+
+    #[test]
+    fn a_run_until_the_time_of_a_collision_includes_it_and_no_later_one(setup in setup()) {
+        let end = setup.start + 2.0;
+        let (expected, _) = history(setup.simulation(), end);
+        let mut run = setup.simulation();
+        let mut last = setup.start;
+        for collision in &expected {
+            // Any time between two collisions ends the run between them.
+            let between = last.midpoint(collision.time);
+            for time in [between, collision.time] {
+                run.run_until(time, &mut ()).unwrap();
+                let so_far = expected.partition_point(|earlier| earlier.time <= time) as u64;
+                prop_assert_eq!(run.counters().collisions(), so_far, "until {:?}", time);
+                prop_assert!(run.time() <= time, "{:?} is after {:?}", run.time(), time);
+            }
+            last = collision.time;
+        }
+        prop_assert_eq!(run.step_until(end, &mut ()).unwrap(), None);
+    }
 }
 
 #[test]

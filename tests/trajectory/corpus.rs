@@ -120,7 +120,7 @@ fn tables_of_many_programs() {
             ("x,y,radius,mass\r\n1,2,0.5,2\r\n", "(1 2) r0.5 m2"),
             (
                 "x,y,radius\n1,2,0.5\n3,2,0.5",
-                "(1 2) r0.5; (3 2) r0.5 | the last line has no line break: its last number may be cut",
+                "(1 2) r0.5; (3 2) r0.5 | the last line has no line break: its last number may be cut short",
             ),
             (
                 "x,y,radius\n1,2,0.5\n3,2",
@@ -155,9 +155,9 @@ fn frames_by_number_and_step() {
             .starts_with("refused: line 11: the disk overlaps the disk of line 10")
     );
     assert!(of(Reader::new().with_frame(-2)).starts_with("refused: line 21: the disk at (1, 9) is outside"));
-    assert_eq!(of(Reader::new().with_frame(3)), "refused: there is no frame of number 3: the file has 3");
-    assert_eq!(of(Reader::new().with_frame(-4)), "refused: there is no frame of number -4: the file has 3");
-    assert_eq!(of(Reader::new().with_step(7)), "refused: there is no frame of step 7: the file has 3");
+    assert_eq!(of(Reader::new().with_frame(3)), "refused: there is no frame with number 3: the file has 3");
+    assert_eq!(of(Reader::new().with_frame(-4)), "refused: there is no frame with number -4: the file has 3");
+    assert_eq!(of(Reader::new().with_step(7)), "refused: there is no frame with step 7: the file has 3");
     let states: Vec<_> =
         Reader::new().with_tolerance(1.0).unwrap().frames(text.as_bytes()).unwrap().collect();
     assert_eq!(states.len(), 2);

@@ -27,7 +27,7 @@ fn data_of_lammps_by_sections_and_styles() {
     let style = |line, found: &str| {
         format!("refused: line {line}: the style of atoms must be `sphere`, but is {found:?}")
     };
-    let torn = " | the last line has no line break: its last number may be cut";
+    let torn = " | the last line has no line break: its last number may be cut short";
     let cases: Vec<(String, String)> = vec![
         (plain(""), two.clone()),
         (plain(" # sphere"), two.clone()),

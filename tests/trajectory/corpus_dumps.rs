@@ -78,7 +78,7 @@ fn boxes_of_dumps() {
         ("abc origin pp pp pp\n10 0 0 0\n0 5 0 0\n0 0 1 -0.5", "0..10p 0..5p; (1 2) r0.5"),
         (
             "\n0 10\n0 5\n-1 1",
-            "0..10 0..5; (1 2) r0.5 | no side is periodic, for the dump does not say which are",
+            "0..10 0..5; (1 2) r0.5 | no side is periodic, since the dump does not say which are",
         ),
         (
             "xy xz yz pp pp pp\n0 10 1\n0 5 0\n-1 1 0",
@@ -103,7 +103,7 @@ fn boxes_of_dumps() {
             (&timed, "0..10p 0..5; t 2.5; (1 2) r0.5"),
             (
                 one.trim_end(),
-                "0..10p 0..5; (1 2) r0.5 | the last line has no line break: its last number may be cut",
+                "0..10p 0..5; (1 2) r0.5 | the last line has no line break: its last number may be cut short",
             ),
             (
                 &one.replace("ATOMS\n1", "ATOMS\n2"),

@@ -32,7 +32,7 @@ const NAMED: &str = " | kinds are numbered by name: A 0, B 1";
 /// `files/make_gsd.py` has made these by the package `gsd`.
 #[test]
 fn files_of_gsd() {
-    let none = " | all diameters are 1, for the file has none";
+    let none = " | all diameters are 1, since the file has none";
     let plain = |kind| format!("-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5{kind}; (1.5 -1) r0.5{none}");
     check_files(
         &Reader::new(),
@@ -66,13 +66,13 @@ fn files_of_gsd() {
             (
                 "unused.gsd",
                 &(plain(" k1")
-                    + " | angular momenta are ignored, for the file has no moments of inertia | ignored: \
+                    + " | angular momenta are ignored, since the file has no moments of inertia | ignored: \
                        particles/charge, log/energy"),
             ),
             (
                 "hoomd_overlap.gsd",
                 "refused: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
-                 distance at contact; it is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
+                 distance at contact; it is the deepest of 1 such overlaps; set a tolerance or shrink the radii to accept them",
             ),
             ("hoomd_empty.gsd", &format!("-4..4p -3..3p; {none}")),
             ("hoomd_none.gsd", "refused: the file ends after line 0, where a frame should follow"),
@@ -94,7 +94,7 @@ fn files_of_gsd() {
                     "0..8p 0..6p; t 2.5; g [0, -1]; (2 4) r0.5 #5; (4 3) r0.5 k1 #2; (5.5 2) r0.5 #9{none}"
                 ),
             ),
-            ("doubled_ids.gsd", "refused: line 3: the disk 5 stands in line 1 already"),
+            ("doubled_ids.gsd", "refused: line 3: the disk 5 is already in line 1"),
             ("outside.gsd", "refused: line 1: the disk at (-2, 5) is outside the box"),
             (
                 "short.gsd",
@@ -142,7 +142,7 @@ fn settings_for_files_of_gsd() {
     let reader = Reader::new().with_radius(0.1).unwrap().with_density(4.0).unwrap();
     let file = "-4..4p -3..3p; kinds 0 A, 1 B; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)".to_owned() + NAMED;
     check_files(&reader.clone().with_frame(0), &[("hoomd_plain.gsd", &file)]);
-    let told = " | masses are by the density, for the file has none, which may mean 1";
+    let told = " | masses follow from the density, since the file has none (all may be 1)";
     let dense = plain.replace("r0.25", "r0.1 m0.12566370614359174");
     check_files(&reader, &[("hoomd_plane_3d.gsd", &format!("{dense}{told}"))]);
 }
@@ -156,7 +156,7 @@ fn frames_of_gsd_by_number_and_step() {
     let second =
         first.replace("(-2 1)", "(-1.75 1)").replace("(0 0)", "(0.25 0)").replace("(1.5 -1)", "(1.75 -1)");
     let last = "-4..4p -3..3p; (-2 1) r0.5; (0 0) r0.5";
-    let none = |what| format!("refused: there is no frame of {what}: the file has 3");
+    let none = |what| format!("refused: there is no frame with {what}: the file has 3");
     for (reader, expected) in [
         (Reader::new().with_frame(0), first.as_str()),
         (Reader::new().with_frame(1), &second),
@@ -170,7 +170,7 @@ fn frames_of_gsd_by_number_and_step() {
     ] {
         check_files(&reader, &[("hoomd_plain.gsd", expected)]);
     }
-    let wrapped = "-4..4p -3..3; (1 1) r0.5; (3 0) r0.5 k1; (-3.5 -1) r0.5 i(1 0) | all diameters are 1, for the file \
+    let wrapped = "-4..4p -3..3; (1 1) r0.5; (3 0) r0.5 k1; (-3.5 -1) r0.5 i(1 0) | all diameters are 1, since the file \
                    has none | disks outside of periodic sides, wrapped: 1";
     check_files(&Reader::new().with_frame(0), &[("outside.gsd", wrapped)]);
     // All frames one after another, from a stream.
@@ -191,7 +191,7 @@ fn files_of_version_0_3() {
             (
                 "run_0_3.gsd",
                 "t 1; g [0, -0.25]; (2 1.8750000238418578) r0.5 v(1 -0.25) a0.5000000095033276 w0.5000000021900314 #1; \
-                 (3 2.3749999046325683) r0.35 m0.49 v(0 -0.25) k3 #2 | the box is left out, for the file does not tell \
+                 (3 2.3749999046325683) r0.35 m0.49 v(0 -0.25) k3 #2 | the box is left out, since the file does not say \
                  where it is periodic",
             ),
         ],
@@ -215,7 +215,7 @@ fn files_of_version_0_3() {
         ),
         (
             "run_0_3.gsd",
-            "expected a file of GSD by this version of granular-edmd, but found \"one of another version\"",
+            "expected a GSD file by this version of granular-edmd, but found \"one of another version\"",
         ),
     ] {
         let path = copy(name);

@@ -77,7 +77,7 @@ fn a_table_holds_one_state() {
     for name in ["time", "Time", "frame", "step", "timestep"] {
         let text = format!("{name},x,y,radius\n0,1,2,0.5\n0,3,2,0.5\n1,5,2,0.5\n");
         let told = format!(
-            "refused: line 4: {name} must be the same in all rows, for a table holds one state, but is \"1\""
+            "refused: line 4: {name} must be the same in all rows, since a table holds one state, but is \"1\""
         );
         check(&Reader::new(), &[(&text, &told)]);
     }
@@ -130,7 +130,7 @@ fn out_of_the_plane_is_no_number_either() {
 
 #[test]
 fn unwrapped_positions_need_a_box() {
-    let told = "(1 2) r0.5 | unwrapped positions are ignored, for the file has no box";
+    let told = "(1 2) r0.5 | unwrapped positions are ignored, since the file has no box";
     check(
         &Reader::new(),
         &[("x,y,xu,radius\n1,2,21,0.5\n", told), ("xu,yu,radius\n1,2,0.5\n", "(1 2) r0.5")],

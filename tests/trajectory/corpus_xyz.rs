@@ -113,8 +113,7 @@ fn ids_from_zero_stay_different() {
         [
             "Properties=id:I:1:pos:R:2:radius:R:1",
             "0 1 1 0.5 / 0 3 1 0.5",
-            "refused: line 4: the disk 0 stands in line 3 \
-          already",
+            "refused: line 4: the disk 0 is already in line 3",
         ],
         [
             "Properties=id:I:1:pos:R:2:radius:R:1",
@@ -128,7 +127,7 @@ fn ids_from_zero_stay_different() {
 #[test]
 fn keys_of_extended_xyz() {
     let one = |keys: &str| xyz(&format!("Properties=pos:R:2:radius:R:1 {keys}"), "1 2 0.5");
-    let told = "all sides of the lattice are periodic, for the file has no `pbc`";
+    let told = "all sides of the lattice are periodic, since the file has no `pbc`";
     let periodic = format!("0..10p 0..5p; (1 2) r0.5 | {told}");
     let cases = [
         ("Lattice=\"10 0 0 0 5 0 0 0 1\"", periodic.as_str()),
@@ -155,7 +154,7 @@ fn keys_of_extended_xyz() {
         ("t=3.5", "t 3.5; (1 2) r0.5"),
         ("Time = 3", "t 3; (1 2) r0.5"),
         ("Time=3 t=3", "t 3; (1 2) r0.5"),
-        ("Time=3 t=4", "refused: line 2: the key `t` stands in line 2 already"),
+        ("Time=3 t=4", "refused: line 2: the key `t` is already in line 2"),
         ("Gravity=\"0.5 -1\"", "g [0.5, -1]; (1 2) r0.5"),
         ("gravity=2", "g [0, -2]; (1 2) r0.5"),
         ("Title=", "(1 2) r0.5 | ignored: Title"),
@@ -222,7 +221,7 @@ fn columns_that_contradict_each_other() {
             "Properties=pos:R:2:radius:R:1:angle:R:1:orientation:R:4",
             "1 2 0.5 1 0 0 1 0",
             "refused: line 3: angle must be \
-          the same in all columns that give it, but is \"1 and that of the orientation\"",
+          the same in all columns that give it, but is \"1, and another one in the orientation\"",
         ],
         [
             "Properties=pos:R:2:pos:R:2:radius:R:1",

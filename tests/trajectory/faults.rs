@@ -17,7 +17,7 @@ const UNKNOWN: &str = "line 1: the file must be extended XYZ, a dump or a data f
                        first line names columns such as x, y and radius, but is \"weight,height\"";
 
 const OVERLAP: &str = "line 4: the disk overlaps the disk of line 2 by 0.25, a share of 0.25 of their distance at \
-                       contact; it is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them";
+                       contact; it is the deepest of 1 such overlaps; set a tolerance or shrink the radii to accept them";
 
 #[track_caller]
 fn assert_told<T: std::fmt::Debug>(read: Result<T, ReadError>, expected: &str) {
@@ -52,7 +52,7 @@ fn faults_of_tables() {
             "x,y,radius,kind\n1,2,0.5,-1\n",
             "line 2: kind must be a whole number that fits into u16, but is \"-1\"",
         ),
-        ("x,y,radius,id\n1,2,0.5,4\n3,2,0.5,3\n5,2,0.5,4\n", "line 4: the disk 4 stands in line 2 already"),
+        ("x,y,radius,id\n1,2,0.5,4\n3,2,0.5,3\n5,2,0.5,4\n", "line 4: the disk 4 is already in line 2"),
         ("x,y,radius\n1,2,0.5\n8,2,1\n1.75,2,0.5\n", OVERLAP),
     ];
     for (text, expected) in cases {
@@ -90,7 +90,7 @@ fn faults_of_extended_xyz() {
     told(
         &format!("2\n{keys}\n1 1 1 0 0.5\n2 1 1.5 0 0.5\n"),
         "line 4: the disk overlaps the disk of line 3 by 0.5, a share of 0.5 of their distance at contact; it \
-         is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
+         is the deepest of 1 such overlaps; set a tolerance or shrink the radii to accept them",
     );
     // The disks of a periodic box meet across its sides.
     let disks = "2\n{}\n1 0.25 1 0 0.5\n2 9.75 1 0 0.5\n";
@@ -98,7 +98,7 @@ fn faults_of_extended_xyz() {
     told(
         &disks.replace("{}", &keys.replace("F F F", "T F F")),
         "line 4: the disk overlaps the disk of line 3 by 0.5, a share of 0.5 of their distance at contact; it \
-         is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
+         is the deepest of 1 such overlaps; set a tolerance or shrink the radii to accept them",
     );
     told(
         &format!("0\n{}\n", keys.replace("F F F", "T x F")),
@@ -125,7 +125,7 @@ fn faults_of_extended_xyz() {
     }
     let text = "0\nDomain=\"0 9 0 inf\" Properties=pos:R:2:radius:R:1 pbc=\"F T F\"\n";
     told(text, "line 2: the box must be from smaller to larger numbers, but is \"0 to 9 and 0 to inf\"");
-    told(&format!("0\n{keys} Time=1 Time=2\n"), "line 2: the key `Time` stands in line 2 already");
+    told(&format!("0\n{keys} Time=1 Time=2\n"), "line 2: the key `Time` is already in line 2");
     told(
         &format!("0\n{keys} Title=\"Time=1\n"),
         "line 2: the value of `Title` must be within two quotes, but is \"\\\"Time=1\"",
@@ -184,7 +184,7 @@ fn faults_of_data_of_lammps() {
         "t\n\n0 atoms\n9 0 xlo xhi\n0 9 ylo yhi\n",
         "line 5: the box must be from smaller to larger numbers, but is \"9 to 0 and 0 to 9\"",
     );
-    told(&format!("{head}0 8 xlo xhi\n"), "line 8: `xlo xhi` stands in line 5 already");
+    told(&format!("{head}0 8 xlo xhi\n"), "line 8: `xlo xhi` is already in line 5");
     told(&head.replace("0 9 y", "-inf 9 y"), "line 6: a side of the box must be finite, but is \"-inf\"");
     let ours = head.replace("t\n\n2", "written by granular-edmd, time = nan\n\n0");
     told(&ours, "line 1: time must be finite, but is \"nan\"");
@@ -192,11 +192,11 @@ fn faults_of_data_of_lammps() {
     let other = head.replace("t\n\n2 atoms", "runtime = 7\n\n0 atoms");
     assert_eq!(Reader::new().read_from(other.as_bytes()).unwrap().time(), None);
     let atoms = format!("{head}Atoms\n\n2 1 1 1 2 2 0\n");
-    told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 stands in line 10 already");
+    told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 is already in line 10");
     told(
         &format!("{atoms}1 1 1 1 2.5 2 0\n"),
         "line 11: the disk overlaps the disk of line 10 by 0.5, a share of 0.5 of their distance at contact; it \
-         is the deepest of 1 such overlaps; a tolerance or shrunk radii accept them",
+         is the deepest of 1 such overlaps; set a tolerance or shrink the radii to accept them",
     );
     told(&format!("{atoms}1 1 1 1 9.5 2 0\n"), "line 11: the disk at (9.5, 2) is outside the box");
     told(
@@ -211,7 +211,7 @@ fn faults_of_data_of_lammps() {
     );
     told(
         &format!("{moving}1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
-        "line 16: the velocity of atom 1 stands in line 15 already",
+        "line 16: the velocity of atom 1 is already in line 15",
     );
     // A file that was cut: the disk would be at rest.
     told(

@@ -77,9 +77,7 @@ fn nothing_is_overwritten() {
     fs::write(&path, "my notes").unwrap();
     let error = Recorder::create(&path, ExtendedXyz, times()).unwrap_err();
     assert!(matches!(error, RecordError::Exists { .. }));
-    assert!(
-        report(&error).ends_with("notes.xyz is there already and is not overwritten; choose another name")
-    );
+    assert!(report(&error).ends_with("notes.xyz already exists and is not overwritten; choose another name"));
     // A recorder that goes on in the file does not overwrite it, either.
     for text in ["my notes", "my notes\n", "12", "", "3\nmy notes\n"] {
         fs::write(&path, text).unwrap();
@@ -100,7 +98,7 @@ fn what_others_have_appended_is_left() {
         bytes.extend(b"my notes\n");
         fs::write(&path, &bytes).unwrap();
         let error = append(&path).unwrap_err();
-        assert!(report(&error).contains("go on in"), "{}", report(&error));
+        assert!(report(&error).contains("cannot continue"), "{}", report(&error));
         assert_eq!(fs::read(&path).unwrap(), bytes);
     }
 }
@@ -212,8 +210,8 @@ fn a_gap_needs_consent() {
     let mut recorder = append(&path).unwrap();
     for _ in 0..2 {
         let error = run.run_until(3.0, &mut recorder).unwrap_err();
-        let told = "a.xyz ends at time 1, so a run from time 2.2 on would leave out the frame at time 1.5; go on from an earlier \
-                    checkpoint, or accept the gap by SampleTimes::starting_at";
+        let told = "a.xyz ends at time 1, so a run from time 2.2 on would leave out the frame at time 1.5; continue from an earlier \
+                    checkpoint, or accept the gap with SampleTimes::starting_at";
         assert!(report(&error).ends_with(told), "{}", report(&error));
     }
     drop(recorder);
@@ -250,9 +248,9 @@ fn a_frame_of_another_run_is_refused() {
         let mut other = mixture();
         other.set_gravity(0.31).unwrap();
         let error = other.run_until(3.0, &mut recorder).unwrap_err();
-        assert!(report(&error).ends_with("it goes to time 3, and has another frame at time 0.5"), "{error}");
+        assert!(report(&error).ends_with("it ends at time 3, and has another frame at time 0.5"), "{error}");
         let error = recorder.record(&snapshot(0.7)).unwrap_err();
-        assert!(report(&error).ends_with("it goes to time 3, and has no frame at time 0.7"), "{error}");
+        assert!(report(&error).ends_with("it ends at time 3, and has no frame at time 0.7"), "{error}");
         assert_eq!(fs::read(&path).unwrap(), before);
     }
 }
@@ -465,7 +463,7 @@ fn faults_of_formats_are_told() {
     assert_eq!(faulty(0.0, 0, false), Ok(()));
     assert_eq!(faulty(0.5, 0, false), found("frame 0 of time -0.5 is read as one of time 0.0"));
     assert_eq!(faulty(0.0, 1, false), found("frame 0 has 10 bytes, of which 11 are skipped"));
-    let cut = "frame 0, cut after 2 of its 10 bytes, does not answer `None`";
+    let cut = "frame 0, cut after 2 of its 10 bytes, is not reported as `None`";
     assert_eq!(faulty(0.0, 0, true), found(cut));
     assert_eq!(faulty(0.0, 5, false), found("frame 0 of 10 bytes differs when it is written again"));
     assert_eq!(trajectory::laws::check(&ExtendedXyz), Ok(()));

@@ -75,7 +75,7 @@ fn no_file_of_a_series_is_overwritten() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "my notes");
     assert_eq!(fs::read_to_string(scratch.path("run/disks_000000.vtp")).unwrap(), "mine");
     let error = Recorder::create(scratch.path("run.vtk"), Vtk, times()).unwrap_err();
-    assert!(report(&error).ends_with("the name must be of Unicode letters and end in .pvd"));
+    assert!(report(&error).ends_with("the name must be valid Unicode and end in .pvd"));
 }
 
 #[test]

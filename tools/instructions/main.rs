@@ -1,4 +1,4 @@
-//! The run whose instructions `.ci/instructions` counts: a standard state that goes on for a while.
+//! The run whose instructions `.ci/instructions` counts: a standard state that is run for a while.
 
 use std::process::ExitCode;
 
@@ -43,8 +43,8 @@ fn count<R: CollisionRule, B: Boundary>(mut run: Simulation<R, B>) -> Outcome<()
     Ok(())
 }
 
-/// Creates a shower of about this many drops onto a floor that takes them out: as many come as go. A drop
-/// meets no other, and its way is the same however many there are.
+/// Creates a shower of about `drops` drops onto a floor that removes them, with as many new drops as removed
+/// ones. Drops do not meet each other, so the work for a drop does not depend on their number.
 fn shower(drops: f64) -> Outcome<Simulation<Elastic, Container>> {
     const TOP: f64 = 2.0;
     let width = (drops / TOP).round();

@@ -11,11 +11,12 @@ use benches::Outcome;
 
 const AREA_FRACTION: f64 = 0.4;
 
-/// A gas that runs.
+/// A running gas.
 pub(crate) struct Gas(Simulation<Elastic>);
 
 impl Gas {
-    /// Places disks of these radii at random in a box of this side, and lets each collide this many times.
+    /// Places disks of these radii at random in a box of this side, and lets each disk collide `settle`
+    /// times.
     pub(crate) fn of(radii: Vec<f64>, side: f64, settle: f64) -> Outcome<Self> {
         let settle = (0.5 * settle * radii.len() as f64) as u64;
         let disks = initial::with_maxwellian_velocities(placed(radii, side)?, 1.0, 1)?;
@@ -25,7 +26,7 @@ impl Gas {
         Ok(gas)
     }
 
-    /// Returns the seconds for this many collisions.
+    /// Returns the seconds for `collisions` collisions.
     pub(crate) fn seconds_for(&mut self, collisions: u32) -> Outcome<f64> {
         let start = Instant::now();
         self.collide(u64::from(collisions))?;
@@ -48,7 +49,7 @@ impl Gas {
     }
 }
 
-/// Returns the side of a box in which these disks have the area fraction of the bench.
+/// Returns the side of a box in which these disks have the area fraction of this measurement.
 pub(crate) fn side_for(radii: &[f64]) -> f64 {
     let area: f64 = radii.iter().map(|radius| PI * radius * radius).sum();
     let largest = radii.iter().copied().fold(0.0, f64::max);

@@ -1,14 +1,16 @@
-//! The time of a collision in mixtures of sizes, divided by that in a gas of as many equal disks.
+//! The time per collision in mixtures of sizes, divided by the time in a gas of the same number of equal
+//! disks.
 //!
 //! ```sh
 //! cargo run --release -p tools --bin mixtures                  # 1000 and 10 000 disks
-//! DISKS=100000 cargo run --release -p tools --bin mixtures     # as many as you like
+//! DISKS=100000 cargo run --release -p tools --bin mixtures     # any number of disks
 //! ```
 //!
 //! Each mixture is an elastic gas without gravity at an area fraction of 0.4 in a square box. It is compared
-//! with two other gases: as many disks of the smallest size alone, at the same area fraction; and, for two
-//! sizes, its own small disks alone, in the same box. All gases run in turn, `ROUNDS` stretches of
-//! `COLLISIONS` each, and the least time of each gas counts. `DETAILS` asks for the kinds of the events.
+//! with two other gases: the same number of disks, all of the smallest size, at the same area fraction; and,
+//! for two sizes, its small disks alone, in the same box. The gases run alternately, for `ROUNDS` intervals
+//! of `COLLISIONS` collisions each, and the shortest time of each gas counts. With `DETAILS`, the numbers of
+//! other events are printed, too.
 
 mod gas;
 mod mixture;
@@ -21,7 +23,7 @@ use benches::ask;
 use gas::{Gas, side_for};
 use mixture::{Distribution, Mixture, Sizes};
 
-/// Collisions of each disk before the first stretch.
+/// Collisions of each disk before the first interval.
 const SETTLE: f64 = 6.0;
 
 /// The plan of the measurement.
@@ -30,7 +32,7 @@ struct Plan {
     ratios: Vec<f64>,
     spans: Vec<f64>,
     rounds: u32,
-    /// Collisions in a stretch.
+    /// Collisions in an interval.
     collisions: u32,
 }
 
@@ -42,8 +44,8 @@ fn run() -> Outcome<()> {
     let plan = Plan::asked_for()?;
     benches::print_circumstances();
     println!(
-        "Time per collision over that of as many equal disks, and of the small disks alone in the same box; \
-         the least of {} stretches.",
+        "Time per collision, divided by the time for as many equal disks, and for the small disks \
+         alone in the same box; the shortest of {} intervals.",
         plan.rounds
     );
     for &disks in &plan.disks {
@@ -89,11 +91,11 @@ fn row(cells: impl Iterator<Item = String>) -> String {
     cells.collect::<Vec<_>>().join(" | ")
 }
 
-/// The time of a collision in a mixture, divided by that in two other gases.
+/// The time per collision in a mixture, divided by the times in two other gases.
 struct Ratios {
-    /// Divided by that among as many equal disks at the same area fraction.
+    /// Divided by the time among the same number of equal disks at the same area fraction.
     equal: f64,
-    /// Divided by that among the small disks of a mixture of two sizes, alone in the same box.
+    /// Divided by the time among the small disks of a mixture of two sizes, alone in the same box.
     small: Option<f64>,
 }
 

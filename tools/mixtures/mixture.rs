@@ -15,7 +15,7 @@ pub(crate) enum Sizes {
     Intruder,
     /// One large disk among a hundred.
     Few,
-    /// Large disks take half of the area of all disks.
+    /// Large disks with half of the area of all disks.
     HalfOfTheArea,
     /// Many sizes.
     Many(Distribution),
@@ -32,7 +32,7 @@ pub(crate) enum Distribution {
     Uniform,
     /// The smallest and largest are three standard deviations from the median.
     LogNormal,
-    /// The density goes as r⁻³: each octave takes the same area.
+    /// The density is proportional to r⁻³, so the disks of each octave have the same area.
     PowerLaw,
 }
 
@@ -51,7 +51,7 @@ impl Distribution {
     }
 }
 
-/// A mixture of this many disks.
+/// A mixture of `disks` disks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mixture {
     pub(crate) sizes: Sizes,

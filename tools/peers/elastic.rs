@@ -21,13 +21,13 @@ const STATES: [(usize, &[f64]); 3] =
 /// Collisions of each disk until the gas has forgotten its lattice.
 const SETTLE: u64 = 50;
 
-/// Least number of collisions in a stretch.
+/// Smallest number of collisions in an interval.
 const COLLISIONS: u64 = 300_000;
 
 /// Largest difference between the collision rates and pressures of two programs in the same state.
 const ALIKE: f64 = 0.02;
 
-/// A gas of this crate, which goes on from stretch to stretch.
+/// A gas of this crate, which continues from interval to interval.
 struct Gas {
     run: Simulation<Elastic>,
     side: f64,
@@ -107,7 +107,7 @@ impl Gas {
         self.run.measure(&Temperatures).translational().sqrt()
     }
 
-    /// Goes on for a stretch to measure PA/(NT).
+    /// Continues for an interval to measure PA/(NT).
     fn compressibility(&mut self) -> Outcome<f64> {
         let start = self.start()?;
         let end = self.run.time() + start.time / self.thermal_speed();
@@ -117,7 +117,7 @@ impl Gas {
         Ok(stress.tensor().pressure.mean() * self.side.powi(2) / energy)
     }
 
-    /// Returns the present disks, and the time of a stretch of them.
+    /// Returns the present disks, and the length of an interval for them.
     fn start(&mut self) -> Outcome<Start> {
         let disks = self.run.disks();
         let rate = self.stretch()?.rate;

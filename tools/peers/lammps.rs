@@ -1,4 +1,5 @@
-//! LAMMPS as another program, which gets a start and an input, and whose output is read when it is done.
+//! LAMMPS as a separate program, which gets an initial state and an input file, and whose output is read when
+//! it is done.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -36,7 +37,7 @@ pub(crate) struct Contacts {
     pub(crate) steps: u32,
 }
 
-/// Contacts and steps as a careful user takes them, and contacts as soft as is usual.
+/// Contacts and steps as a careful user chooses them, and contacts as soft as usual.
 pub(crate) const CONTACTS: [Contacts; 2] =
     [Contacts { name: "careful", time: 0.01, steps: 40 }, Contacts { name: "soft", time: 0.04, steps: 25 }];
 
@@ -50,7 +51,8 @@ pub(crate) struct Lammps {
 }
 
 impl Lammps {
-    /// Runs from these disks until soft contacts have settled, and then measures for this many oscillations.
+    /// Runs from these disks until soft contacts have settled, and then measures for `oscillations`
+    /// oscillations.
     pub(crate) fn measure(
         &self,
         state: &State,
@@ -86,12 +88,12 @@ impl Lammps {
             let last = said.lines().rev().find(|line| line.starts_with("ERROR")).unwrap_or_default();
             return Err(format!("LAMMPS failed: {last} {errors}\n{}", super::HOW_TO_GET_THEM).into());
         }
-        let seconds = seconds_of_last_run(&said).ok_or("LAMMPS did not tell its time")?;
+        let seconds = seconds_of_last_run(&said).ok_or("LAMMPS did not report its time")?;
         Means::of(seconds / f64::from(oscillations.1), &samples(&fs::read_to_string(means)?)?)
     }
 }
 
-/// Returns the disks as LAMMPS reads them. All have the diameter 1; the density is set by the input.
+/// Returns the disks in the form that LAMMPS reads. All have the diameter 1; the density is set by the input.
 fn data_file(disks: &[Disk]) -> String {
     let mut text = format!(
         "A start\n\n{} atoms\n1 atom types\n\n-1 61 xlo xhi\n-1 151 ylo yhi\n-0.5 0.5 zlo zhi\n\nAtoms # sphere\n\n",

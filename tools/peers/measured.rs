@@ -1,21 +1,21 @@
-//! What is asked of another event-driven program, and what it answers.
+//! The input of another event-driven program, and its results.
 
 use granular_edmd::Disk;
 
-/// The start of another program.
+/// The initial state for another program.
 pub(crate) struct Start {
     pub(crate) side: f64,
     pub(crate) disks: Vec<Disk>,
-    /// Time of a stretch at the temperature 1.
+    /// Length of an interval at temperature 1.
     pub(crate) time: f64,
 }
 
-/// What a stretch of a program took.
+/// The speed of a program in one interval.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Speed {
-    /// Time on the processor of a collision.
+    /// Processor time per collision.
     pub(crate) nanoseconds: f64,
-    /// Collisions of a disk in the time σ√(m/T).
+    /// Number of collisions of a disk in the time σ√(m/T).
     pub(crate) rate: f64,
 }
 

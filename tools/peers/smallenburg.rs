@@ -1,9 +1,9 @@
 //! The event-driven codes for spheres of Frank Smallenburg (Eur. Phys. J. E **45**, 22 (2022)) as another
 //! program.
 //!
-//! Settings are constants in the code, so each choice of them is compiled from a changed copy. The spheres
-//! lie in a plane, in one layer of cells, and have no velocity out of it. The third coordinate stays in the
-//! arithmetic.
+//! Settings are constants in the code, so each choice of settings is compiled from a changed copy. The
+//! spheres lie in a plane, in one layer of cells, and have no velocity out of it. The third coordinate stays
+//! in the arithmetic.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -25,14 +25,14 @@ const TEMPERATURE: f64 = 1.5;
 struct Variant {
     name: &'static str,
     file: &'static str,
-    /// Changes of its text besides those of [`CHANGES`].
+    /// Changes of its text in addition to [`CHANGES`].
     changes: &'static [(&'static str, &'static str)],
     /// The lengths that are tried.
     lengths: &'static [f64],
 }
 
-/// Changes of all variants, for spheres in a plane, settings from outside, and the time on the processor in
-/// the reports.
+/// Changes of all variants, for spheres in a plane, settings from outside, and the processor time in the
+/// reports.
 const CHANGES: [(&str, &str); 8] = [
     ("double writeinterval = 1;", "double writeinterval = INTERVAL;"),
     ("double eventlisttimemultiplier = 1;", "double eventlisttimemultiplier = LIST;"),
@@ -103,7 +103,7 @@ struct Settings {
     variant: &'static Variant,
     /// Size of the cells, or radius of the neighbor lists, in diameters.
     length: f64,
-    /// Most neighbors in a list.
+    /// Largest number of neighbors in a list.
     neighbors: u32,
     /// Time of a list of events, times the number of spheres.
     list: f64,
@@ -111,7 +111,7 @@ struct Settings {
     span: f64,
 }
 
-/// The program, a start, and the settings that are the fastest there.
+/// The program, an initial state, and the fastest settings for it.
 pub(crate) struct Smallenburg<'a> {
     folder: &'a Path,
     start: &'a Start,
@@ -120,7 +120,7 @@ pub(crate) struct Smallenburg<'a> {
 }
 
 impl<'a> Smallenburg<'a> {
-    /// Searches for the fastest settings from this start.
+    /// Searches for the fastest settings for this initial state.
     pub(crate) fn tuned(folder: &'a Path, start: &'a Start) -> Outcome<Self> {
         let place = benches::working_folder("smallenburg")?;
         fs::create_dir_all(&place)?;
@@ -138,8 +138,8 @@ impl<'a> Smallenburg<'a> {
         Ok(peer)
     }
 
-    /// Keeps the fastest of these settings. Those with which the program ends are passed over: a sphere has
-    /// too many neighbors.
+    /// Keeps the fastest of these settings. Settings with which the program aborts, because a sphere has too
+    /// many neighbors, are skipped.
     fn keep_fastest(&mut self, all: Vec<Settings>) -> Outcome<()> {
         let mut best = (f64::INFINITY, self.settings);
         for settings in all {
@@ -176,7 +176,7 @@ impl<'a> Smallenburg<'a> {
         Err(format!("it cannot be built: {}", String::from_utf8_lossy(&built.stderr)).into())
     }
 
-    /// Runs it for a stretch that does not count and for one that does.
+    /// Runs the program for two intervals, of which only the second counts.
     pub(crate) fn measure(&self) -> Outcome<Measured> {
         let output = Command::new(self.place.join("in_a_plane")).current_dir(&self.place).output()?;
         let said = String::from_utf8(output.stdout)?;
@@ -200,7 +200,8 @@ impl<'a> Smallenburg<'a> {
     }
 }
 
-/// Returns a start as the code reads it: spheres in a plane, in a box as thick as one of them.
+/// Returns an initial state in the form that the code reads: spheres in a plane, in a box as thick as one of
+/// them.
 fn spheres(start: &Start) -> String {
     let mut text = format!("{}\n{side} {side} 1\n", start.disks.len(), side = start.side);
     // Writing into a text cannot fail.
@@ -210,7 +211,7 @@ fn spheres(start: &Start) -> String {
     text
 }
 
-/// Returns time, collisions, pressure and seconds on the processor of a line with a report.
+/// Returns time, collisions, pressure and processor seconds from a line of a report.
 fn report(line: &str) -> Option<[f64; 4]> {
     let number = |name: &str| line.split(name).nth(1)?.split([',', ' ']).next()?.parse().ok();
     Some([number("Simtime: ")?, number("Collisions: ")?, number("Press: ")?, number("T: ")?])

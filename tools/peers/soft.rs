@@ -1,8 +1,8 @@
-//! The paper's box by soft disks in LAMMPS and by this crate, from the same settled state of this crate, over
-//! a sinusoidal base.
+//! The paper's box with soft disks in LAMMPS and with hard disks in this crate, from the same settled state
+//! of this crate, over a sinusoidal base.
 //!
-//! LAMMPS first relaxes, since its contacts last. Height and energies have errors from blocks. Times are by
-//! the wall clock, per oscillation of the base. This crate runs longer, so that its own errors are smaller.
+//! LAMMPS first relaxes, since its contacts last. Height and energies have errors from blocks. Times are
+//! wall-clock times per oscillation of the base. This crate runs longer, so that its own errors are smaller.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -22,14 +22,15 @@ use benches::{Outcome, ask};
 
 const CAVEATS: &str = "\
 One thread each, wall clock, a thousand disks. The ratio depends on the state and on how stiff the disks are:
-hard disks cost by the collision, soft ones by the time step. So it grows with stiffness, and shrinks with
-the rate of collisions; where disks stay in contact, soft ones win. Soft ones have what hard ones lack: lasting
-contacts, chains of forces, particles of any shape, runs on many processors.";
+hard disks take time per collision, soft disks per time step. The ratio therefore grows with stiffness, and falls
+with the rate of collisions; where disks stay in contact, soft disks win. Soft disks have what hard disks lack:
+lasting contacts, force chains, particles of any shape, runs on many processors.";
 
-/// Oscillations of this crate for each one of LAMMPS, so that its errors are smaller.
+/// Number of oscillations of this crate for each oscillation of LAMMPS, so that the errors of this crate are
+/// smaller.
 const LONGER: u32 = 100;
 
-/// Interval of samples in oscillations. They go through all phases of the base.
+/// Sampling interval in oscillations. The samples go through all phases of the base.
 const INTERVAL: f64 = 0.26;
 
 type Run = Simulation<ContactDuration<Frictional>, Container>;
@@ -60,7 +61,8 @@ pub(crate) fn compare(lammps: Option<&PathBuf>) -> Outcome<()> {
     Ok(())
 }
 
-/// Returns the box after this many oscillations, when the base is at its lowest, from where LAMMPS moves it.
+/// Returns the box after `oscillations` oscillations, at a time when the base is at its lowest position, from
+/// which LAMMPS moves it.
 fn settled(state: &State, oscillations: u32) -> Outcome<Run> {
     let base = Sinusoidal::new(AMPLITUDE, ANGULAR_FREQUENCY)?;
     let container = Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?;
@@ -72,7 +74,7 @@ fn settled(state: &State, oscillations: u32) -> Outcome<Run> {
     Ok(run)
 }
 
-/// Measures for this many oscillations.
+/// Measures for `oscillations` oscillations.
 fn measure(run: &mut Run, oscillations: u32) -> Outcome<Means> {
     let times = SampleTimes::every(INTERVAL * OSCILLATION)?;
     let mut series = Series::new((CenterOfMass, Energies), times);

@@ -6,10 +6,10 @@
 //! cargo run --release -p tools --bin plain -- 0.015625 0.03 0 1 2000
 //! ```
 //!
-//! It prints the number of collisions of two disks per second, and per oscillation of the base. All is as
-//! naive as is natural: disks of diameter and mass 1 in cells of at least a diameter, one event for each disk
-//! in the binary heap of the standard library, stale entries that are skipped when they come up, and a clock
-//! for each disk.
+//! It prints the number of collisions of two disks per second, and per oscillation of the base. Everything is
+//! done in the simplest way: disks of diameter and mass 1 in cells of at least a diameter, one event for each
+//! disk in the binary heap of the standard library, stale entries that are skipped when they come up, and a
+//! clock for each disk.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -154,7 +154,7 @@ impl Run {
         }
     }
 
-    /// Brings a disk to a time.
+    /// Moves a disk to its state at a time.
     fn fly(&mut self, disk: usize, time: f64) {
         let disk = &mut self.disks[disk];
         let after = time - disk.time;
@@ -164,7 +164,7 @@ impl Run {
         disk.time = time;
     }
 
-    /// Returns place and velocity of a disk at a time.
+    /// Returns position and velocity of a disk at a time.
     fn at(&self, disk: usize, time: f64) -> ([f64; 2], [f64; 2]) {
         let Disk { time: start, place: [x, y], velocity: [u, v], .. } = self.disks[disk];
         let after = time - start;
@@ -260,7 +260,8 @@ impl Run {
         f64::INFINITY
     }
 
-    /// Whether a disk collides for the second time within the contact duration, which costs no energy.
+    /// Returns whether a disk collides for the second time within the contact duration, which loses no
+    /// energy.
     fn is_again(&mut self, disk: usize) -> bool {
         let disk = &mut self.disks[disk];
         let again = disk.time - disk.last_collision < CONTACT_DURATION;
@@ -297,7 +298,7 @@ impl Run {
         self.push(disk, normal, impulse, -1.0);
     }
 
-    /// Returns the impulse along the normal and the tangent, by the rule of the paper.
+    /// Returns the impulse along the normal and the tangent, by the paper's rule.
     fn impulse(&self, normal: [f64; 2], relative: [f64; 2], roll: f64, again: bool, mass: f64) -> [f64; 2] {
         let closing = relative[0] * normal[0] + relative[1] * normal[1];
         if again {

@@ -1,5 +1,5 @@
-//! The programs that are compared, each in a process of its own: this one, built once for any processor of
-//! its kind and once for the one at hand, and the plain simulation.
+//! The programs that are compared, each in a separate process: this one, built once for any processor of this
+//! architecture and once for the processor at hand, and the plain simulation.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -17,7 +17,7 @@ pub(crate) struct Built {
 }
 
 impl Built {
-    /// Builds a program of this package with these flags of the compiler, in a folder of this name.
+    /// Builds a program of this package with these compiler flags, in a folder of this name.
     pub(crate) fn new(name: &str, flags: &str, folder: &str) -> Outcome<Self> {
         let target = benches::working_folder(folder)?;
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -5,15 +5,15 @@
 //! cargo run --release -p tools --bin ratio
 //! ```
 //!
-//! The other one is `tools/plain`, built for the processor at hand. This crate is measured as users get it
-//! without flags of the compiler, and built for the processor at hand.
-//! The bench builds itself for both, whatever its own flags are.
+//! The plain simulation is `tools/plain`, built for the processor at hand. This crate is measured as users
+//! get it without compiler flags, and built for the processor at hand. The program builds itself both ways,
+//! whatever its own flags are.
 //!
-//! Machines are noisy and no two are alike. Therefore, the programs run in turn, and the median of the ratios
-//! of collisions of two disks per second counts. Each program starts from its own lattice, settles for a
-//! number of oscillations of the base, and is measured for as many oscillations by the wall clock. `ROUNDS`
-//! and `OSCILLATIONS` change the number and the length of the measurements. At a smaller gravity, the
-//! measurement is longer, since flights are longer.
+//! Machines are noisy and no two are alike. Therefore, the programs run alternately, and the median of the
+//! ratios of their numbers of disk collisions per second counts. Each program starts from its own lattice,
+//! settles for a number of oscillations of the base, and is measured for the same number of oscillations by
+//! the wall clock. `ROUNDS` and `OSCILLATIONS` change the number and the length of the measurements. At a
+//! smaller gravity, the measurement is longer, since flights are longer.
 
 mod itself;
 
@@ -43,7 +43,7 @@ struct Plan {
     states: Vec<State>,
 }
 
-/// Measures the speed in a state, from a seed, over this many oscillations.
+/// A function that measures the speed in a state, from a seed, for a number of oscillations.
 type Measure = Box<dyn Fn(&State, u64, u32) -> Outcome<Speed>>;
 
 /// A program that is measured.
@@ -118,7 +118,7 @@ fn plane() -> Vec<State> {
     states
 }
 
-/// Measures all programs in turn. The first one to run changes from round to round.
+/// Measures all programs, one after another. The first program changes from round to round.
 fn measure(plan: &Plan, state: &State, programs: &[Program], round: u32) -> Outcome<Vec<Speed>> {
     let (seed, oscillations) = (u64::from(round) + 1, plan.oscillations_at(state.gravity));
     let first = round as usize % programs.len();
@@ -129,7 +129,7 @@ fn measure(plan: &Plan, state: &State, programs: &[Program], round: u32) -> Outc
     Ok(speeds)
 }
 
-/// Runs this crate for this many oscillations to settle from the lattice, and for as many to measure.
+/// Runs this crate for `oscillations` oscillations to settle from the lattice, and for as many to measure.
 fn ours(state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
     let mut run = state.settled(seed, oscillations)?;
     let (start, before) = (Instant::now(), run.counters().disk_collisions);

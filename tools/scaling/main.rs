@@ -5,11 +5,11 @@
 //! ```
 //!
 //! The program runs the same physical state in boxes of the same height and growing width, with at most
-//! `LARGEST` (10⁶) disks. It measures `ROUNDS` times, and the medians of the time on a processor count. The
-//! disks are numbered once by their place, which is the best for the caches, and once at random. With the
-//! feature `picture`, the picture goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG
-//! and as a table beside it. With `TABLE`, the path of such a table, nothing is measured: the picture shows
-//! the times of the table.
+//! `LARGEST` (10⁶) disks. It measures `ROUNDS` times, and reports the medians of the processor time. The
+//! disks are numbered once by position, which is best for the caches, and once at random. With the feature
+//! `picture`, the picture goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG and as a
+//! table beside it. With `TABLE`, the path of such a table, nothing is measured: the picture shows the times
+//! of the table.
 
 mod measurement;
 #[cfg(feature = "picture")]
@@ -159,7 +159,7 @@ fn print(rows: &[Row]) {
     }
 }
 
-/// Returns the bytes per disk. The memory of a small system drowns in that of the process.
+/// Returns the bytes per disk. The memory of a small system is not visible in the memory of the process.
 fn bytes(row: &Row) -> String {
     let bytes = row.quartiles(|round| round.bytes_per_disk).median;
     if row.disks < 10_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }

@@ -30,8 +30,8 @@ pub(crate) fn asked_for() -> Option<usize> {
 }
 
 impl Measurement {
-    /// Measures a system, given by its number, in a new process. In this process, freed memory would be used
-    /// again and not be seen.
+    /// Measures a system, given by its number, in a new process. In this process, the system would use freed
+    /// memory again, and its own memory would not be seen.
     pub(crate) fn in_new_process(number: usize) -> Outcome<Self> {
         let mut process = Command::new(std::env::current_exe()?);
         process.args(std::env::args().skip(1)).args([ASK, &number.to_string()]);
@@ -58,7 +58,7 @@ impl fmt::Display for Measurement {
 /// their size.
 const WARM_UP: u32 = 30;
 
-/// Builds the system and runs it for this many oscillations, after [`WARM_UP`].
+/// Builds the system and runs it for `oscillations` oscillations, after [`WARM_UP`].
 pub(crate) fn measure<S: EventScheduler + Default>(
     state: &State,
     disks: impl FnOnce() -> Outcome<Vec<Disk>>,

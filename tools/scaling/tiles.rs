@@ -1,8 +1,8 @@
 //! A settled state of any size: boxes of the paper's width side by side.
 //!
-//! Settling a million disks from a lattice takes an hour. A thousand disks settle at once, and snapshots of
-//! them at different times, one beside the other, are a settled state of a wide box. Every second snapshot is
-//! mirrored, so that the flow goes on across the seam.
+//! Settling a million disks from a lattice takes an hour. A thousand disks settle quickly, and snapshots of
+//! them at different times, side by side, are a settled state of a wide box. Every second snapshot is
+//! mirrored, so that the flow continues across the seam.
 
 use std::cmp::Ordering;
 
@@ -41,14 +41,14 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    /// Settles one box, and takes this many snapshots of this state.
+    /// Settles one box in this state, and takes `count` snapshots of it.
     pub(crate) fn settled(state: &State, settle: u32, count: usize) -> Outcome<Self> {
         let mut run = state.settled(1, settle)?;
         let snapshots = (0..count).map(|_| next(&mut run)).collect::<Outcome<_>>()?;
         Ok(Self { snapshots })
     }
 
-    /// Returns the disks of this many boxes side by side.
+    /// Returns the disks of `boxes` boxes side by side.
     pub(crate) fn disks(&self, boxes: usize, numbering: Numbering) -> Outcome<Vec<Disk>> {
         let mut disks = Vec::new();
         for (place, snapshot) in self.snapshots.iter().take(boxes).enumerate() {

@@ -52,7 +52,7 @@ struct Arguments {
     /// Number of pins on the rim; 0 for a smooth rim.
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=200))]
     pins: u16,
-    /// Turns that are measured, after half a turn.
+    /// Number of turns during which the drum is measured, after half a turn.
     #[arg(long, default_value_t = 1.5, value_parser = positive)]
     turns: f64,
     /// Closing speed below which collisions lose nothing.
@@ -64,10 +64,10 @@ struct Arguments {
     /// Samples per turn.
     #[arg(long, default_value_t = 200, value_parser = whole::<100_000>)]
     samples: u64,
-    /// Seed of places and velocities.
+    /// Seed of positions and velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Measures the last of the rates only, for a quarter of a turn at most.
+    /// Measures only the last of the rates, for at most a quarter of a turn.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -87,7 +87,7 @@ const SPIN_UP: f64 = 0.5;
 struct Turned {
     rate: f64,
     froude: f64,
-    /// Turns, and the surface then.
+    /// Numbers of turns, and the surface at these times.
     surfaces: Vec<(f64, Slope)>,
     angle: Estimate,
     /// Standard deviation of the angle over time.
@@ -120,7 +120,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     write(arguments, &drums).map_err(Failure::run)
 }
 
-/// Turns a drum, and measures it after a while.
+/// Turns a drum, and measures it once it has settled.
 fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
     let rule = Frictional::from_inelasticity(0.1, 0.1, arguments.friction)?;
     // Slow contacts hold the surfaces of the grains together. Without that, they would slide.

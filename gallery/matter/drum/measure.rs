@@ -3,7 +3,7 @@
 use granular_edmd::Disk;
 use granular_edmd::glam::DVec2;
 
-/// Part of the radius, on both sides of the middle, in which the surface is fitted.
+/// Largest distance from the middle at which the surface is fitted, as a fraction of the radius.
 const FITTED: f64 = 0.6;
 
 /// Width of the columns in which the highest grain counts, and of the layers of the flow.
@@ -48,7 +48,7 @@ fn lies(disk: &Disk, disks: &[Disk]) -> bool {
         let reach = 1.2 * (disk.radius() + other.radius());
         other.position().distance_squared(disk.position()) < reach * reach
     };
-    // The disk itself is one of them.
+    // The disk itself counts as near, too.
     disks.iter().filter(near).take(3).count() == 3
 }
 
@@ -69,7 +69,7 @@ impl Depths {
 
     /// Counts grains under a surface at this angle.
     pub(crate) fn add(&mut self, disks: &[Disk], angle: f64) {
-        /// Distance from the middle in which grains count, and from the rim.
+        /// Largest distances from the middle, and from the rim, at which grains count.
         const MIDDLE: f64 = 2.5;
         const RIM: f64 = 1.3;
         let (along, up) = (DVec2::from_angle(angle), DVec2::from_angle(angle).perp());

@@ -19,7 +19,7 @@ const BELOW: f64 = 330.0;
 /// Grains that turn as one body with the drum.
 const BODY: Look = Look::line(QUIET, "4 3").with_width(1.2);
 
-/// Draws the drums in a row, and angles and flow below.
+/// Draws the drums in a row, with angles and flow below them.
 pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let (frame, tall) = (SIDE + MARGINS[0] + MARGINS[1], SIDE + MARGINS[2] + MARGINS[3]);
     let width = frame * drums.len().max(2) as f64;
@@ -30,7 +30,7 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
         "{grains} grains, {pins} pins, q = 0.1, κ = {friction}, elastic below {speed} √(gd); arrows: mean flow, dashed: mean surface"
     );
     let last = sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
-    // Words over a single drum take two lines.
+    // Above a single drum, the words of the header take two lines.
     let top = last + 32.0;
     sheet.grow(top);
     let arrows = || drums.iter().map(|drum| Arrows::of(&drum.flow, 0.15, 2.0));
@@ -39,7 +39,7 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
         let place = Place { x: k as f64 * frame, y: top + 24.0, width: frame, height: tall };
         draw_drum(&mut sheet, place, arguments, drum, &arrows.in_scale_of(fastest));
     }
-    // An arrow of this length is this fast, in all drums.
+    // The scale of the arrows is the same in all drums.
     if let Some((speed, length)) = arrows().next().and_then(|arrows| arrows.in_scale_of(fastest).scale()) {
         sheet.arrow((MARGINS[0], last + 24.0), unit(arguments) * length, &format!("{speed} √(gd)"));
     }

@@ -1,7 +1,7 @@
 //! A run in files that other programs open: OVITO, LAMMPS, ParaView, spreadsheets.
 //!
 //! Two kinds of disks in a vibrated box with periodic sides. Each format gets the same frames, so that the
-//! files can be compared; `.ci/readers` opens them by the modules of OVITO and VTK.
+//! files can be compared; `.ci/readers` opens them with the modules of OVITO and VTK.
 //!
 //! ```text
 //! cargo run --release -p gallery --features gzip --bin export -- --out export
@@ -44,16 +44,16 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Takes 100 disks and 4 frames at most.
+    /// Uses at most 100 disks and 4 frames.
     #[arg(long)]
     quick: bool,
-    /// Prints frames per second and bytes per frame of each format, too.
+    /// Also prints frames per second and bytes per frame of each format.
     #[arg(long)]
     measure: bool,
     /// Folder for the results.
     #[arg(long, value_name = "FOLDER", default_value = "out/export")]
     out: PathBuf,
-    /// File for everything that the frames hold as JSON, to compare with what a reader finds; - is standard
+    /// File for the contents of all frames as JSON, to compare them with what a reader finds; - is standard
     /// output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,

@@ -9,7 +9,7 @@ use granular_edmd::prelude::*;
 
 use crate::{Arguments, recorders, start};
 
-/// Frames that are written for a figure.
+/// Number of frames that are written for a measurement.
 const FRAMES: u32 = 100;
 
 /// Writes the last state again and again, and prints a line for each format.

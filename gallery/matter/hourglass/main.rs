@@ -2,7 +2,7 @@
 //!
 //! The glass is one polygon. A gate shuts its neck until the grains lie still, and is then taken out; after
 //! the last grain, gravity points the other way, which turns the glass over. The mean diameter of the grains
-//! is 0.95 and their largest 1, their mass is 1, and so is gravity; `q = 0.1`, `κ = 0.3`.
+//! is 0.95 and the largest diameter 1; their mass and gravity are 1; `q = 0.1`, `κ = 0.3`.
 //!
 //! The flow does not depend on how many grains are left above, unlike the flow of a liquid. That is why
 //! hourglasses measure time.
@@ -46,16 +46,16 @@ struct Arguments {
     /// Width of the neck, in diameters of the largest grain.
     #[arg(long, default_value_t = 4.5, value_parser = positive)]
     neck: f64,
-    /// Seed of places and velocities.
+    /// Seed of positions and velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Largest number of collisions for each passage of the grains, in millions.
     #[arg(long, default_value_t = 100.0, value_parser = positive)]
     collisions: f64,
-    /// Runs the glass under each remedy for rest, too, and prints what it costs.
+    /// Also runs the glass under each remedy for matter at rest, and prints what it costs.
     #[arg(long)]
     compare: bool,
-    /// Takes 60 grains at most.
+    /// Uses at most 60 grains.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -143,7 +143,7 @@ fn grains(arguments: &Arguments) -> usize {
     if arguments.quick { arguments.grains.min(60) as usize } else { arguments.grains as usize }
 }
 
-/// Grains at a time.
+/// The grains at one time.
 struct Frame {
     time: f64,
     above: usize,
@@ -158,7 +158,7 @@ struct Way {
     collisions: u64,
 }
 
-/// Lets the grains through the neck, and back after a turn.
+/// Lets the grains run through the neck, and back after the glass is turned over.
 fn both_ways(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<[Way; 2], Box<dyn Error>> {
     let mut run = settled(arguments, glass, rule)?;
     let first = way(arguments, &mut run)?;
@@ -223,7 +223,7 @@ impl Way {
         self.frames.last().map_or(0.0, |frame| frame.time)
     }
 
-    /// Returns the flow while the number above falls from one share of all to another.
+    /// Returns the flow while the share of the grains above the neck falls from `from` to `to`.
     fn flow(&self, from: f64, to: f64) -> f64 {
         let all = self.frames.first().map_or(0, |frame| frame.disks.len()) as f64;
         let reached = |share: f64| self.frames.iter().find(|frame| frame.above as f64 <= share * all);

@@ -1,4 +1,4 @@
-//! The picture: a film of the glass, above the numbers over time.
+//! The picture: a sequence of frames of the glass, above the number of grains over time.
 
 use granular_edmd::prelude::*;
 
@@ -12,7 +12,7 @@ const HEADER: f64 = 90.0;
 const FILM: f64 = 308.0;
 const GAP: f64 = 16.0;
 
-/// Draws the film above the numbers over time.
+/// Draws the frames above the number of grains over time.
 pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Sheet {
     let unit = FILM / (2.0 * glass.top);
     let step = 2.0 * glass.width * unit + GAP;

@@ -1,14 +1,14 @@
-//! Measures of a gas beside theory: pair correlation at contact, pressure from collisions in the bulk and on
-//! the walls, self-diffusion, velocities and their memory.
+//! Measures of a gas, compared with theory: pair correlation at contact, pressure from collisions in the bulk
+//! and on the walls, self-diffusion, velocities and their memory.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin measures
 //! cargo run --release -p gallery --bin measures -- --packing-fraction 0.4 --seed 2
 //! ```
 //!
-//! An elastic gas of 1000 disks in a periodic box, the same gas between walls, and one of smooth inelastic
-//! disks that cools. Theory: Henderson's contact value (Mol. Phys. 30, 971 (1975)) and Enskog's
-//! theory; for the cooling gas van Noije and Ernst (Granular Matter 1, 57 (1998)).
+//! The gases are an elastic gas of 1000 disks in a periodic box, the same gas between walls, and a cooling
+//! gas of smooth inelastic disks. Theory: Henderson's contact value (Mol. Phys. 30, 971 (1975)) and Enskog's
+//! theory; for the cooling gas, van Noije and Ernst (Granular Matter 1, 57 (1998)).
 //!
 //! The example writes `measures.csv`, and `measures.svg` and `.png`: g(r), and the speeds of both gases.
 
@@ -31,7 +31,7 @@ use granular_edmd::simulation::RunError;
 use gallery::command_line;
 use gallery::results::Results;
 
-/// Measures of a gas of hard disks, beside theory.
+/// Measures of a gas of hard disks, compared with theory.
 #[derive(Parser)]
 struct Arguments {
     /// Packing fraction of the gas, from 0.01 to 0.45.
@@ -40,7 +40,7 @@ struct Arguments {
     /// Restitution of the gas that cools, from 0.5 to 1.
     #[arg(long, default_value_t = 0.6, value_parser = restitution)]
     restitution: f64,
-    /// Seed of places and velocities.
+    /// Seed of positions and velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Runs for a tenth of the time.
@@ -139,7 +139,7 @@ impl Gas {
     }
 }
 
-/// Runs until each disk has had this many more collisions.
+/// Runs until the disks have had `per_disk` more collisions each, on average.
 fn collide<R: CollisionRule>(run: &mut Simulation<R>, per_disk: u64) -> Result<(), RunError> {
     let collisions = per_disk * DISKS as u64 / 2;
     run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ()).map(|_| ())
@@ -186,7 +186,7 @@ fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<Bulk, Box<d
     Ok(Bulk { pairs, velocities })
 }
 
-/// Returns the value at the beginning of a straight line through values at equal distances.
+/// Returns the value at contact, where the bins begin, from a straight line fitted to the values in the bins.
 fn at_contact(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let place = |at: usize| at as f64 + 0.5 - 0.5 * count;
@@ -225,7 +225,7 @@ fn while_it_cools(
     let mut velocities =
         Sampled::new(VelocityDistribution::new(3.0, 30)?.about_mean(), SampleTimes::every(1.0)?);
     for seed in 0..u64::from(gases) {
-        // The gas is so dilute that the box is too small for vortices.
+        // The gas is so dilute that vortices, which are many mean free paths wide, do not fit into the box.
         let gas = Gas { packing: 0.008, seed: arguments.seed + seed };
         let container = Container::periodic(gas.side(), gas.side())?;
         let mut run = gas.settled(container, Smooth::from_restitution(r)?)?;

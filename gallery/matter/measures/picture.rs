@@ -1,4 +1,4 @@
-//! The picture: the pair correlation, and the distribution of speeds over that of a Maxwellian gas.
+//! The picture: the pair correlation, and the distribution of speeds divided by the Maxwellian distribution.
 
 use granular_edmd::observable::VelocityDistribution;
 use granular_edmd::statistics::HistogramBin;
@@ -36,7 +36,7 @@ pub(crate) fn draw(arguments: &Arguments, gas: &Gas, bulk: &Bulk, cooling: &Velo
     sheet
 }
 
-/// Draws the pair correlation, and Henderson's value of it at contact.
+/// Draws the pair correlation, and Henderson's value at contact.
 fn draw_pairs(sheet: &mut Sheet, place: Place, gas: &Gas, bulk: &Bulk) {
     let points: Vec<_> = bulk.pairs.iter().map(|(distance, value)| (distance, value.mean())).collect();
     let highest = points.iter().map(|(_, value)| *value).fold(gas.contact_value(), f64::max);
@@ -48,7 +48,8 @@ fn draw_pairs(sheet: &mut Sheet, place: Place, gas: &Gas, bulk: &Bulk) {
     sheet.legend_inside(&panel, &names);
 }
 
-/// Draws the distributions of speeds over the Maxwellian one, of the elastic gas and of the one that cools.
+/// Draws the distributions of speeds in the elastic and in the cooling gas, divided by the Maxwellian
+/// distribution.
 fn draw_speeds(sheet: &mut Sheet, place: Place, arguments: &Arguments, gases: [&VelocityDistribution; 2]) {
     let a2 = second_cumulant(arguments.restitution);
     let sonine = |c: f64| 1.0 + a2 * (0.5 * c.powi(4) - 2.0 * c * c + 1.0);
@@ -72,7 +73,7 @@ fn draw_speeds(sheet: &mut Sheet, place: Place, arguments: &Arguments, gases: [&
     sheet.legend_inside(&panel, &names);
 }
 
-/// Returns the middle of a bin, and its share over that of a Maxwellian gas with the error.
+/// Returns the middle of a bin, and the ratio of its share to the Maxwellian share, with the error.
 fn ratio(bin: &HistogramBin) -> (f64, f64, f64) {
     // The whole bin counts, since the distribution falls steeply.
     let share = (-bin.low * bin.low).exp() - (-bin.high * bin.high).exp();

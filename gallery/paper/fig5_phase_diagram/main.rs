@@ -43,10 +43,10 @@ struct Arguments {
     /// The same as `--size quick`.
     #[arg(long, conflicts_with = "size")]
     quick: bool,
-    /// Draws the finished points and computes nothing, even while another process does.
+    /// Draws the finished points and computes nothing, even while another process computes the rest.
     #[arg(long)]
     draw: bool,
-    /// Draws the points of a table, such as docs/reproduction has, and computes nothing.
+    /// Draws the points of a table, such as those in docs/reproduction, and computes nothing.
     #[arg(long, value_name = "FILE", conflicts_with = "draw")]
     points: Option<PathBuf>,
     /// Seed of all random numbers.

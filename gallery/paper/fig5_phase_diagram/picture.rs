@@ -1,6 +1,6 @@
 //! The picture: the states as marks, and over them the transitions with their errors.
 //!
-//! It takes plain data, so that other programs can draw theirs.
+//! It takes plain data, so that other programs can draw their own diagrams.
 
 use granular_edmd::ParameterError;
 use granular_edmd::kinetic::{IsoLine, Maxwellian, Piece};
@@ -62,11 +62,11 @@ const LINES: [(TransitionLine, Look); 4] = [
 /// Frictions at the edges of the picture.
 const FRICTIONS: (f64, f64) = (0.0043, 3.5);
 
-/// Factor between neighboring frictions of a line that has left the plane between them.
+/// Ratio of neighboring frictions above which the line counts as having left the plane between them.
 const GAP: f64 = 20.0;
 
-/// Half the width of a mark on the way up, and of the open one around it on the way down: neighbors among the
-/// frictions from 0.05 to 0.07 do not touch.
+/// Half the width of a mark on the way up, and of the open mark around it on the way down. With these sizes,
+/// the marks of neighboring frictions from 0.05 to 0.07 do not touch.
 const SIZE: f64 = 2.2;
 const AROUND: f64 = 4.4;
 
@@ -115,7 +115,7 @@ fn write_legend(sheet: &mut Sheet, top: f64, down: bool) {
     sheet.legend((left, top + 292.0), &[(thin, "⟨dE⟩ of Table I"), (BAR, "between neighbors")]);
 }
 
-/// Returns the largest inelasticity of the picture. At the smaller gravity, everything needs more loss.
+/// Returns the largest inelasticity of the picture. At the smaller gravity, the transitions need more loss.
 const fn largest_inelasticity(gravity: f64) -> f64 {
     if gravity < 0.01 { 0.24 } else { 0.08 }
 }
@@ -163,8 +163,9 @@ fn add_states(sheet: &mut Sheet, panel: &Panel, states: &[State]) {
     }
 }
 
-/// Returns whether all next states in friction lie on one side of this one in the order of regimes, and all
-/// in inelasticity as well. It is drawn as it is, but no line goes around a single run.
+/// Returns whether the regime of this state is above, or below, the regimes of all its nearest neighbors in
+/// friction, and likewise in inelasticity. The state is drawn, but no transition line is drawn around such a
+/// single run.
 fn is_island(state: &State, states: &[State]) -> bool {
     let place = |state: &State| (state.friction, state.inelasticity);
     let turned = |state: &State| (state.inelasticity, state.friction);
@@ -196,8 +197,8 @@ impl Crossing {
     }
 }
 
-/// Draws each line through its points. Low and high frictions are apart if the line leaves the plane between
-/// them.
+/// Draws each line through its points. The branches at low and at high friction are separate if the line
+/// leaves the plane between them.
 fn lines<'a>(crossings: impl Iterator<Item = &'a Crossing>) -> Vec<Plot> {
     let crossings: Vec<_> = crossings.collect();
     let curves = LINES.iter().flat_map(|(line, look)| {
@@ -208,7 +209,8 @@ fn lines<'a>(crossings: impl Iterator<Item = &'a Crossing>) -> Vec<Plot> {
 }
 
 /// Returns the points of a line by friction, in two branches if the line leaves the plane between them: it
-/// meets `q = 0` on both sides of the largest loss, or has no point over a factor of `GAP` in friction.
+/// meets `q = 0` on both sides of the largest loss, or has no point over more than a factor of `GAP` in
+/// friction.
 fn branches(of: &[&Crossing]) -> Vec<Piece> {
     let on_axis = |rising| of.iter().filter(move |at| at.inelasticity == 0.0 && at.rising == rising);
     let last = on_axis(true).map(|at| at.friction).reduce(f64::max);
@@ -228,7 +230,7 @@ fn means(mut points: Piece) -> Piece {
     equal.map(|at| (at[0].0, at.iter().map(|point| point.1).sum::<f64>() / at.len() as f64)).collect()
 }
 
-/// Draws bars between the neighbors between which the points of the lines lie.
+/// Draws a bar for each point of the lines, between the two neighbors on its sides.
 fn add_bars(sheet: &mut Sheet, panel: &Panel, crossings: &[Crossing]) {
     sheet.bars(panel, BAR, crossings.iter().map(|at| at.between));
 }

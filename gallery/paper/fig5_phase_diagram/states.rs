@@ -81,7 +81,7 @@ pub(crate) fn read(table: &Path) -> Result<Vec<State>, Box<dyn Error>> {
     read().map_err(|error| format!("{}: {error}", table.display()).into())
 }
 
-/// Returns the points as the picture takes them.
+/// Returns the points in the form that the picture needs.
 pub(crate) fn drawn(points: &[Point]) -> Vec<State> {
     let state = |point: &Point| State {
         friction: point.friction,
@@ -92,7 +92,7 @@ pub(crate) fn drawn(points: &[Point]) -> Vec<State> {
     points.iter().map(state).collect()
 }
 
-/// Returns the points of the lines as the picture takes them.
+/// Returns the points of the lines in the form that the picture needs.
 pub(crate) fn crossings(lines: &[PlaneTransition]) -> Vec<Crossing> {
     let crossing = |&PlaneTransition { line, friction, inelasticity, between, rising }: &PlaneTransition| {
         Crossing { line, friction, inelasticity, rising, between }

@@ -40,7 +40,8 @@ fn criteria() -> Result<Vec<(String, StateCriteria)>, ParameterError> {
 
 /// Prints Table I under each of the criteria.
 ///
-/// Transitions were bisected under the stated ones; under others they are known to the steps of the ramps.
+/// The transitions were bisected under the stated criteria. Under others, they are known only to within a
+/// step of the ramps.
 pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Error>> {
     let samples = ramps.iter().map(samples_of).collect::<Result<Vec<_>, _>>()?;
     let columns =

@@ -22,8 +22,8 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
     let mut found: BTreeMap<&str, [RunningMean; 3]> = BTreeMap::new();
     for ramp in ramps {
         for (line, mean) in LINES.iter().zip(found.entry(&ramp.study).or_default()) {
-            // A wide box has two rolls from the first friction on. Two rolls that come and go at its collapse
-            // are not a transition to them.
+            // A wide box has two rolls from the first friction on. Two rolls that come and go near its
+            // collapse are not a transition to two rolls.
             if *line != TransitionLine::TwoCollapse && ramp.observations[0].regime == TwoRolls {
                 continue;
             }

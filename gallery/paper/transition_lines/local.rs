@@ -1,4 +1,4 @@
-//! The collisions of a run at a crossing, each beside the temperature of its layer.
+//! The collisions of a run at a crossing, each with the temperature of its layer.
 
 use std::error::Error;
 
@@ -8,14 +8,14 @@ use granular_edmd_study::Experiment;
 use crate::ramps::{Crossing, Local, Ramp};
 
 /// Runs the box of a ramp at one of its crossings, from a lattice, and measures it by layers two diameters
-/// high. It settles for this number of oscillations, and is measured for as many.
+/// high. The run settles for `oscillations` oscillations, and is measured for the same number.
 ///
-/// The temperature of a layer is that of its vertical and horizontal motion in the frame of the box, over the
-/// whole width: the flow counts as heat, and what is hot and cold at the same height is averaged.
+/// The temperature of a layer comes from the vertical and horizontal motion in the frame of the box, over the
+/// whole width. The flow therefore counts as heat, and hot and cold regions at the same height are averaged.
 pub(crate) fn measure(ramp: &Ramp, at: &Crossing, oscillations: u32) -> Result<Local, Box<dyn Error>> {
     let experiment = ramp.experiment.clone().with_friction(at.friction).with_inelasticity(at.inelasticity);
     let settled = f64::from(oscillations) * experiment.cycle();
-    // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
+    // Samples are a hundredth less than 10 oscillations apart, so that they see all phases of the base.
     let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;
     let mut profile = Sampled::new(EnergyChangeProfile::new(0.0, 150.0, 75)?, times);
     let mut simulation = experiment.build(1)?;

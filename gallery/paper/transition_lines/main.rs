@@ -2,11 +2,11 @@
 //! length.
 //!
 //! The example reads the tables of ramps that `docs/reproduction/*/run` has made, and averages along each
-//! transition line: the paper's ⟨dE⟩ of a gas of equal temperatures, the same with the ratio of temperatures
-//! that the run has, and the energy change of the collisions in the run. The smaller the scatter along a
-//! line, the better the number governs the transition. It writes `transition_lines` as a table and a picture,
-//! and the phase diagrams `fig5_full_length-…`; for each of the other questions a table with its name, such
-//! as `transition_lines-walls.csv`.
+//! transition line: the paper's ⟨dE⟩ of a gas with equal temperatures, the same with the ratio of
+//! temperatures in the run, and the energy change of the collisions in the run. The smaller the scatter along
+//! a line, the better the number governs the transition. It writes `transition_lines` as a table and a
+//! picture, and the phase diagrams `fig5_full_length-…`; for each of the other questions, it writes a table
+//! with its name, such as `transition_lines-walls.csv`.
 //!
 //! ```text
 //! cargo run --release -p gallery --all-features --bin transition_lines -- lines
@@ -48,13 +48,13 @@ struct Arguments {
     /// The question.
     #[arg(value_enum, default_value = "lines")]
     question: Question,
-    /// A study, or a folder of studies; can be repeated. The kept ones of the question unless given.
+    /// A study, or a folder of studies; can be repeated. By default, the kept runs for the question.
     #[arg(long, value_name = "FOLDER")]
     ramps: Vec<PathBuf>,
-    /// Oscillations to settle at a crossing, and as many to measure the losses there.
+    /// Oscillations to settle at a crossing, and equally many to measure the losses there.
     #[arg(long, default_value_t = 3000)]
     oscillations: u32,
-    /// Measures every tenth crossing only; the other questions measure none.
+    /// Measures only every tenth crossing, for the question `lines`; the other questions measure none.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -74,7 +74,7 @@ enum Question {
 }
 
 impl Question {
-    /// Returns the folders of its ramps.
+    /// Returns the folders of the ramps that answer the question.
     fn folders(self) -> Vec<PathBuf> {
         let names: &[&str] = match self {
             Self::Lines | Self::Criteria => &["full-length"],
@@ -108,7 +108,7 @@ fn main() -> ExitCode {
 const GOVERNING: [Number; 4] =
     [Number::EqualTemperatures, Number::MeasuredRatio, Number::LocalRatio, Number::InTheRun];
 
-/// Which crossings are averaged.
+/// A choice of the crossings that are averaged.
 struct Choice {
     name: &'static str,
     takes: fn(&Ramp, &Crossing) -> bool,
@@ -130,7 +130,7 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut crossings: Vec<_> = crossings(ramps)?.into_iter().step_by(step).collect();
     let (progress, all) = (Progress::of("crossings"), crossings.len() as u64);
     let done = AtomicU64::new(0);
-    // Each run stands alone, so any order of them gives the same numbers.
+    // The runs are independent, so any order of them gives the same numbers.
     crossings.par_iter_mut().try_for_each(|(ramp, at)| {
         let local = local::measure(ramp, at, arguments.oscillations).map_err(|error| error.to_string())?;
         at.local = Some(local);

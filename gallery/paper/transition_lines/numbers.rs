@@ -15,13 +15,13 @@ use crate::ramps::{Crossing, Ramp};
 pub(crate) enum Number {
     /// Closed form at equal temperatures, as in the paper.
     EqualTemperatures,
-    /// The same, if sticking collisions lost what is printed as Eq. (6).
+    /// The same, with the loss of sticking collisions as printed in Eq. (6).
     AsPrinted,
     /// Closed form at the ratio of the mean temperatures of the runs beside the crossing.
     MeasuredRatio,
     /// Closed form at the ratio of temperatures in the layers where disks collide.
     LocalRatio,
-    /// The mean over the collisions of a run, each over the temperature of its layer.
+    /// The mean over the collisions of a run, each divided by the temperature of its layer.
     InTheRun,
 }
 
@@ -44,7 +44,8 @@ impl Number {
         let at_ratio = |ratio| Ok(mean_energy_change(&rule, &gas.with_rotational_temperature(ratio)?));
         match (self, crossing.local) {
             (Self::EqualTemperatures, _) => Ok(mean_energy_change(&rule, &gas)),
-            // Without the third, sticking loses three times as much in the tangent: 4q(1-q)s³ more.
+            // Without the factor 1/3, sticking collisions lose three times as much along the tangent:
+            // 4q(1-q)s³ more.
             (Self::AsPrinted, _) => {
                 let sticking = sticking_fraction(&rule, &gas).powi(3);
                 Ok(mean_energy_change(&rule, &gas) - 4.0 * q * (1.0 - q) * sticking)
@@ -59,7 +60,7 @@ impl Number {
 
 /// An average along a line.
 pub(crate) struct Average {
-    /// Over places; a place is a ramp of any seed, and counts once.
+    /// Mean over places. A place is a crossing on a ramp; all seeds of the ramp together count once.
     pub(crate) along: RunningMean,
     /// Standard deviation between seeds at the same place; `None` with one seed.
     pub(crate) between_seeds: Option<f64>,

@@ -1,4 +1,4 @@
-//! Pictures: the energy change at the crossings, by two accounts, and the phase diagrams of the ramps.
+//! Pictures: the energy change at the crossings, computed in two ways, and the phase diagrams of the ramps.
 
 use std::error::Error;
 

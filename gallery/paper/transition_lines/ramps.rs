@@ -30,7 +30,7 @@ struct Row {
     state: String,
     translational_energy: f64,
     rotational_energy: f64,
-    /// Short ramps leave these out.
+    /// The tables of short ramps lack this column and the next two.
     #[serde(default)]
     thermal_noise: f64,
     #[serde(default)]
@@ -52,7 +52,8 @@ pub(crate) struct Observation {
     pub(crate) temperature_ratio: f64,
     /// Standard deviation of the order parameters in a gas at rest.
     pub(crate) noise: f64,
-    /// The densest layer. What lies below it is not in the tables: a gas, wherever a layer is compact.
+    /// The densest layer. The tables do not show what lies below it; below a compact layer, that is always a
+    /// gas.
     pub(crate) layer: DenseLayer,
 }
 
@@ -90,14 +91,15 @@ pub(crate) struct Crossing {
     pub(crate) inelasticity: f64,
     /// True if the transition was met on a ramp in friction.
     pub(crate) along_friction: bool,
-    /// Half the distance of the values between which the transition lies; of the logarithm of a friction.
+    /// Half the distance between the values between which the transition lies; for frictions, between their
+    /// logarithms.
     pub(crate) half_width: f64,
     pub(crate) temperature_ratio: f64,
     pub(crate) local: Option<Local>,
 }
 
 impl Crossing {
-    /// Returns the same crossing at both ends of the width to which it is known.
+    /// Returns the same crossing at both ends of the interval in which it must lie.
     pub(crate) fn ends(&self) -> [Self; 2] {
         [-self.half_width, self.half_width].map(|by| {
             let mut end = self.clone();
@@ -214,7 +216,7 @@ impl Ramp {
             let of_leg = self.observations.iter().filter(|seen| seen.leg == leg);
             seen.extend(transitions(of_leg.map(|seen| (self.value(seen), seen.regime)))?);
         }
-        // A ramp that goes from one roll straight to the collapse has none to two rolls.
+        // A ramp that goes from one roll straight to the collapse has no transition to two rolls.
         let has_two_rolls = self.observations.iter().any(|seen| seen.regime == ConvectiveRegime::TwoRolls);
         let is_there = |line: &TransitionLine| {
             has_two_rolls || !matches!(line, TransitionLine::OneTwoBeginning | TransitionLine::OneTwoEnd)

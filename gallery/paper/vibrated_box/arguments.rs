@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
     /// Number of disks.
     #[arg(long, default_value_t = 1000, value_parser = whole::<1_000_000>)]
     pub(crate) disks: u64,
-    /// Moment of inertia of a disk, as a part of m R²: 0.5 if it is homogeneous, 1 for a ring.
+    /// Moment of inertia of a disk, in units of m R²: 0.5 if it is homogeneous, 1 for a ring.
     #[arg(long, default_value_t = 0.5, value_parser = positive)]
     pub(crate) inertia: f64,
     /// Width of the box, in diameters.
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     /// Height of the lid, in diameters.
     #[arg(long, default_value_t = 150.0, value_parser = positive)]
     pub(crate) height: f64,
-    /// Takes the lid away.
+    /// Removes the lid.
     #[arg(long, conflicts_with = "height")]
     pub(crate) open: bool,
     /// Joins the sides: a disk that leaves on one side enters on the other.
@@ -60,7 +60,7 @@ pub(crate) struct Arguments {
     /// Inelasticity of the base along the tangent; the walls' unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) base_tangential_inelasticity: Option<f64>,
-    /// Base.
+    /// Kind of base.
     #[arg(long, value_enum, default_value = "bi-parabolic")]
     pub(crate) base: Base,
     /// Amplitude A of a base that moves; 0.1 unless given.
@@ -79,10 +79,10 @@ pub(crate) struct Arguments {
     /// Length of the run, in oscillations.
     #[arg(long, default_value_t = 3000, value_parser = whole::<1_000_000_000>)]
     oscillations: u64,
-    /// Oscillations from sample to sample.
+    /// Oscillations between two samples.
     #[arg(long, default_value_t = 10, value_parser = whole::<1_000_000_000>)]
     pub(crate) every: u64,
-    /// Seed of the first velocities and of a thermal base.
+    /// Seed of the initial velocities and of a thermal base.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Runs for 300 oscillations at most.
@@ -100,7 +100,7 @@ pub(crate) enum Base {
     Sinusoidal,
     /// Constant speed up and down.
     Triangular,
-    /// At rest, and of a temperature.
+    /// At rest, with a temperature.
     Thermal,
 }
 

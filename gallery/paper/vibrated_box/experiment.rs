@@ -20,11 +20,11 @@ use gallery::{flow, progress::Progress};
 type Quantities = (OrderParameters, CenterOfMass, Energies);
 pub(crate) type Sample = <Quantities as Observable>::Value;
 
-/// Most oscillations from sample to sample of the fields. In the paper's box, a disk has one or two
-/// collisions in this time, so samples between would see most velocities again.
+/// Largest number of oscillations between two samples of the fields. In the paper's box, a disk has one or
+/// two collisions in this time, so additional samples would see most velocities again.
 const FRESH: u64 = 5;
 
-/// Samples of the profile of heights, which only shows where the layer is densest.
+/// Number of samples of the height profile, which only shows where the layer is densest.
 const PROFILES: u64 = 50;
 
 /// The results of one run.
@@ -43,7 +43,7 @@ pub(crate) struct Outcome {
     pub(crate) flow: String,
 }
 
-/// Runs what the flags ask for.
+/// Does the run that the flags describe.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let at = |oscillation: u64| oscillation as f64 * arguments.period();
     let (middle, end) = (at(arguments.oscillations() / 2), at(arguments.oscillations()));
@@ -159,7 +159,7 @@ fn name_of_flow(
     arguments: &Arguments,
 ) -> Result<String, ParameterError> {
     let order = |(order, ..): &Sample| match order {
-        // Without walls, a pair of rolls drifts from one order parameter to the other.
+        // Without side walls, a pair of rolls drifts from one order parameter to the other.
         _ if arguments.periodic => ConvectionOrder::new(0.0, order.one_roll.hypot(order.two_rolls)),
         _ => *order,
     };
@@ -180,7 +180,7 @@ impl Outcome {
         self.simulation.counters().disk_collisions as f64 / self.seconds
     }
 
-    /// Returns a name for the last state, which depends on its last bit.
+    /// Returns a hash of the last state, which depends on every bit of it.
     pub(crate) fn hash(&self) -> String {
         let numbers = |disk: &Disk| {
             let (position, velocity) = (disk.position(), disk.velocity());

@@ -19,10 +19,11 @@ const HEIGHT: f64 = 724.0;
 const SERIES_WIDTH: f64 = 560.0;
 const MARGINS: Margins = [72.0, 26.0, 30.0, 58.0];
 
-/// Room for the name of an axis.
+/// Space that a panel saves if its time axis has no name.
 const UNNAMED: f64 = 28.0;
 
-/// The panels of series: name, height, and the quantities in it. Only the last names its time.
+/// The panels of series: name, height, and the quantities in it. Only the last panel has a name at its time
+/// axis.
 const PANELS: [(&str, f64, Range<usize>); 3] =
     [("order parameters", 300.0, 0..2), ("height", 190.0, 2..3), ("energy per disk", 234.0, 3..5)];
 
@@ -82,7 +83,7 @@ fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Ou
     }
 }
 
-/// Returns the curves of some quantities and their names. The order parameters lie over their noise.
+/// Returns the curves of some quantities and their names. The order parameters are drawn over their noise.
 fn lines(
     arguments: &Arguments,
     outcome: &Outcome,
@@ -103,7 +104,7 @@ fn lines(
     (plots, names)
 }
 
-/// Returns the range of all values with a little air.
+/// Returns the range of all values with a small margin.
 fn range(plots: &[Plot]) -> (f64, f64) {
     let heights = plots.iter().filter_map(Plot::bounds).flat_map(|(_, (low, high))| [low, high]);
     let (low, high) = panel::ends(heights);

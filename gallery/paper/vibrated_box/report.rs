@@ -25,7 +25,7 @@ pub(crate) fn print(outcome: &Outcome) {
     let energy_change = ("energy change, collision", outcome.energy_change.disks().estimate());
     let means = QUANTITIES.map(|Quantity(_, name, of)| (name, outcome.mean(of)));
     let means: Vec<_> = means.into_iter().chain([energy_change]).collect();
-    // Errors of a series too short to know them are marked, unless all are.
+    // Errors are marked if the series is too short to determine them, unless this holds for all of them.
     let lacking = means.iter().filter(|(_, mean)| !mean.is_converged()).count();
     for (name, mean) in &means {
         let mark = if mean.is_converged() || lacking == means.len() { "" } else { " *" };

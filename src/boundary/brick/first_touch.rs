@@ -10,7 +10,7 @@ use crate::roots::first_descent_of_quartic;
 
 impl Brick {
     /// Returns the first time, from the start of a flight to `until`, at which the disk touches the brick and
-    /// closes further; `None` if there is no such time.
+    /// approaches it; `None` if there is no such time.
     ///
     /// A custom [`Boundary`](crate::boundary::Boundary) can find its first touch with this method, which is
     /// exact for constant acceleration. Only touches beside the brick count, not touches at its ends: close
@@ -42,9 +42,9 @@ impl Brick {
         self.is_near(region, 1.001 * radius)
     }
 
-    /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
-    /// If `path` has an error bound, the disk grows to contain the actual disk. The actual disk then touches
-    /// no earlier, and possibly not at that time.
+    /// Returns the first time, not later than `wait`, at which a disk touches the brick and approaches it. If
+    /// `path` has an error bound, the disk grows to contain the actual disk. The actual disk then touches no
+    /// earlier, and possibly not at that time.
     ///
     /// The disk can touch only the side of the brick on which its center is. A disk whose center is behind
     /// the brick flies on until it is in front. Only touches beside the brick count. At its ends, the next

@@ -55,8 +55,8 @@ impl Container {
     ///
     /// # Errors
     /// If the motion gives numbers that are not finite, as for [`with_motion`](Self::with_motion), or jumps,
-    /// as a [`Sawtooth`](crate::wall::Sawtooth) does. Also if a side moves already, or the floor or the lid
-    /// slides.
+    /// as a [`Sawtooth`](crate::wall::Sawtooth) does, if a side moves already, or if the floor or the lid
+    /// slides already.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Container, Wall};

@@ -28,9 +28,10 @@ const BEND: f64 = 0.01;
 
 /// Largest error of an area, relative to the region.
 ///
-/// A bent wall deviates from its straight line by the square of the distance along it. The mean of this
-/// square is subtracted, so the errors of the cells have both signs and a zero mean: at most 1e-3 of a cell,
-/// in about a hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6 of the region.
+/// The deviation of a bent wall from the straight line grows with the square of the distance along the line.
+/// The mean of this square is subtracted, so the errors of the cells have both signs and a zero mean: at most
+/// 1e-3 of a cell, in about a hundred cells of 1/4096 of the region. Together, they are of the order of 5e-6
+/// of the region.
 const SLACK: f64 = 2e-5;
 
 /// Checks the free areas of the domain, of a random region and of a narrow one, for centers of disks and for

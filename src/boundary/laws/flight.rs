@@ -104,9 +104,8 @@ fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
     longest
 }
 
-/// Returns the duration of a flight that moves no farther than `way`, whatever the direction of its
-/// acceleration:
-/// |v| t + |a| t² / 2 is at most this distance.
+/// Returns the time in which a flight moves no farther than `way`, whatever the direction of its
+/// acceleration. It solves v t + a t² / 2 = `way` for the speed v and the magnitude a of the acceleration.
 fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     let (way, speed) = (way.max(0.0), velocity.abs());
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())

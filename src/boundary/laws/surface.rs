@@ -19,8 +19,8 @@ const WIDE: f64 = 0.1;
 /// Tangent of the angle by which a disk is turned about the point of its touch.
 const ANGLE: f64 = 0.1;
 
-/// Smallest displacement of the point of contact, as a fraction of the step, for which it does not count as a
-/// tip.
+/// Smallest displacement of the point of contact, as a fraction of the step, for which the point does not
+/// count as a tip.
 const TIP: f64 = 0.02;
 
 /// Number of contacts in which the rule of a wall is compared.

@@ -17,8 +17,8 @@ impl Part {
     /// moves along the same direction at all times, and the point about which it turns moves with it.
     ///
     /// # Errors
-    /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`check_finite`](crate::wall::check_finite) examines. Also if the motion jumps, as a
+    /// If the direction has no length, if the motion gives numbers that are not finite at one of the phases
+    /// that [`check_finite`](crate::wall::check_finite) examines, or if the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
     /// would jump. For a part that turns, this side changes with time, so its motion may not jump at all.
     pub fn with_motion(
@@ -47,9 +47,9 @@ impl Part {
     /// turn, any other part is in the position in which it was built.
     ///
     /// # Errors
-    /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
-    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn. Also
-    /// if the part has a motion that jumps.
+    /// If a number is not finite, if the angular velocity is so small or large that a turn would take more
+    /// than 1e60 or less than 1e-60, or if the part has a motion that jumps. An angular velocity of 0 is
+    /// allowed: the part then does not turn.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};

@@ -1,4 +1,4 @@
-//! Polygons: their sides, checks, and points in text.
+//! Polygons: their sides, and the checks of their points.
 
 use glam::DVec2;
 

@@ -42,7 +42,7 @@ pub(in crate::boundary) struct Turning {
     pub(super) is_round: bool,
 }
 
-/// The phases of both motions of a part. Each phase is the time less whole periods of the motion.
+/// The phases of both motions of a part. Each phase is the time minus whole periods of the motion.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::boundary) struct Phase {
     along: f64,
@@ -158,7 +158,7 @@ impl Travel {
         self.turning.as_ref().filter(|turning| !turning.is_round)
     }
 
-    /// Returns the phases of the motions at a time origin: the origin less whole periods.
+    /// Returns the phases of the motions at a time origin: the origin minus whole periods.
     pub(in crate::boundary) fn phase(&self, origin: f64) -> Phase {
         Phase {
             along: self.along.as_ref().map_or(0.0, |along| along.motion.phase(origin)),

@@ -107,8 +107,8 @@ impl Index {
         self.cells(place, place).next().unwrap_or(0)
     }
 
-    /// Returns the middle of a cell. A cell at an edge of the grid extends to infinity; the middle of its
-    /// finite part counts.
+    /// Returns the middle of a cell. For a cell at an edge of the grid, which extends to infinity, the result
+    /// is the middle of its finite part.
     pub(super) fn middle(&self, cell: usize) -> DVec2 {
         let (column, row) = ((cell % self.columns) as f64, (cell / self.columns) as f64);
         self.corner + DVec2::new(column + 0.5, row + 0.5) / self.density

@@ -105,7 +105,7 @@ impl Vessel {
     }
 
     /// Returns the cells that may be behind a part: the cells of its rectangle if disks are free outside it,
-    /// else all cells.
+    /// otherwise all cells.
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
         let (low, high) = placed.part.bounds();
         let is_walled = self.domain().periods() == DVec2::ZERO;

@@ -35,7 +35,8 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     /// names no sink.
     ///
     /// The interior ends at the initial position of a wall that reacts. If that wall moves far, it gets among
-    /// the disks. A line that takes out centers lies among the disks and would have to hold them back here.
+    /// the disks. A sink, a line that removes disks, lies among the disks and would have to hold them back
+    /// here.
     pub(super) fn check_walls(&self, reason: &str) -> Result<(), ParameterError> {
         (0..self.boundary.wall_count()).try_for_each(|wall| stands(self.boundary, wall, &self.room, reason))
     }
@@ -62,7 +63,7 @@ fn stands<B: Boundary + ?Sized>(
     let surface = boundary.surface(wall, middle, 0.0);
     let is_named = || reason.contains(&format!("\"{}\"", boundary.wall_name(wall)));
     if matches!(surface.response, Response::Absorbing) && is_named() {
-        let name = format!("number of the sink \"{}\"", boundary.wall_name(wall));
+        let name = format!("wall index of the sink \"{}\"", boundary.wall_name(wall));
         return Err(ParameterError::new(
             name,
             "absent while disks are packed (add the sink afterwards)",
@@ -74,7 +75,7 @@ fn stands<B: Boundary + ?Sized>(
     }
     let place = |time| boundary.wall_motion(wall, time).map_or(DVec2::ZERO, |(displacement, _)| displacement);
     let way = place(1.0).distance(place(0.0));
-    let name = || format!("way of the wall \"{}\" in a unit of time", boundary.wall_name(wall));
+    let name = || format!("displacement of the wall \"{}\" in a unit of time", boundary.wall_name(wall));
     let requirement = "0 while disks are packed (add the piston afterwards)";
     if way == 0.0 { Ok(()) } else { Err(ParameterError::new(name(), requirement, way)) }
 }

@@ -50,7 +50,7 @@ const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
 /// script.
 const SOME: &[usize] = &[600];
 
-/// More disks than [`LARGE_SYSTEM`], from which on schedulers may work differently, and more than 16 bits can
+/// More disks than [`LARGE_SYSTEM`], above which schedulers may work differently, and more than 16 bits can
 /// count.
 const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
 

@@ -19,7 +19,7 @@ pub(super) fn earliest_without(times: &Times, one: usize, other: usize) -> (f64,
     (first, (0..PLAYERS).position(|seat| time(seat) == first).unwrap_or_default())
 }
 
-/// Four vectors of eight times.
+/// Four vectors, each with the times of eight players.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx512 {
     use std::arch::x86_64::{
@@ -49,7 +49,7 @@ pub(super) mod avx512 {
     }
 }
 
-/// Eight vectors of four times.
+/// Eight vectors, each with the times of four players.
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx2 {
     use std::arch::x86_64::{

@@ -17,7 +17,7 @@ pub(super) const CROWDED: usize = SLOTS + 1;
 
 const _: () = assert!(MOST_DISKS <= DISK as usize + 1);
 
-/// Up to four disks, which are read or written at once. The slots are filled from the first one on.
+/// Up to four disks, which are read or written together. The slots are filled from the first one on.
 ///
 /// All data of a cell come from one cache line. Large systems would be slower if the counts were elsewhere.
 #[derive(Debug, Clone, Copy)]

@@ -81,7 +81,7 @@ impl Contents {
     }
 
     /// Returns the room that the disks of `cells` cells need. There is room for the rest of a window even
-    /// behind the largest number of disks.
+    /// after the largest possible number of disks.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {
         cells * SLOTS + self.crowds.room() + WINDOW

@@ -1,6 +1,6 @@
 //! The cost of the events of a mixture, for a given division of its disks into classes.
 //!
-//! The cost decides only which layout is taken, never what happens in a run. It needs to rank layouts, so a
+//! The cost decides only which layout is chosen, never what happens in a run. It needs to rank layouts, so a
 //! factor of two here or there does no harm. It must depend on the radii alone: a resumed run divides its
 //! disks into classes anew, and must find the same ones.
 
@@ -34,7 +34,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Returns a group of each of these classes.
+    /// Returns one group for each of these classes.
     pub(super) fn of_each(classes: &[SizeClass]) -> Vec<Self> {
         let area = area(classes);
         let group = |&class: &SizeClass| {
@@ -109,7 +109,7 @@ impl Gridded {
         homes * LOOK + homes * self.home * self.home * self.density
     }
 
-    /// Returns the costs of a search in a smaller group, after a collision and after a passage.
+    /// Returns the costs of a search in a smaller group, after a collision and after a cell crossing.
     fn below(&self, smaller: &Self) -> (f64, f64) {
         let (width, hole) = self.reach(smaller);
         let (homes, disks) = (1.0 / (smaller.home * smaller.home), smaller.density);

@@ -10,8 +10,7 @@ const WIDTH: f64 = 0.7;
 /// Returns the classes in the order of their sizes, smallest first. Without disks, there is no class.
 ///
 /// With narrow classes, a search meets fewer disks that are too far away; with a small number of classes, it
-/// visits fewer layers. The
-/// classes returned are the cheapest that the search finds.
+/// visits fewer layers. The classes returned are the cheapest that the search finds.
 pub(super) fn classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let narrow = narrow_classes(diameters);
     let (area, groups) = (area(&narrow), Group::of_each(&narrow));
@@ -41,8 +40,8 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);
     loop {
-        // Inverting two neighbors together shifts a bound, or adds or removes two bounds. Without such steps
-        // the search would stay in a local minimum, where every single change raises the cost.
+        // Inverting two neighboring entries together shifts a bound, or adds or removes two bounds. Without
+        // such steps the search would stay in a local minimum, where every single change raises the cost.
         let changed = (0..bounds.len()).flat_map(|first| [1, 2].map(|count| changed(&bounds, first, count)));
         let costs = changed.map(|bounds| (cost(&bounds), bounds));
         match costs.min_by(|a, b| a.0.total_cmp(&b.0)) {

@@ -30,7 +30,7 @@ const SPARE_HOMES: f64 = 16.0;
 /// Largest number of doublings by which cells are finer than homes.
 const FINEST: u32 = 10;
 
-/// Number of columns or rows from which on cells are not made finer.
+/// Number of columns or rows at which cells are not made finer any more.
 const MOST_LINES: u32 = 1 << 20;
 
 /// The layout of the cells of a class, and the number of cells that make up a home.
@@ -66,8 +66,8 @@ impl LayerLayout {
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
-        // Cells are halved homes, so only some sizes are possible. The size whose ratio to the suitable size
-        // is nearest to 1 is taken.
+        // A cell is a home halved several times, so only some sizes are possible. The size whose ratio to the
+        // suitable size is nearest to 1 is taken.
         while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.can_be_finer() {
             layout = layout.finer();
         }
@@ -130,7 +130,8 @@ impl LayerLayout {
     }
 }
 
-/// Returns the largest width and height of a cell of a class; infinite in a direction that is not periodic.
+/// Returns the largest allowed width and height of a cell of a class; infinite in a direction that is not
+/// periodic.
 ///
 /// Two disks must meet at the image that is nearest now, wherever they move in their cells. Their distance is
 /// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than

@@ -18,9 +18,9 @@
 //! ```
 //!
 //! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
-//! class, cell and home are the same. A large disk needs both: from anywhere in a home of its size it could
-//! touch thousands of small disks and would have to predict them all, and cells as small as `c` would be too
-//! many to search.
+//! class, cell and home are the same. A large disk needs both. With a home alone, it would have to predict
+//! its collisions with the thousands of small disks that it could touch from anywhere in the home. With cells
+//! as small as `c` alone, the others would have too many cells to search.
 //!
 //! The two disks of a pair must find each other, whichever of them searches. The large disk searches the
 //! homes within its reach. The small disk cannot search for large ones, since too many cells of the larger

@@ -14,8 +14,8 @@ pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 /// Smallest size of a cell in diameters. It is above 1 by more than rounding.
 pub(super) const LEAST_PITCH: f64 = 1.000_001;
 
-/// Fewest columns at periodic sides, and rows at periodic ends. With fewer, a disk could meet a neighbor on
-/// both sides.
+/// Fewest columns at periodic sides, and rows at periodic ends. With fewer, a disk could meet the same
+/// neighbor on both sides.
 pub(crate) const FEWEST: f64 = 4.0;
 
 /// The dimensions of the grid.
@@ -25,7 +25,7 @@ pub(in crate::simulation) struct Layout {
     pub(in crate::simulation) cell_size: CellSize,
     pub(in crate::simulation) columns: u32,
     pub(in crate::simulation) rows: u32,
-    /// Size of a cell. In an open container, the rows grow from some height on.
+    /// Size of a cell. In an open container, the rows become higher above some height.
     pub(in crate::simulation) pitch: DVec2,
 }
 
@@ -66,7 +66,7 @@ impl Layout {
     }
 }
 
-/// Returns the height of the even part of the grid of an open container.
+/// Returns the height of that part of an open container's grid in which all rows are equally high.
 fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
     2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
 }

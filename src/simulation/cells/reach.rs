@@ -2,9 +2,9 @@
 //!
 //! The picture in `layers.rs` shows a reach and its hole. Both are rectangles, so a reach is given by its
 //! columns and its rows, each with the columns or rows of the hole. The columns and rows are stored in tables
-//! with one entry for each column and row of the disk's own grid. The searches of large disks read them all
-//! the time: a table costs one load, whereas the edges of uneven rows would have to be searched. Homes of a
-//! column lie next to each other in memory, so the reach is traversed in runs of rows.
+//! with one entry for each column and row of the disk's own grid. The searches of large disks need them all
+//! the time, and reading a table costs one load, whereas the edges of uneven rows would have to be searched.
+//! Homes of a column lie next to each other in memory, so the reach is traversed in runs of rows.
 //!
 //! At periodic sides and ends, the count of homes continues beyond the last one. Columns are brought back
 //! immediately. Rows are kept as they are counted, so that a reach, its hole and the difference of two
@@ -74,10 +74,10 @@ impl Reach {
         let margin = homes.grid.margin;
         let [from_columns, from_rows] = from.ranges();
         let periods = homes.grid.periods();
-        // Half the width of the square in the circle on which the nearest possible centers lie. Even at its
-        // corners, a home in this square is nearer than any disk that touches. The homes between square and
-        // circle hold no such disks either, but leaving them out would cost more than it saves: a rectangle
-        // is quicker to traverse.
+        // Half the width of the square inscribed in the circle on which the nearest possible centers lie.
+        // Even at its corners, a home in this square is nearer than any disk that touches. The homes between
+        // square and circle hold no such disks either, but leaving them out would cost more than it saves: a
+        // rectangle is quicker to traverse.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
             // A disk stays in its home up to a margin beyond the edge, so the reach is larger by this margin.
@@ -147,7 +147,7 @@ impl Reach {
         let first = |place: Place| i64::from(self.rows[place.row as usize - 1][0].first);
         let (ahead, period) = (first(place) - first(other), i64::from(self.period_rows));
         let turns = if 2 * ahead > period { 1 } else { -i64::from(2 * ahead < -period) };
-        // Rows of the span that come before the first row reach no row of this place.
+        // Rows before the first one are not within reach of this place.
         let start = i64::from(rows.first) + turns * period;
         Span::between(start.max(0) as u32, (start + i64::from(rows.count)).max(0) as u32)
     }
@@ -183,7 +183,7 @@ impl Reach {
     fn rows_of(&self, place: Place, column: u32) -> [Span; 2] {
         let [columns, hole_columns] = self.columns[place.column as usize - 1];
         let [rows, hole_rows] = self.rows[place.row as usize - 1];
-        // The column was brought back by a period if it is counted on beyond the last one.
+        // A column before the first one of the reach has been brought back by a period.
         let turn = if column < columns.first { self.period_columns } else { 0 };
         if column + turn - columns.first >= columns.count {
             return [Span::EMPTY; 2];
@@ -224,8 +224,8 @@ fn hole_within(outer: Span, hole: Span, period: u32) -> Span {
     if hole.behind() <= outer.behind() { hole } else { Span::EMPTY }
 }
 
-/// Returns the spaces between equally distant edges that hold the numbers from `low` to `high`. After the
-/// last space, the first one follows.
+/// Returns the spaces between equally spaced edges that hold the numbers from `low` to `high`. After the last
+/// space, the first one follows.
 fn around(edges: &[f64], low: f64, high: f64) -> Span {
     let (start, end, count) = (edges[0], edges[edges.len() - 1], (edges.len() - 1) as f64);
     let space = |x: f64| ((x - start) / (end - start) * count).floor();

@@ -14,9 +14,9 @@ const SEAL: Seal = Seal::new(*b"GRANWITH", 1);
 impl Checkpoint {
     /// Writes the checkpoint and the observers of its run to one file, completely or not at all.
     ///
-    /// All numbers keep their bits, even infinities and NaN. State and observers cannot come from different
-    /// times. The observers can be anything that serde writes and reads: a [`Series`] or a [`Sampled`]
-    /// measure, a tuple of several, or a custom type.
+    /// All numbers keep their bits, even infinities and NaN. The state and the observers in one file always
+    /// belong to the same time. The observers can be anything that serde writes and reads: a [`Series`], a
+    /// [`Sampled`] accumulator, a tuple of several, or a custom type.
     ///
     /// [`Series`]: crate::observable::Series
     /// [`Sampled`]: crate::observable::Sampled

@@ -26,7 +26,7 @@ const SLACK: f64 = 1e-3;
 const MOST_EPOCHS: f64 = 1e6;
 
 /// The message about cells that do not suit the domain or the disks.
-pub(super) const MISFIT: &str = "its neighbor cells are not those of the domain";
+pub(super) const MISFIT: &str = "its neighbor cells do not fit the domain or the disks";
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
     if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what.to_owned())) }
@@ -39,7 +39,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
     check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
     check(saved.identities.suits(count), "its ids do not fit the number of disks")?;
-    check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
+    check([1, count].contains(&saved.models.len()), "its models do not fit the number of disks")?;
     let diameter = saved.typical_diameter;
     let is_diameter = if count == 0 { diameter >= 0.0 } else { diameter > 0.0 };
     check(is_diameter && diameter <= LARGEST, "its typical diameter is beyond all bounds")?;
@@ -51,7 +51,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
     check(saved.spins.iter().all(|spin| is_spin(spin, now)), "a rotation is beyond all bounds")?;
     check(are_forecasts(saved, walls), "an event names no disk or wall, or is overdue")?;
-    check(are_counted(&saved.counters) && is_guard(&guard), "its counters are beyond all counting")?;
+    check(are_counted(&saved.counters) && is_guard(&guard), "its counters are impossibly large")?;
     let Counters { cell_crossings, disk_collisions, .. } = saved.counters;
     let forward = tally.cell_crossings <= cell_crossings && tally.collisions <= disk_collisions;
     check(forward, "its counters run backwards")
@@ -66,8 +66,8 @@ pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Res
     check(disks().all(is_placed), MISFIT)?;
     let inside = |(disk, (_, &place))| holds(cells.grid_of(disk), place, bodies.position(disk, now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
-    // The cells at walls extend to infinity.
-    // Rounding needs much less than a radius.
+    // The cells at walls extend to infinity, so they do not keep disks in the domain. Rounding needs much
+    // less than a radius.
     let within = |disk| saved.domain.contains(bodies.position(disk, now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
     check(has_room(saved, cells, bodies), "the disks of a cell overlap")?;
@@ -250,8 +250,8 @@ fn ends_where_it_can(
     gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbor(place, exit.direction()).0)
 }
 
-/// Returns whether a disk touches its partner when it collides with it. An outdated prediction passes, since
-/// the engine replaces it when its event is due.
+/// Returns whether a disk and its partner touch at the time of their predicted collision. An outdated
+/// prediction passes, since the engine replaces it when its event is due.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due.is_finite()

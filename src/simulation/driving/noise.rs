@@ -13,8 +13,8 @@ use crate::{Disk, ParameterError};
 /// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is conserved.
 ///
 /// Each component of each velocity gains a normal variable of variance $`\xi_0^2 t`$ in a time $`t`$. The
-/// mean of all kicks, weighted by mass, is then subtracted. Thus $`N`$ equal disks of mass $`m`$ gain the
-/// temperature
+/// mean of all kicks, weighted by mass, is then subtracted. Thus the temperature of $`N`$ equal disks of mass
+/// $`m`$ grows at the rate
 ///
 /// ```math
 /// \dot T = m\,\xi_0^2\left(1-\tfrac1N\right),

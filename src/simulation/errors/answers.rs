@@ -70,7 +70,7 @@ pub enum BoundaryFault {
     Search,
     /// A touch before the flight, after the end of the search, or with a wall that does not exist.
     #[error(
-        "a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight",
+        "a touch with wall {wall} {} after the start of the flight; there are {walls} walls, counted from 0",
         Rounded(-early_by)
     )]
     Touch {

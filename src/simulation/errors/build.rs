@@ -16,7 +16,7 @@ pub enum BuildError {
     Parameter(#[from] ParameterError),
     /// Times at the start are too coarse for such fast disks: time would stand still.
     #[error(
-        "the run cannot start at time {}: times there are {} apart, too coarse for disks that go some tens of \
+        "the run cannot start at time {}: times there are {} apart, too coarse for disks that move tens of \
          diameters in {}; start nearer to 0",
         Readable(*.start), Rounded(*.spacing), Rounded(*.epoch)
     )]
@@ -66,7 +66,7 @@ pub enum BuildError {
     /// A disk fills a hollow of a wall, up to rounding. Rounding alone would decide whether the disk gets
     /// into the hollow.
     #[error(
-        "disk {disk} of radius {} is just as large as the hollow of the wall {wall:?}: make one of them larger",
+        "disk {disk} of radius {} is exactly as large as the hollow of the wall {wall:?}: make one of them larger",
         Readable(*.radius)
     )]
     TightFit {

@@ -38,8 +38,8 @@ impl fmt::Display for Remedy {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::ElasticWhenSlow => {
-                "matter that comes to rest, an inelastic collapse, or disks that walls squeeze; the rules LeastRebound, \
-                 ElasticBelow and ContactDuration are remedies, or more room"
+                "matter that comes to rest, an inelastic collapse, or disks that walls squeeze; remedies are the rules \
+                 LeastRebound, ElasticBelow and ContactDuration, or more room"
             }
             Self::LongerContactDuration => {
                 "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"

@@ -117,7 +117,7 @@ pub enum RunError {
     },
     /// Times are too coarse for the run to continue: time would stand still.
     #[error(
-        "the run cannot go on at time {}: times there are {} apart, too coarse for disks that go some tens of diameters \
+        "the run cannot go on at time {}: times there are {} apart, too coarse for disks that move tens of diameters \
          in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy? \
          collision::laws::check and wall::laws::check try them",
         Readable(*.time), Rounded(*.spacing), Rounded(*.epoch)

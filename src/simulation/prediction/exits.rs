@@ -92,11 +92,11 @@ fn exit_under_pull(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64,
 /// Returns the time until a disk leaves its row, and whether it leaves through the edge above, for gravity
 /// that pulls down.
 ///
-/// There are three ways: up to the edge above, up and down again through the edge below, or straight down.
+/// There are three paths: up to the edge above, up and down again through the edge below, or straight down.
 /// The code selects numbers and does not branch: the path that a disk takes is a coin toss, and a
 /// misprediction would cost more than all three roots. Each root has the form in which nothing cancels: a
-/// distance over a sum of speeds if the disk goes straight to the edge, and a sum of speeds over gravity if
-/// it turns back.
+/// distance divided by a sum of speeds if the disk goes straight to the edge, and a sum of speeds divided by
+/// gravity if it turns back.
 #[inline(always)]
 fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
     let (above, below) = (above.max(0.0), below.max(0.0));

@@ -2,9 +2,10 @@
 //!
 //! Trajectories are kept in the free-fall frame of a common epoch. They consist of the position that a disk
 //! would have had at the epoch (time offset 0) on its present flight, and of its velocity there, without
-//! gravity. All disks fall alike, so the relative motion of a pair is a straight line without its own clock.
-//! Predicting a pair costs a subtraction and a root, and passing a cell changes nothing. The epoch moves
-//! forward at intervals ([`Bodies::shift`]), so that extrapolation stays short and times keep their digits.
+//! gravity. All disks fall alike and share the epoch, so the relative motion of a pair is a straight line,
+//! and no disk needs its own clock. Predicting a pair costs a subtraction and a root, and a cell crossing
+//! does not change the trajectory. The epoch moves forward at intervals ([`Bodies::shift`]), so that
+//! extrapolation stays short and times keep their digits.
 
 use glam::DVec2;
 
@@ -59,8 +60,8 @@ impl Spin {
     }
 }
 
-/// All data of a disk that predictions need, in one cache line. The speed of large systems depends on the
-/// number of lines that an event touches.
+/// All data of a disk that predictions need, in one cache line. In large systems, the time per event depends
+/// on the number of cache lines that the event touches.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(in crate::simulation) struct Particle {

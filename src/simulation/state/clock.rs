@@ -6,8 +6,8 @@ use crate::simulation::errors::{Outcome, RunError};
 /// Smallest number of floating-point times in an epoch. Between two such times, a typical disk then moves by
 /// at most about a diameter.
 ///
-/// These few times are enough, because epochs are powers of two, and so are the distances between these
-/// times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.
+/// These few times are enough, because the lengths of epochs are powers of two, and so are the distances
+/// between these times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.
 const TIMES_IN_EPOCH: f64 = 64.0;
 
 /// The numbers of cell crossings and of collisions of two disks when the epoch last moved.
@@ -52,6 +52,15 @@ impl Clock {
     #[inline]
     pub(in crate::simulation) fn time(&self) -> f64 {
         self.origin + self.now
+    }
+
+    /// Advances to an absolute time. All events up to and including it have been carried out.
+    pub(in crate::simulation) fn advance_to(&mut self, time: f64) {
+        let offset = time - self.origin;
+        // The difference is rounded. It must neither pass the time, nor set the run back to before its last
+        // event.
+        let is_after = self.origin + offset > time;
+        self.now = self.now.max(if is_after { offset.next_down() } else { offset });
     }
 
     /// Returns the largest difference between the present and the time up to which a run was to advance.

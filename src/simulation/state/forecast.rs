@@ -105,7 +105,7 @@ impl Forecast {
         self.collisions = self.collisions.wrapping_add(1);
     }
 
-    /// Measures times from an epoch that is later by this time.
+    /// Converts all offsets to an epoch that is later by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.collision_due -= by;
         self.exit_due -= by;

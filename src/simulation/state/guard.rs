@@ -54,7 +54,7 @@ pub(in crate::simulation) struct Standstill {
     pub(in crate::simulation) elapsed: f64,
 }
 
-/// Returns the default of the least simulated time per event in a run of `disks` disks.
+/// Returns the default of the least progress, in simulated time per event, for a run of `disks` disks.
 pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> f64 {
     epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
 }
@@ -93,7 +93,7 @@ impl Guard {
         is_slow.then_some(standstill)
     }
 
-    /// Measures time from an epoch that is later by this time.
+    /// Converts the offset to an epoch that is later by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.since -= by;
     }

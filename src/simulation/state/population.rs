@@ -65,7 +65,7 @@ impl Bodies {
         }
     }
 
-    /// Removes the disks for which `leaves` is true. The others stay in their order.
+    /// Removes the disks for which `leaves` is true. The others keep their order.
     pub(in crate::simulation) fn remove(&mut self, leaves: &[bool]) {
         let models = (0..self.len()).map(|disk| self.properties.model(disk)).collect::<Vec<_>>();
         self.properties = Properties::of(&staying(&models, leaves));

@@ -93,8 +93,8 @@ impl Properties {
     /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
     ///
     /// If there is a disk more than [`LARGEST_RATIO`] times as large, the result is the diameter of the
-    /// largest disk over that ratio. A domain with room for such a disk is so large that positions have few
-    /// digits after the decimal point, so fine dust would gain nothing from shorter epochs.
+    /// largest disk divided by that ratio. A domain with room for such a disk is so large that positions have
+    /// few digits after the decimal point, so fine dust would gain nothing from shorter epochs.
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same { model, .. } => 2.0 * model.radius(),

@@ -110,7 +110,7 @@ impl<'a> Keys<'a> {
             Some(pbc) => self.periodic(domain, pbc)?,
             None if own.is_some() => domain,
             None => {
-                notes.push("all sides of the lattice are periodic, for the file has no `pbc`".to_owned());
+                notes.push("all sides of the lattice are periodic, since the file has no `pbc`".to_owned());
                 domain.with_periodic_sides().with_periodic_ends()
             }
         };

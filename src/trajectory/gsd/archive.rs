@@ -1,4 +1,4 @@
-//! A GSD file by any program: its names, its index, and its chunks.
+//! A GSD file of any program: its names, its index, and its chunks.
 
 use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -100,8 +100,8 @@ impl<R: Read + Seek> Archive<R> {
 impl Chunk {
     /// Returns a number of the chunk, or NaN if the chunk does not have the number or its type is not known.
     ///
-    /// A number of a single column in single precision is read from its shortest decimal form, so that 0.35
-    /// stays 0.35.
+    /// If the chunk has one column, in single precision, the number is read from its shortest decimal form,
+    /// so that 0.35 stays 0.35.
     pub(super) fn number(&self, row: usize, column: usize) -> f64 {
         let (width, mut eight) = (width(self.kind) as usize, [0; 8]);
         let place = (row * self.columns + column) * width;

@@ -40,7 +40,7 @@ impl Indexed {
     /// Begins a file. A name with an ending for compression is an error, since an index needs plain bytes.
     pub(in crate::trajectory) fn create(path: &Path, may_exist: bool) -> Result<Sink, RecordError> {
         if is_gzip(path) {
-            let reason = "a file of GSD is not compressed, so its name must not end in .gz";
+            let reason = "a GSD file is not compressed, so its name must not end in .gz";
             return Err(RecordError::unusable(path, reason));
         }
         let mut file = media::create(path, may_exist)?;
@@ -54,7 +54,7 @@ impl Indexed {
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Sink, RecordError> {
         let medium = media::reopen(path)?;
         let mut index = Self::first();
-        let times = index.read(medium.file()).map_err(RecordError::io("go on in", path))?;
+        let times = index.read(medium.file()).map_err(RecordError::io("continue", path))?;
         let file = Growing::new(path, medium, index.end(), Vec::new());
         Sink::new(file, index).with_frames(times)
     }
@@ -122,7 +122,7 @@ impl Indexed {
         let last = (number(&head, 8), number(&head, 16));
         check_header(&head, last)?;
         if size < self.end() {
-            return Err(no_frame("a file of GSD with its index", "a shorter one"));
+            return Err(no_frame("a GSD file with its index", "a shorter one"));
         }
         let mut times = Vec::new();
         loop {
@@ -203,7 +203,7 @@ fn check_header(head: &[u8], (location, room): (u64, u64)) -> io::Result<()> {
     }
     let is_ours = head[48..].starts_with(b"granular-edmd");
     let found = if is_ours { "one of another version" } else { "another" };
-    Err(no_frame("a file of GSD by this version of granular-edmd", found))
+    Err(no_frame("a GSD file by this version of granular-edmd", found))
 }
 
 /// Returns the header of a file with its index at this position, and room for this number of entries.

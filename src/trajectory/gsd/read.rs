@@ -159,7 +159,8 @@ impl<R: Read + Seek> View<'_, R> {
         let diameters = self.diameters(count)?;
         let (masses, density) = (self.rows("particles/mass", count, 1)?, self.settings.density);
         if masses.is_none() && density.is_some() {
-            self.notes.push("masses are by the density, for the file has none, which may mean 1".to_owned());
+            self.notes
+                .push("masses follow from the density, since the file has none (all may be 1)".to_owned());
         }
         if let Some(inertia) = self.rows("particles/moment_inertia", count, 3)? {
             let sizes = diameters.clone();
@@ -192,7 +193,7 @@ impl<R: Read + Seek> View<'_, R> {
             }
             columns.push(Values::new("inertia_factor", 1, move |row, _| factor(row, moments[row])));
         } else if self.rows("particles/angmom", count, 4)?.is_some() {
-            let note = "angular momenta are ignored, for the file has no moments of inertia";
+            let note = "angular momenta are ignored, since the file has no moments of inertia";
             self.notes.push(note.to_owned());
         }
         columns.push(Values::new("diameter", 1, move |row, _| diameters[row]));
@@ -220,7 +221,7 @@ impl<R: Read + Seek> View<'_, R> {
             .map(|[left, right, bottom, top]| Domain::new(left, right, bottom, top));
         if periodic.is_none() && self.archive.is_own {
             self.notes
-                .push("the box is left out, for the file does not tell where it is periodic".to_owned());
+                .push("the box is left out, since the file does not say where it is periodic".to_owned());
         } else {
             let domain = checked_box(own.unwrap_or(seen), 1)?;
             let [sides, ends] = periodic.unwrap_or([1.0; 2]);
@@ -249,7 +250,7 @@ impl<R: Read + Seek> View<'_, R> {
             (self.rows("particles/typeid", count, 1)?, self.rows("particles/diameter", count, 1)?);
         let default = self.settings.radius.map_or(1.0, |radius| 2.0 * radius);
         if shapes.is_empty() && given.is_none() && self.settings.radius.is_none() {
-            self.notes.push("all diameters are 1, for the file has none".to_owned());
+            self.notes.push("all diameters are 1, since the file has none".to_owned());
         }
         let of_disk = |row| {
             let kind = kinds.as_ref().map_or(0, |kinds| kinds.number(row, 0) as usize);
@@ -278,7 +279,7 @@ impl<R: Read + Seek> View<'_, R> {
     }
 }
 
-/// The values of a property of each disk, by row and part.
+/// The values of a property of each disk, by row and component.
 struct Values {
     name: &'static str,
     size: usize,

@@ -104,7 +104,7 @@ impl<'a> Header<'a> {
 /// A value of the header, with its line.
 type Found<T> = Option<(T, usize)>;
 
-/// Notes a value that may appear once.
+/// Stores a value that may appear only once.
 fn once<T>(place: &mut Found<T>, value: T, what: &str, line: usize) -> Result<(), ReadError> {
     match place.replace((value, line)) {
         None => Ok(()),

@@ -135,7 +135,7 @@ impl<'a> Sections<'a> {
             table.push(atom.into_iter().chain(self.velocity(id(row, line)?)?), line)?;
         }
         table.domain = Some(domain);
-        // The names of kinds from 0 on, up to the first missing name.
+        // The names of kinds, from number 0 to the first missing name.
         let of_number: HashMap<&str, &str> =
             self.labels.iter().map(|(label, number)| (*number, *label)).collect();
         let names = (1..).map_while(|number: usize| of_number.get(number.to_string().as_str()));

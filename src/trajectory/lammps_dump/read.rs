@@ -80,7 +80,7 @@ impl Head {
             let [extent, domain] = domains(words, bounds)?;
             (table.extent, table.domain) = (Some(extent), Some(domain));
             if flags(words).is_none() {
-                table.notes.push("no side is periodic, for the dump does not say which are".to_owned());
+                table.notes.push("no side is periodic, since the dump does not say which are".to_owned());
             }
         }
         let at = names.split_whitespace().position(|name| name == TIME);

@@ -48,7 +48,7 @@ impl Series {
         let text = io::read_to_string(file.file()).map_err(RecordError::io("read", path))?;
         let (times, length) = times(&text, &name);
         if !times.is_empty() && !is_torn(&text[length..], &name, times.len()) {
-            return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
+            return Err(RecordError::io("continue", path)(no_frame("an ending", &text[length..])));
         }
         let file = Growing::new(path, file, length as u64, TAIL.into());
         Sink::new(file, Self { folder, name }).with_frames(times)
@@ -105,7 +105,7 @@ fn place(path: &Path) -> Result<(PathBuf, String), RecordError> {
     if let Some(name) = name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
         return Ok((path.with_extension(""), escaped(name)));
     }
-    Err(RecordError::unusable(path, "the name must be of Unicode letters and end in .pvd"))
+    Err(RecordError::unusable(path, "the name must be valid Unicode and end in .pvd"))
 }
 
 fn file_name(part: &str, number: usize) -> String {

@@ -22,7 +22,7 @@ const PIECES: usize = 1000;
 /// are not compared.
 ///
 /// The motions are compared at four thousand phases from −1 to 399, at forty later phases up to 490 000, and
-/// in the first thousand pieces of both from −1 on. The check cannot see other differences. If two such
+/// in the first thousand pieces of both after phase −1. The check cannot see other differences. If two such
 /// motions are of one type, the check refuses different fingerprints. Motions of two types may move alike and
 /// have different fingerprints.
 ///

@@ -223,7 +223,8 @@ fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
     accept(enough, "number of points", "at least the number of clusters", points.len() as f64)?;
     points.iter().flat_map(DVec2::to_array).try_for_each(|coordinate| {
         let valid = coordinate.abs() <= LARGEST;
-        accept(valid, "coordinate of a point", "finite and at most 1e100 in size", coordinate).map(|_| ())
+        accept(valid, "coordinate of a point", "finite and at most 1e100 in magnitude", coordinate)
+            .map(|_| ())
     })
 }
 

@@ -160,7 +160,7 @@ fn degenerate_points_are_clustered_and_bad_ones_refused() -> Outcome {
         message(fit(3, &equal[..2])),
         "number of points must be at least the number of clusters, but is 2"
     );
-    let coordinate = "coordinate of a point must be finite and at most 1e100 in size, but is";
+    let coordinate = "coordinate of a point must be finite and at most 1e100 in magnitude, but is";
     assert_eq!(message(fit(1, &[DVec2::new(0.0, f64::NAN)])), format!("{coordinate} NaN"));
     assert_eq!(message(fit(1, &[DVec2::new(f64::INFINITY, 0.0)])), format!("{coordinate} inf"));
     assert!(fit(8, &equal).is_err());

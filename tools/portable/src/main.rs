@@ -1,5 +1,5 @@
 //! The runs that `.ci/portable` compares between platforms: two small runs and a packing, which use
-//! everything that could differ, and the bits of their last states.
+//! everything that could differ. It compares the bits of their last states.
 //!
 //! The program prints for each run its name, its collisions, and a hash of the state and of the checkpoint.
 
@@ -46,7 +46,7 @@ fn shaken_box() -> Outcome<String> {
     run(&container, 0.05, 0.0, 60.0)
 }
 
-/// Runs unequal disks between periodic sides over a thermal floor that heaves, at a late time.
+/// Runs unequal disks between periodic sides over a thermal floor that moves up and down, at a late time.
 fn heated_column() -> Outcome<String> {
     let container = || -> Outcome<Container> {
         Ok(Container::open(20.0)?
@@ -58,7 +58,7 @@ fn heated_column() -> Outcome<String> {
 }
 
 /// Packs disks with radii of all distributions, and sets them in motion. There is no run and no checkpoint,
-/// so the numbers are those of the disks and of their places.
+/// so the result is the number of disks, and hashes of their state and of their radii.
 fn packing() -> Outcome<String> {
     let radii = [
         Radii::uniform(0.3, 0.5)?,

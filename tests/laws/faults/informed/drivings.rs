@@ -125,11 +125,15 @@ type Memory = HashMap<u64, f64>;
 /// Returns the kick of a disk, from its index in the list and the number of kicks so far.
 type Kick = fn(&mut Memory, &Disk, u64, u64) -> DVec2;
 
+/// Returns the kick of a disk's spin, from the same.
+type Turn = fn(&mut Memory, &Disk, u64, u64) -> f64;
+
 struct Remembering {
     times: SampleTimes,
     kicks: u64,
     memory: Memory,
     kick: Kick,
+    turn: Turn,
 }
 
 impl Driving for Remembering {
@@ -142,14 +146,20 @@ impl Driving for Remembering {
         for (index, disk) in (0..).zip(disks) {
             let kick = (self.kick)(&mut self.memory, disk, index, self.kicks);
             *disk = disk.with_velocity(disk.velocity() + kick)?;
+            let turn = (self.turn)(&mut self.memory, disk, index, self.kicks);
+            *disk = disk.with_angular_velocity(disk.angular_velocity() + turn)?;
         }
         Ok(())
     }
 }
 
 fn remembering(kick: Kick) -> Driven {
+    turning(kick, |_, _, _, _| 0.0)
+}
+
+fn turning(kick: Kick, turn: Turn) -> Driven {
     let times = SampleTimes::every(0.5).expect("an interval");
-    let driving = Remembering { times, kicks: 0, memory: Memory::new(), kick };
+    let driving = Remembering { times, kicks: 0, memory: Memory::new(), kick, turn };
     Driven { driving: Box::new(driving), keeps_momentum: false }
 }
 
@@ -197,12 +207,23 @@ pub(crate) fn honest() -> Vec<Planted<Driven>> {
         }),
         ("drag by mass", |_, disk, _, _| -0.1 / disk.mass() * disk.velocity()),
     ];
-    let planted = |(name, kick): (&str, Kick)| Planted {
-        name: name.to_owned(),
-        family: "honest",
-        part: remembering(kick),
-    };
-    kicks.into_iter().map(planted).collect()
+    let planted = |(name, part): (&str, Driven)| Planted { name: name.to_owned(), family: "honest", part };
+    let noise_by_index: Kick = |_, _, index, kicks| DVec2::new(noise(kicks, index), 0.0);
+    let turns =
+        [
+            (
+                "turns by id",
+                turning(noise_by_index, |memory, disk, _, kicks| push(memory, disk.id(), disk.id(), kicks).x),
+            ),
+            ("noise of turns by index", turning(noise_by_index, |_, _, index, kicks| noise(index, kicks))),
+            (
+                "one disk turns at random",
+                turning(noise_by_index, |_, _, index, kicks| {
+                    if (8.0 + 8.0 * noise(kicks, 0)) as u64 == index { 1.0 } else { 0.0 }
+                }),
+            ),
+        ];
+    kicks.map(|(name, kick)| (name, remembering(kick))).into_iter().chain(turns).map(planted).collect()
 }
 
 /// "What a driving remembers of a disk, it remembers by the id."
@@ -237,5 +258,13 @@ fn memories(drivings: &mut Drivings) {
     ];
     for (name, kick) in kicks {
         drivings.plant(name, remembering(kick));
+    }
+    let noise_by_index: Kick = |_, _, index, kicks| DVec2::new(noise(kicks, index), noise(index, kicks));
+    let turns: [(&str, Turn); 2] = [
+        ("turns by index", |memory, _, index, kicks| push(memory, index, index, kicks).x),
+        ("turns by index, noise by id", |memory, disk, index, kicks| push(memory, index, disk.id(), kicks).x),
+    ];
+    for (name, turn) in turns {
+        drivings.plant(name, turning(noise_by_index, turn));
     }
 }
