@@ -4,7 +4,7 @@
 //! A process that writes the plan or the tables holds the folder's lock. The next process that holds the lock
 //! knows that the writer of any temporary file in the folder is dead.
 
-use std::collections::HashSet;
+use std::ffi::OsString;
 use std::fs::{self, DirEntry, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -59,14 +59,13 @@ impl Folder {
     }
 
     /// Returns the ramp and value indices of the unfinished values.
-    pub(super) fn unfinished(&self) -> Result<HashSet<[usize; 2]>, StudyError> {
-        let mut found = HashSet::new();
-        for file in files_in(&self.root.join(UNFINISHED))? {
-            let name = file.file_name();
-            let place = name.to_str().and_then(|name| name.split_once('-'));
-            found.extend(place.and_then(|(ramp, value)| Some([ramp.parse().ok()?, value.parse().ok()?])));
-        }
-        Ok(found)
+    pub(super) fn unfinished(&self) -> Result<Vec<[usize; 2]>, StudyError> {
+        let names = files_in(&self.root.join(UNFINISHED))?.into_iter().map(|file| file.file_name());
+        let place = |name: OsString| {
+            let (ramp, value) = name.to_str()?.split_once('-')?;
+            Some([ramp.parse().ok()?, value.parse().ok()?])
+        };
+        Ok(names.filter_map(place).collect())
     }
 
     /// Returns an error if the folder has records of version 0.3, which this version does not read.

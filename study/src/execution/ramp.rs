@@ -116,7 +116,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         // The value is checked now, since a new plan with many values is checked at only some of them.
         let experiment = study.plan.sound_experiment(self.ramp, step.at)?;
         let origin = study.origin(self.ramp, value);
-        let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
+        let work = Value { study, origin, experiment, step, before };
         let mut earlier = self.earlier(step)?;
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
