@@ -49,6 +49,7 @@ use std::error::Error;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use clap::Parser;
 use serde_json::json;
@@ -56,7 +57,7 @@ use serde_json::json;
 use super::errors::{PlanError, StudyError, chain};
 use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
-use terminal::{STOP, Watch, is_stopped, listen, read, refused, say};
+use terminal::{STOP, Watch, listen, read, say};
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` prints; the JSON of
 /// `status` contains all.
@@ -121,9 +122,9 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
 
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
-    let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
+    let plan = Plan::from_toml_unproven(&read(path)?).map_err(StudyError::unreadable(path))?;
     Ok(Study::open_or_put(folder, plan, Plan::check_experiments).map_err(|error| match error {
-        StudyError::Plan(source) => refused(path)(source),
+        StudyError::Plan(source) => StudyError::unreadable(path)(source),
         error => error,
     })?)
 }
@@ -163,7 +164,7 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) if summary.failed > 0 => End::Unfinished,
         (true, _) => End::Done,
-        (false, false) if !is_stopped() => End::Elsewhere,
+        (false, false) if !STOP.load(Ordering::Relaxed) => End::Elsewhere,
         _ => End::Interrupted,
     })
 }
@@ -173,25 +174,21 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let (all, has_tables) = (study.all_status()?, study.has_tables());
     let ramps = all.len();
     let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
-    let found = [
-        ("done", of(RampStatus::Done)),
-        ("running", of(RampStatus::Running)),
-        ("begun", of(RampStatus::Begun)),
-        ("waiting", of(RampStatus::Waiting)),
-    ];
+    let [done, running, begun, waiting] =
+        [RampStatus::Done, RampStatus::Running, RampStatus::Begun, RampStatus::Waiting].map(of);
+    let (are_done, are_run) = (done.len() == ramps, !running.is_empty());
     let failed = study.failed()?;
     let (spent, left) = study.seconds()?;
     if json {
-        let [done, running, begun, waiting] = found.each_ref().map(|(_, of)| of);
         let object = json!({
             "ramps": ramps, "done": done, "running": running, "begun": begun, "waiting": waiting,
             "failed": failed, "tables": has_tables, "seconds": spent, "seconds_left": left,
         });
         say(&object.to_string())?;
     } else {
-        let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
-        let tables = if has_tables { "tables of all" } else { "no tables of all" };
-        say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
+        let [done, running, begun, waiting] = [done, running, begun, waiting].map(|ramps| ramps.len());
+        let counts = format!("{done} done, {running} running, {begun} begun, {waiting} waiting");
+        say(&format!("{ramps} ramps: {counts}; {}tables of all", if has_tables { "" } else { "no " }))?;
         if left.is_finite() {
             say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
         }
@@ -206,12 +203,12 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
             ))?;
         }
     }
-    Ok(match (found[0].1.len() == ramps, has_tables) {
+    Ok(match (are_done, has_tables) {
         (true, true) if failed.is_empty() => End::Done,
         (true, true) => End::Unfinished,
         (true, false) => End::NoTables,
-        (false, _) if found[1].1.is_empty() => End::Idle,
-        (false, _) => End::Elsewhere,
+        (false, _) if are_run => End::Elsewhere,
+        (false, _) => End::Idle,
     })
 }
 

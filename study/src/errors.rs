@@ -226,6 +226,11 @@ impl StudyError {
         move |source| Self::Io { action, path: path.to_owned(), source }
     }
 
+    /// Returns a function that adds the file name to the error of a plan.
+    pub(super) fn unreadable(path: &Path) -> impl FnOnce(PlanError) -> Self {
+        move |source| Self::Unreadable { path: path.to_owned(), source }
+    }
+
     /// Returns an error if the plan in a folder differs from the given one.
     pub(super) fn if_different(path: &Path, differences: Vec<Difference>) -> Result<(), Self> {
         let path = path.to_owned();

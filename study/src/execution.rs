@@ -199,7 +199,7 @@ impl<E: Experiment> Study<E> {
     /// If the plan or the code of the study has changed, files cannot be read or written, or a value cannot
     /// be started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
-        self.run_blocks(0..self.plan.ramp_count(), self.claims.blocks(), control)
+        self.run_ramps(0..self.plan.ramp_count(), control)
     }
 
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
@@ -212,18 +212,13 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_ramp(ramp)?;
-        self.run_blocks(ramp..ramp + 1, std::iter::once(ramp..ramp + 1), control)
+        self.run_ramps(ramp..ramp + 1, control)
     }
 
-    fn run_blocks(
-        &self,
-        ramps: Range<usize>,
-        blocks: impl Iterator<Item = Range<usize>>,
-        control: &Control<'_>,
-    ) -> Result<Summary, StudyError> {
+    fn run_ramps(&self, ramps: Range<usize>, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_unchanged()?;
         let is_whole = ramps.len() == self.plan().ramp_count();
-        let session = Session::new(self, control, ramps, blocks)?;
+        let session = Session::new(self, control, ramps)?;
         let elsewhere = all(&session)?;
         self.store.sync()?;
         let summary = session.summary(elsewhere)?;
@@ -261,24 +256,24 @@ fn all<E: Experiment>(session: &Session<'_, E>) -> Result<Vec<usize>, StudyError
         let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
         threads.try_for_each(|_| work(session))?;
         session.strike_done()?;
-        let elsewhere = session.queue.elsewhere();
+        let elsewhere: Vec<usize> = session.blocks().elsewhere.iter().cloned().flatten().collect();
         if elsewhere.is_empty() || !session.control.waits || session.must_stop() {
             return Ok(elsewhere);
         }
         session.sleep(patience);
         patience = PATIENCE[1].min(2 * patience);
         // The processes that run these blocks may have been killed.
-        session.queue.retry(TRIED);
+        session.blocks().retry(TRIED);
     }
 }
 
-/// Runs blocks of the queue until it is empty.
+/// Runs the waiting blocks until none is left.
 fn work<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
-    while !session.must_stop()
-        && let Some(ramps) = session.queue.next()
-    {
+    while !session.must_stop() {
+        let next = session.blocks().waiting.pop_front();
+        let Some(ramps) = next else { break };
         if !ramp::attempt(session, &ramps).inspect_err(|_| session.broken.store(true, Ordering::Relaxed))? {
-            session.queue.leave(ramps);
+            session.blocks().leave(ramps);
         }
     }
     Ok(())

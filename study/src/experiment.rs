@@ -341,10 +341,3 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         None
     }
 }
-
-/// Returns the column of this name that has an error. If each of the tables of samples and values has a
-/// column of this name, the result is the column of the table of values.
-pub(crate) fn with_error<'a, E: Experiment>(columns: &'a [Column<E>], name: &str) -> Option<&'a Column<E>> {
-    let named = columns.iter().filter(|column| column.name() == name && column.has_error());
-    named.max_by_key(|column| column.in_values)
-}

@@ -4,8 +4,8 @@
 //! A process that writes the plan or the tables holds the folder's lock. The next process that holds the lock
 //! knows that the writer of any temporary file in the folder is dead.
 
-use std::collections::HashSet;
-use std::fs::{self, DirEntry, File, OpenOptions};
+use std::ffi::OsString;
+use std::fs::{self, DirEntry, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -59,14 +59,13 @@ impl Folder {
     }
 
     /// Returns the ramp and value indices of the unfinished values.
-    pub(super) fn unfinished(&self) -> Result<HashSet<[usize; 2]>, StudyError> {
-        let mut found = HashSet::new();
-        for file in files_in(&self.root.join(UNFINISHED))? {
-            let name = file.file_name();
-            let place = name.to_str().and_then(|name| name.split_once('-'));
-            found.extend(place.and_then(|(ramp, value)| Some([ramp.parse().ok()?, value.parse().ok()?])));
-        }
-        Ok(found)
+    pub(super) fn unfinished(&self) -> Result<Vec<[usize; 2]>, StudyError> {
+        let names = files_in(&self.root.join(UNFINISHED))?.into_iter().map(|file| file.file_name());
+        let place = |name: OsString| {
+            let (ramp, value) = name.to_str()?.split_once('-')?;
+            Some([ramp.parse().ok()?, value.parse().ok()?])
+        };
+        Ok(names.filter_map(place).collect())
     }
 
     /// Returns an error if the folder has records of version 0.3, which this version does not read.
@@ -90,18 +89,11 @@ impl Folder {
     pub(super) fn prepare(&self) -> Result<Locked, StudyError> {
         self.check_free()?;
         create(&self.root)?;
-        let lock = self.take_lock()?;
-        remove_temporaries(&self.root)?;
-        Ok(lock)
+        self.take_lock()
     }
 
-    /// Writes the plan, its provenance and the README, except for files that exist already. The caller holds
-    /// the lock.
-    pub(super) fn put(&self, plan: &str, provenance: &str) -> Result<(), StudyError> {
-        if !self.plan().exists() {
-            write(&self.plan(), plan.as_bytes())?;
-        }
-        // If a process is killed here, the folder has a plan but no provenance and no records.
+    /// Writes the provenance and the README, except for files that exist already. The caller holds the lock.
+    pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         if !self.root.join(LOGS).exists() && !self.provenance().exists() {
             write(&self.provenance(), provenance.as_bytes())?;
         }
@@ -110,12 +102,6 @@ impl Folder {
 
     pub(super) fn provenance(&self) -> PathBuf {
         self.root.join(PROVENANCE)
-    }
-
-    /// Returns the text of the provenance, or `None` if its file is missing.
-    pub(super) fn read_provenance(&self) -> Result<Option<String>, StudyError> {
-        let path = self.provenance();
-        if_there("read", &path, fs::read_to_string(&path))
     }
 
     /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
@@ -179,14 +165,14 @@ impl Folder {
 
     fn take_lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
-        let file = lock_options().open(&path).map_err(StudyError::io("write", &path))?;
-        Locked::wait(file).map_err(|source| StudyError::NoLock { path, source })
+        let lock = Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })?;
+        remove_temporaries(&self.root)?;
+        Ok(lock)
     }
 
     /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let lock = self.take_lock()?;
-        remove_temporaries(&self.root)?;
         // The process that wrote the plan may have been killed before it wrote the README.
         self.write_about()?;
         Ok(lock)
@@ -203,21 +189,15 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-fn lock_options() -> OpenOptions {
-    let mut options = File::options();
-    options.read(true).write(true).create(true).truncate(false);
-    options
-}
-
 /// Opens a lock file, and creates the file and its folder if necessary.
 pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
-    let opened = lock_options().open(path);
-    let opened = match (&opened, path.parent()) {
+    let open = || File::options().read(true).write(true).create(true).truncate(false).open(path);
+    let opened = match (open(), path.parent()) {
         (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {
             create(folder)?;
-            lock_options().open(path)
+            open()
         }
-        _ => opened,
+        (opened, _) => opened,
     };
     opened.map_err(StudyError::io("write", path))
 }

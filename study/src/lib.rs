@@ -23,8 +23,8 @@
 //!    [`Control::with_verification`] computes their values again.
 //! 3. Any number of processes, started at any time, can run a study at the same time, and each ramp is run by
 //!    one of them. The processes must see each other's file locks, as on a local file system, or on NFS from
-//!    version 4 on. If two processes run the same ramp by [`Study::run_ramp`], both may compute it, with the
-//!    same result.
+//!    version 4 on. A ramp that a process runs by [`Study::run_ramp`] may be computed by others, too, with
+//!    the same result.
 //! 4. A study writes only into an empty folder or its own folder, and changes or removes only its own files.
 //! 5. All records of a study come from the same code, unless you accept a change. `provenance.json` keeps the
 //!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the

@@ -184,7 +184,7 @@ impl<E: Experiment> Plan<E> {
         if ramp >= self.ramp_count() || value >= self.value_count() {
             return Vec::new();
         }
-        self.parameters_at(ramp, self.step(value).map(|(_, at)| at))
+        self.parameters_at(ramp, self.at(value))
     }
 
     /// Returns the parameters that vary, with the ramped parameter at `at`.
@@ -210,19 +210,29 @@ impl<E: Experiment> Plan<E> {
     pub fn experiment(&self, ramp: usize, value: usize) -> Result<E, PlanError> {
         accept(ramp < self.ramp_count(), "index of a ramp", "below the number of ramps", ramp as f64)?;
         accept(value < self.value_count(), "index of a value", "below the number of values", value as f64)?;
-        self.experiment_of(&self.parameters(ramp, value))
+        self.experiment_at(ramp, self.at(value))
     }
 
     /// Returns the experiment where the ramped parameter is `at`.
     pub(super) fn experiment_at(&self, ramp: usize, at: Option<f64>) -> Result<E, PlanError> {
-        self.experiment_of(&self.parameters_at(ramp, at))
+        let (mut tree, varied) = (self.tree.clone(), self.parameters_at(ramp, at));
+        for (name, (_, to)) in self.varied.iter().zip(&varied) {
+            // The names were checked when the plan was made, so this succeeds.
+            let _ = parameters::set(&mut tree, name, to);
+        }
+        parameters::experiment(tree).map_err(|reason| self.refused(ramp, at, reason.into()))
     }
 
-    /// Returns the experiment with these parameters, or the error with which the experiment rejects them.
-    pub(super) fn sound_experiment(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
-        let experiment = self.experiment_of(varied)?;
-        experiment.check().map_err(|source| Self::refused(varied, source))?;
+    /// Returns the experiment where the ramped parameter is `at`, or the error with which the experiment
+    /// rejects its parameters.
+    pub(super) fn sound_experiment(&self, ramp: usize, at: Option<f64>) -> Result<E, PlanError> {
+        let experiment = self.experiment_at(ramp, at)?;
+        experiment.check().map_err(|source| self.refused(ramp, at, source))?;
         Ok(experiment)
+    }
+
+    fn refused(&self, ramp: usize, at: Option<f64>, source: ExperimentError) -> PlanError {
+        PlanError::Experiment { place: place(&self.parameters_at(ramp, at)), source }
     }
 
     /// Returns the ramp of each point, or `None` if the plan has no ramp.
@@ -232,21 +242,12 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns whether ramps bisect transitions, and therefore have more values than the plan lists.
     pub(super) fn is_refined(&self) -> bool {
-        self.parts.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
+        self.parts.ramp.as_ref().is_some_and(|ramp| ramp.refine.is_some())
     }
 
-    fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
-        let mut tree = self.tree.clone();
-        for (name, (_, to)) in self.varied.iter().zip(varied) {
-            // The names were checked when the plan was made, so this succeeds.
-            let _ = parameters::set(&mut tree, name, to);
-        }
-        let refused = |reason: String| Self::refused(varied, reason.into());
-        parameters::experiment(tree).map_err(refused)
-    }
-
-    fn refused(varied: &[(&str, Scalar)], source: ExperimentError) -> PlanError {
-        PlanError::Experiment { place: place(varied), source }
+    /// Returns the ramped parameter at a value that the plan lists.
+    fn at(&self, value: usize) -> Option<f64> {
+        self.step(value).map(|(_, at)| at)
     }
 
     pub(super) fn step(&self, value: usize) -> Option<(Leg, f64)> {

@@ -1,6 +1,6 @@
 //! The progress of a study: its ramps, failed values, and the time that it takes.
 
-use super::claims::Claimed;
+use super::folder::remove;
 use super::store::{Entry, Head};
 use super::{Experiment, Study, StudyError};
 
@@ -77,16 +77,20 @@ impl<E: Experiment> Study<E> {
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
         self.check_ramp(ramp)?;
         self.check_unchanged()?;
-        let claimed = self.claims.claim(&(ramp..ramp + 1))?;
+        let claim = self.claims.claim(ramp)?;
         let entries = self.store.refreshed()?;
-        if matches!(claimed, Claimed::Theirs) || !entries.is_done(ramp) {
+        if claim.is_none() || !entries.is_done(ramp) {
             return Ok(false);
         }
         let heads = || entries.of(ramp..ramp + 1).map(Entry::head);
         let Some(first) = heads().find(|head| head.has(Head::FAILED)) else { return Ok(false) };
         self.folder.mark_incomplete()?;
-        let values = heads().map(|head| head.value).filter(|value| *value >= first.value);
-        self.store.void(ramp, values)?;
+        for value in heads().map(|head| head.value).filter(|value| *value >= first.value) {
+            // A process that was killed just after it had finished the value may have left this file.
+            remove(&self.folder.partial(ramp, value))?;
+            self.store.void(ramp, value)?;
+        }
+        self.store.refreshed()?;
         Ok(true)
     }
 

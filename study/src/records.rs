@@ -3,7 +3,6 @@
 use granular_edmd::statistics::Estimate;
 
 use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
-use super::experiment::with_error;
 use super::plan::ramp::{Bracket, Seen};
 use super::store::Entry;
 use super::{Experiment, Plan, Study, StudyError};
@@ -70,9 +69,8 @@ impl<E: Experiment> Point<E> {
     /// Returns the mean over all repeats of the column of this name, or `None` if no column of this name has
     /// an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
-        let columns = E::columns();
-        let column = with_error(&columns, column)?;
-        Some(Estimate::over_repeats(self.records.iter().filter_map(|record| column.estimate(record))))
+        let repeats = self.records.iter().map(|record| record.estimate(column));
+        repeats.collect::<Option<Vec<_>>>().map(Estimate::over_repeats)
     }
 }
 
@@ -116,9 +114,12 @@ impl<E: Experiment> Study<E> {
     pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
         self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(entry))?;
-        let is_outside = |at| !self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
-        if contents.at.is_some_and(is_outside) {
-            return Err(self.store.damaged(entry, "it is outside the ramp"));
+        let is_placed = match self.plan.step(head.value) {
+            Some(step) => contents.leg.zip(contents.at) == Some(step),
+            None => contents.at.is_none_or(|at| self.plan.ramp().is_some_and(|ramp| ramp.bisects(at))),
+        };
+        if !is_placed {
+            return Err(self.store.damaged(entry, "its place in the ramp is not the plan's"));
         }
         let record = Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents };
         check_record(&record, &self.plan).map_err(|reason| self.store.damaged(entry, reason))?;
@@ -201,18 +202,13 @@ impl<E: Experiment> Study<E> {
 
 /// Checks that a record belongs to its ramp and value in a study, or returns the reason why it does not.
 fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
-    let Contents { origin, leg, at, outcome, end, measured, state, .. } = &record.contents;
+    let Contents { origin, outcome, end, measured, state, .. } = &record.contents;
     let protocol = plan.protocol();
     let most = protocol.cycles().saturating_mul(origin.value as u64 + 1);
     check(end.count <= most, "it is longer than the protocol")?;
     let samples = measured.samples.len() as u64;
     let is_short = *outcome != Outcome::Completed && samples < protocol.samples();
     check(samples == protocol.samples() || is_short, "its samples are not as many as in the protocol")?;
-    let is_placed = match plan.step(origin.value) {
-        Some((way, value)) => *leg == Some(way) && *at == Some(value),
-        None => plan.is_refined() || at.is_none(),
-    };
-    check(is_placed, "its place in the ramp is not the plan's")?;
     let is_kept = state.is_some() == plan.keeps_state(origin.value);
     check(is_kept, "it keeps a state that it should not, or lacks one")?;
     if let Some(state) = state {

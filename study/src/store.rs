@@ -124,23 +124,18 @@ impl Store {
         contents.and_then(|contents| decoded(&contents)).map_err(|reason| self.damaged(entry, reason))
     }
 
-    /// Appends the record of a value to the log, and a readable line to the log's second file.
+    /// Appends the record of a value to the log of this process.
     pub(super) fn append<T: DeserializeOwned + Serialize>(
         &self,
         head: Head,
         record: &impl Serialize,
-        line: &str,
     ) -> Result<(), StudyError> {
-        self.push(head, &encoded::<T>(&self.folder, record)?)?;
-        self.note(line)
+        self.push(head, &encoded::<T>(&self.folder, record)?)
     }
 
-    /// Marks values as unfinished.
-    pub(super) fn void(&self, ramp: usize, values: impl Iterator<Item = usize>) -> Result<(), StudyError> {
-        for value in values {
-            self.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])?;
-        }
-        self.refreshed().map(drop)
+    /// Marks a value as unfinished.
+    pub(super) fn void(&self, ramp: usize, value: usize) -> Result<(), StudyError> {
+        self.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])
     }
 
     fn push(&self, head: Head, contents: &[u8]) -> Result<(), StudyError> {

@@ -1,5 +1,6 @@
 //! A study: a plan in a folder, and the code that may continue it. Creating and opening check both.
 
+use std::fs;
 use std::path::Path;
 
 use granular_edmd::boundary::Boundary;
@@ -8,7 +9,7 @@ use granular_edmd::{Fingerprint, RESULTS};
 
 use super::claims::Claims;
 use super::experiment::record::{Maker, Origin};
-use super::folder::{Folder, write};
+use super::folder::{Folder, if_there, write};
 use super::parameters::{self, tree};
 use super::store::Store;
 use super::{Difference, Experiment, Plan, PlanError, StudyError};
@@ -43,7 +44,7 @@ impl<E: Experiment> Study<E> {
         if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
             return Err(StudyError::refused(study.folder(), "holds a study already"));
         }
-        study.checked()
+        Ok(Self { provenance: study.check_code()?, ..study })
     }
 
     /// Opens the study in a folder.
@@ -52,7 +53,8 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds no study or cannot be read, if the plan was changed or belongs to another
     /// experiment, or if other code made the study ([`StudyError::Code`]).
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
-        Self::found_in(folder.as_ref())?.checked()
+        let study = Self::found_in(folder.as_ref())?;
+        Ok(Self { provenance: study.check_code()?, ..study })
     }
 
     /// Opens the study in a folder, or creates a new one.
@@ -80,7 +82,7 @@ impl<E: Experiment> Study<E> {
             study.put_plan(check)?;
         }
         study.check_plan()?;
-        study.checked()
+        Ok(Self { provenance: study.check_code()?, ..study })
     }
 
     /// Allows this program to continue a study that other code made, and returns the differences between the
@@ -117,8 +119,7 @@ impl<E: Experiment> Study<E> {
     /// Reads the plan in a folder. The experiments are not checked again: they were checked when the plan was
     /// written.
     fn plan_in(folder: &Folder) -> Result<Plan<E>, StudyError> {
-        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
-        Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)
+        Plan::from_toml_unproven(&folder.read_plan()?).map_err(StudyError::unreadable(&folder.plan()))
     }
 
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
@@ -141,15 +142,11 @@ impl<E: Experiment> Study<E> {
         let is_new = !self.folder.plan().exists();
         if is_new {
             check(&self.plan)?;
+            write(&self.folder.plan(), self.text.as_bytes())?;
         }
-        self.folder.put(&self.text, &self.ours().text())?;
+        // If a process is killed here, the folder has a plan but no provenance and no records.
+        self.folder.put(&self.ours().text())?;
         Ok(is_new)
-    }
-
-    /// Returns this study, or an error if this program may not continue the study.
-    fn checked(mut self) -> Result<Self, StudyError> {
-        self.provenance = self.check_code()?;
-        Ok(self)
     }
 
     /// Returns the provenance that this program gives to a study.
@@ -178,7 +175,8 @@ impl<E: Experiment> Study<E> {
     /// Reads the provenance, or returns `None` if its file is missing. The provenance must belong to this
     /// plan.
     fn read_provenance(&self) -> Result<Option<Provenance>, StudyError> {
-        let (path, text) = (self.folder.provenance(), self.folder.read_provenance()?);
+        let path = self.folder.provenance();
+        let text = if_there("read", &path, fs::read_to_string(&path))?;
         let Some(text) = text else { return Ok(None) };
         let provenance: Provenance = serde_json::from_str(&text)
             .map_err(|reason| StudyError::damaged(&path, format!("it is no provenance ({reason})")))?;
@@ -188,6 +186,7 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::foreign(&path))
     }
 
+    /// Returns the provenance of the folder, or an error if this program may not continue the study.
     fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
         self.folder.check_format()?;
         let provenance = self.read_provenance()?;
@@ -280,6 +279,9 @@ struct Provenance {
     accepted: String,
 }
 
+/// The fields that decide whether a program may continue the study of a plan.
+const DECIDING: [&str; 5] = ["results", "revision", "columns", "rule", "boundary"];
+
 impl Provenance {
     /// Returns the text of the file.
     fn text(&self) -> String {
@@ -289,23 +291,12 @@ impl Provenance {
 
     /// Returns the deciding fields in which this provenance differs from the provenance in the folder.
     fn differences(&self, there: Option<&Self>) -> Vec<Difference> {
-        let all = self.deciding().into_iter().enumerate().map(|(place, (name, ours))| Difference {
-            field: name.to_owned(),
-            old: there.map(|there| there.deciding()[place].1.clone()),
-            new: Some(ours.clone()),
+        let [old, new] = [there, Some(self)].map(|code| serde_json::to_value(code).unwrap_or_default());
+        let all = DECIDING.map(|name| {
+            let [old, new] = [&old, &new].map(|code| code[name].as_str().map(str::to_owned));
+            Difference { field: name.to_owned(), old, new }
         });
-        all.filter(|field| field.old != field.new).collect()
-    }
-
-    /// Returns the fields that decide whether a program may continue the study of a plan.
-    const fn deciding(&self) -> [(&'static str, &String); 5] {
-        [
-            ("results", &self.results),
-            ("revision", &self.revision),
-            ("columns", &self.columns),
-            ("rule", &self.rule),
-            ("boundary", &self.boundary),
-        ]
+        all.into_iter().filter(|field| field.old != field.new).collect()
     }
 
     /// Returns the keys of the present maker and of the earlier, accepted makers, separated by blanks.

@@ -235,7 +235,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
             self.samples.push(&first, [Scalar::from(*time)].into_iter().chain(cells))?;
         }
         for (table, rows) in &mut self.more {
-            for cells in table.rows(record) {
+            for cells in (table.rows)(record) {
                 // Missing numbers are empty cells.
                 let cells = cells.into_iter().chain(std::iter::repeat(f64::NAN)).take(table.columns().len());
                 rows.push(&first, cells.map(Scalar::from))?;

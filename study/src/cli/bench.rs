@@ -9,7 +9,7 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Limits, RunError};
 use granular_edmd::speed::{self, Circumstances, Meter, Quartiles, RunReport};
 
-use super::terminal::{read, refused, say};
+use super::terminal::{read, say};
 use super::{End, Failure, Plan, StudyError, core_time};
 use crate::Experiment;
 
@@ -56,7 +56,7 @@ fn stretches(
 
 /// Prints the core hours of a plan, estimated from short runs of the first values of some ramps.
 pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Result<End, Failure> {
-    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
     let (ramps, share) = (plan.ramp_count(), Duration::from_millis(if quick { 200 } else { 2000 }));
     let chosen: Vec<usize> = (0..ramps.min(RAMPS)).map(|k| k * ramps / ramps.min(RAMPS)).collect();
     let hours =

@@ -22,7 +22,7 @@ pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Diff) -
     let mut one = Source::<E>::open(&wishes.first, &wishes.place, wishes.place.start.as_deref())?;
     let mut two = Source::<E>::open(second, &wishes.place, wishes.other_start.as_deref())?;
     check_disks(&one.run.disks(), &two.run.disks())?;
-    end_at_once()?;
+    end_at_once(None)?;
     let (begin, end, cycle) = (one.run.time().max(two.run.time()), one.end.min(two.end), one.cycle);
     let show = one.clock();
     // The start file of one run may hold a later time than the start of the other run.

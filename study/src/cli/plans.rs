@@ -6,9 +6,9 @@ use std::path::Path;
 use clap::{CommandFactory, ValueEnum};
 
 use super::arguments::Arguments;
-use super::terminal::{read, refused, say, write_new};
+use super::terminal::{read, say, write_new};
 use super::{End, Failure, LISTED, explain};
-use crate::{Experiment, Plan, PlanError, Ramp};
+use crate::{Experiment, Plan, PlanError, Ramp, StudyError};
 
 /// Largest number of values of a ramp that `check` prints in full.
 const MOST_VALUES: usize = 60;
@@ -32,7 +32,7 @@ pub(super) fn explain<E: Experiment>(key: Option<&str>, schema: bool) -> Result<
 }
 
 pub(super) fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
-    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
     let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
     let repeats = match plan.repeats() {
         1 => String::new(),

@@ -11,15 +11,15 @@ use granular_edmd::trajectory::State;
 use super::arguments::Replay;
 use super::convert::Ending;
 use super::source::{HEADINGS, Source, row, tell_end};
-use super::terminal::{is_stopped, listen, wrote};
+use super::terminal::{end_at_once, wrote};
 use super::{End, Failure, PlanError, StudyError};
 use crate::{Experiment, Run};
 
 /// Default number of collisions to write.
 const FEW: usize = 10;
 
-/// Number of collisions between two checks for signals.
-const BATCH: usize = 1024;
+/// Number of collisions between two updates of the display, after which rows are written.
+const BATCH: u64 = 1024;
 
 /// Runs a value again, and writes the requested collisions or the requested state. An incomplete file is
 /// removed.
@@ -34,15 +34,15 @@ pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
         let written = out.write_all(bytes).and_then(|()| out.flush());
         wrote(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
     };
-    listen()?;
+    end_at_once(wishes.out.clone())?;
     let written = match wishes.before {
         Some(number) => state_before(number, source, wishes.out.as_deref(), &mut write),
         None => rows(wishes, source, &mut write),
     };
-    if let (Some(path), Err(_) | Ok(End::Interrupted)) = (&wishes.out, &written) {
+    if let (Some(path), Err(_)) = (&wishes.out, &written) {
         let _ = fs::remove_file(path);
     }
-    written
+    written.map(|()| End::Done)
 }
 
 impl Replay {
@@ -66,42 +66,37 @@ fn rows<E: Experiment>(
     wishes: &Replay,
     mut source: Source<E>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
-) -> Result<End, Failure> {
+) -> Result<(), Failure> {
     let (end, show) = (source.end, source.clock());
-    let from = wishes.from.unwrap_or(f64::NEG_INFINITY);
-    if from > source.run.time() && !source.advance(from, u64::MAX, &show)? {
-        return Ok(End::Interrupted);
+    if let Some(from) = wishes.from.filter(|from| *from > source.run.time()) {
+        source.advance(from, u64::MAX, &show)?;
     }
     let last = wishes.last.unwrap_or(if wishes.from.is_some() { usize::MAX } else { FEW });
     let is_own = |it: &Replayed| wishes.disk.is_none_or(|id| it.id == id || it.partner_id == Some(id));
-    let (mut steps, mut kept, mut is_over) = (Steps::new(source.run), VecDeque::new(), false);
+    let (mut steps, mut kept) = (Steps::new(source.run), VecDeque::new());
     let mut text = HEADINGS.to_owned() + "\n";
-    while !is_over {
-        for _ in 0..BATCH {
-            // If the run ends with an error, the collisions before the error are still written.
-            let next = steps.next(end).unwrap_or_else(|error| {
-                tell_end(steps.run(), &error);
-                None
-            });
-            is_over = next.is_none();
-            kept.extend(next.filter(is_own));
-            kept.drain(..kept.len().saturating_sub(last));
-            if is_over {
-                break;
-            }
-        }
-        if is_stopped() {
-            return Ok(End::Interrupted);
+    for number in 1.. {
+        // If the run ends with an error, the collisions before the error are still written.
+        let next = steps.next(end).unwrap_or_else(|error| {
+            tell_end(steps.run(), &error);
+            None
+        });
+        let is_over = next.is_none();
+        kept.extend(next.filter(is_own));
+        kept.drain(..kept.len().saturating_sub(last));
+        if !is_over && number % BATCH != 0 {
+            continue;
         }
         show(steps.run().time());
         if is_over || last == usize::MAX {
-            let rows = kept.drain(..).map(|it| row(&it, steps.run().boundary()) + "\n");
-            text.extend(rows);
-            is_over |= !write(text.as_bytes())?;
+            text.extend(kept.drain(..).map(|it| row(&it, steps.run().boundary()) + "\n"));
+            if !write(text.as_bytes())? || is_over {
+                break;
+            }
             text.clear();
         }
     }
-    Ok(End::Done)
+    Ok(())
 }
 
 /// Writes the state before a collision, even if the collision ended the run with an error.
@@ -110,7 +105,7 @@ fn state_before<E: Experiment>(
     mut source: Source<E>,
     path: Option<&Path>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
-) -> Result<End, Failure> {
+) -> Result<(), Failure> {
     let (first, end, show) = (source.run.counters().collisions() + 1, source.end, source.clock());
     if number < first {
         let message = format!("the first collision of this run has the number {first}, not {number}");
@@ -118,17 +113,15 @@ fn state_before<E: Experiment>(
     }
     let ended = source.advance(end, number - 1, show);
     let found = source.run.counters().collisions();
-    match ended {
-        Ok(false) => return Ok(End::Interrupted),
-        Err(error) if found + 1 < number => return Err(error.into()),
-        _ => {}
+    if found + 1 < number {
+        ended?;
     }
     let state = contents::<E>(&mut source.run, path)?;
     // The run may end without a further collision.
     if found + 1 < number || matches!(Steps::new(source.run).next(end), Ok(None)) {
         return Err(format!("there is no collision {number} until {end}: the last one is {found}").into());
     }
-    write(&state).map(|_| End::Done)
+    write(&state).map(drop)
 }
 
 /// Returns the present state, encoded in the format that the ending of the file's name chooses.

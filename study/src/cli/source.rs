@@ -14,12 +14,12 @@ use granular_edmd::trajectory::{ByEnding, Reader, Recorder};
 
 use super::arguments::{Place, Trajectory};
 use super::convert::Ending;
-use super::terminal::{Watch, is_stopped, read, refused, say, tell};
+use super::terminal::{Watch, read, say, tell};
 use super::{End, Failure, Plan, PlanError, StudyError, chain};
 use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 
-/// Wall-clock time between two checks for signals.
+/// Wall-clock time between two updates of the display.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// A run at its start.
@@ -39,7 +39,7 @@ impl<E: Experiment> Source<E> {
             (run, experiment.cycle(), end)
         } else {
             let path = if path.is_dir() { &path.join("plan.toml") } else { path };
-            let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+            let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
             let (experiment, seed) = (plan.experiment(ramp, value)?, plan.ramp_seed(ramp));
             let run = match start {
                 Some(file) => begun(&experiment, file, seed),
@@ -67,18 +67,16 @@ impl<E: Experiment> Source<E> {
         }
     }
 
-    /// Runs until a time or a total number of collisions, whichever comes first. Returns false if a signal
-    /// arrived.
-    pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<bool, RunError> {
-        while !is_stopped() {
+    /// Runs until a time or a total number of collisions, whichever comes first.
+    pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<(), RunError> {
+        loop {
             let left = number.saturating_sub(self.run.counters().collisions());
             let limits = Limits::until(until).with_most_collisions(left).with_wall_clock(LOOK);
             if self.run.run(&limits, &mut ())? != RunEnd::WallClock {
-                return Ok(true);
+                return Ok(());
             }
             show(self.run.time());
         }
-        Ok(false)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Failure;
-use crate::{PlanError, Progress, StudyError};
+use crate::{Progress, StudyError};
 
 /// True once Ctrl-C or SIGTERM was received.
 pub(super) static STOP: AtomicBool = AtomicBool::new(false);
@@ -52,15 +52,6 @@ pub(super) fn write_new(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(written.map_err(StudyError::io("write", path))?)
 }
 
-/// Returns a function that adds the file name to the error of a plan.
-pub(super) fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
-    move |source| StudyError::Unreadable { path: path.to_owned(), source }
-}
-
-pub(super) fn is_stopped() -> bool {
-    STOP.load(Ordering::Relaxed)
-}
-
 /// Makes Ctrl-C and SIGTERM stop a study. A second signal ends the process immediately; only saved work is
 /// kept.
 pub(super) fn listen() -> Result<(), ctrlc::Error> {
@@ -71,9 +62,12 @@ pub(super) fn listen() -> Result<(), ctrlc::Error> {
     })
 }
 
-/// Makes Ctrl-C and SIGTERM end a process that has nothing to save.
-pub(super) fn end_at_once() -> Result<(), ctrlc::Error> {
-    ctrlc::set_handler(|| std::process::exit(130))
+/// Makes Ctrl-C and SIGTERM end a process that has nothing to save, and remove its incomplete file.
+pub(super) fn end_at_once(file: Option<PathBuf>) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || {
+        let _ = file.as_ref().map(fs::remove_file);
+        std::process::exit(130)
+    })
 }
 
 /// Display of a running study.

@@ -1,13 +1,12 @@
 //! One ramp, value after value: a finished value is read, an unfinished value is continued, and any other
 //! value is run from its start.
 
-use std::collections::HashSet;
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::session::{LOOK, Session};
 use super::value::{Active, Partial, Value};
-use crate::claims::Claimed;
 use crate::experiment::record::{Contents, Outcome, Record};
 use crate::folder::{create, read_sealed, remove, write_sealed};
 use crate::plan::ramp::{Seen, Step};
@@ -24,7 +23,6 @@ struct Walk<'a, 's, E: Experiment> {
     ramp: usize,
     /// The records that the store had when the ramp was claimed.
     entries: &'a Entries,
-    unfinished: &'a HashSet<[usize; 2]>,
     /// The ramps of earlier studies that have agreed with this ramp in all values so far.
     earlier: Vec<(&'a Study<E>, usize)>,
     seen: Vec<Seen>,
@@ -40,15 +38,14 @@ pub(super) fn attempt<E: Experiment>(
     ramps: &Range<usize>,
 ) -> Result<bool, StudyError> {
     let study = session.study;
-    let _claim = match study.claims.claim(ramps)? {
-        Claimed::Ours(claim) => Some(claim),
-        // The ramp can run without a claim: a caller that runs a single ramp assigns each ramp to one
-        // process.
-        Claimed::Collision if session.ramps.len() == 1 => None,
-        Claimed::Theirs | Claimed::Collision => return Ok(false),
-    };
+    let claim = study.claims.claim(ramps.start)?;
+    // A single ramp of a larger block can run without a claim: a caller that runs a single ramp assigns each
+    // ramp to one process.
+    if claim.is_none() && !(session.ramps.len() == 1 && study.claims.is_shared()) {
+        return Ok(false);
+    }
     // Other processes may have finished some of the ramps before this process got the claim.
-    let (entries, unfinished) = (study.store.refreshed()?, study.folder.unfinished()?);
+    let entries = study.store.refreshed()?;
     if let Some(error) = study.store.damage().filter(|_| !ramps.clone().all(|ramp| entries.is_done(ramp))) {
         session.if_sound::<()>(Err(error))?;
     }
@@ -61,9 +58,8 @@ pub(super) fn attempt<E: Experiment>(
             continue;
         }
         let earlier = session.earlier_ramps(study.plan().ramp_seed(ramp));
-        let (entries, unfinished, seen) = (&entries, &unfinished, Vec::new());
-        let mut walk =
-            Walk { session, ramp, entries, unfinished, earlier, seen, last: None, has_partial: false };
+        let (entries, seen, last) = (&entries, Vec::new(), None);
+        let mut walk = Walk { session, ramp, entries, earlier, seen, last, has_partial: false };
         while let Some(step) = study.plan().next(&walk.seen) {
             if !walk.take(step)? {
                 break;
@@ -77,7 +73,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Runs one value; returns false if it was interrupted.
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
-        self.has_partial = self.unfinished.contains(&[self.ramp, value]);
+        self.has_partial = false;
         if value >= study.plan.value_count() {
             self.session.count_more();
         }
@@ -109,9 +105,6 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let record = self.session.if_sound(read)?;
         if record.is_some() {
             self.advance(study.plan.protocol().steps());
-            // A process that was killed just after it had finished the value may have left the file of the
-            // unfinished value.
-            self.forget_partial(value)?;
         }
         Ok(record)
     }
@@ -121,9 +114,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<bool, StudyError> {
         let (study, value, started) = (self.session.study, self.seen.len(), Instant::now());
         // The value is checked now, since a new plan with many values is checked at only some of them.
-        let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
+        let experiment = study.plan.sound_experiment(self.ramp, step.at)?;
         let origin = study.origin(self.ramp, value);
-        let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
+        let work = Value { study, origin, experiment, step, before };
         let mut earlier = self.earlier(step)?;
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
@@ -165,13 +158,12 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Returns the saved data of an unfinished value, or `None` if there are none.
     fn saved<'v>(&mut self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
         let (study, index) = (self.session.study, self.seen.len());
-        if !self.has_partial {
-            return Ok(None);
-        }
         let path = study.folder.partial(self.ramp, index);
-        let read = read_sealed::<Partial<E>>(&path).and_then(|partial| {
+        let read = read_sealed::<Partial<E>>(&path);
+        self.has_partial = !matches!(read, Ok(None));
+        let read = read.and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
-            study.check_origin(&partial.0, self.ramp, index, &path)?;
+            study.check_origin(&partial.0.origin, self.ramp, index, &path)?;
             value.go_on(partial, &path).map(Some)
         });
         self.session.if_sound(read)
@@ -230,7 +222,10 @@ impl<E: Experiment> Walk<'_, '_, E> {
     ) -> Result<bool, StudyError> {
         let study = self.session.study;
         self.seen.push(study.plan.seen(&record));
-        self.session.open_study()?;
+        // The tables may lack this value, and later ones of the run.
+        if !self.session.is_opened.swap(true, Ordering::Relaxed) {
+            study.folder.mark_incomplete()?;
+        }
         let marks = [
             (Head::LAST, study.plan.next(&self.seen).is_none()),
             (Head::FAILED, record.outcome().reason().is_some()),
@@ -252,17 +247,13 @@ impl<E: Experiment> Walk<'_, '_, E> {
         // Numbers and texts are always JSON.
         let line = serde_json::to_string(&line).unwrap_or_default();
         let head = Head::new(self.ramp, record.value_index(), marks, seconds);
-        study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents, &line)?;
-        self.forget_partial(record.value_index())?;
+        study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents)?;
+        study.store.note(&line)?;
+        if self.has_partial {
+            remove(&study.folder.partial(self.ramp, record.value_index()))?;
+        }
         self.last = Some(record);
         Ok(true)
-    }
-
-    fn forget_partial(&self, value: usize) -> Result<(), StudyError> {
-        if !self.has_partial {
-            return Ok(());
-        }
-        remove(&self.session.study.folder.partial(self.ramp, value))
     }
 
     /// Counts steps of the next value.

@@ -1,6 +1,6 @@
 //! One run of a study: its blocks of ramps, for all threads, and the data that they share.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::{Control, Progress, Summary};
 use crate::parameters::{self, anywhere};
-use crate::store::{Entries, Entry, Head};
+use crate::store::{Entry, Head};
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
 
 /// Longest time between two checks in which a thread looks for a request to stop.
@@ -23,19 +23,19 @@ pub(super) struct Session<'a, E: Experiment> {
     pub(super) control: &'a Control<'a>,
     /// Earlier studies, each with the indices of its ramps by seed.
     earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
-    pub(super) queue: Queue,
+    blocks: Mutex<Blocks>,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
     /// Number of finished steps, and number of steps in all values.
     steps: [AtomicU64; 2],
     /// Files that were damaged and have been replaced.
-    redone: Mutex<Vec<PathBuf>>,
+    redone: Mutex<BTreeSet<PathBuf>>,
     /// True once a thread has met an error.
     ///
     /// The others then stop as if interrupted.
     pub(super) broken: AtomicBool,
     /// True once this run has removed the mark of a complete study.
-    is_opened: AtomicBool,
+    pub(super) is_opened: AtomicBool,
 }
 
 impl<'a, E: Experiment> Session<'a, E> {
@@ -43,8 +43,11 @@ impl<'a, E: Experiment> Session<'a, E> {
         study: &'a Study<E>,
         control: &'a Control<'a>,
         ramps: Range<usize>,
-        blocks: impl Iterator<Item = Range<usize>>,
     ) -> Result<Self, StudyError> {
+        let waiting = match ramps.len() {
+            1 => VecDeque::from([ramps.clone()]),
+            _ => begun_anywhere(study.claims.blocks().collect()),
+        };
         let open = |folder: &PathBuf| {
             let earlier = Study::open(folder)?;
             StudyError::if_different(folder, differences(&earlier.plan, &study.plan)?)?;
@@ -58,7 +61,7 @@ impl<'a, E: Experiment> Session<'a, E> {
             study,
             control,
             earlier: control.earlier.iter().map(open).collect::<Result<_, StudyError>>()?,
-            queue: Queue::new(blocks),
+            blocks: Mutex::new(Blocks { waiting, elsewhere: VecDeque::new() }),
             ramps,
             steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
             redone: Mutex::default(),
@@ -67,13 +70,26 @@ impl<'a, E: Experiment> Session<'a, E> {
         })
     }
 
-    /// Removes the finished blocks from the queue. A verification keeps all blocks.
+    /// Removes the finished blocks. A verification keeps all blocks.
     pub(super) fn strike_done(&self) -> Result<(), StudyError> {
         if self.control.verifies {
             return Ok(());
         }
-        self.skip(self.queue.strike(&*self.study.store.refreshed()?));
+        let (entries, mut ramps) = (self.study.store.refreshed()?, 0);
+        let Blocks { waiting, elsewhere } = &mut *self.blocks();
+        for blocks in [waiting, elsewhere] {
+            blocks.retain(|block| {
+                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
+                ramps += if is_done { block.len() } else { 0 };
+                !is_done
+            });
+        }
+        self.skip(ramps);
         Ok(())
+    }
+
+    pub(super) fn blocks(&self) -> MutexGuard<'_, Blocks> {
+        self.blocks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Returns the ramps of earlier studies that have this seed.
@@ -107,20 +123,11 @@ impl<'a, E: Experiment> Session<'a, E> {
             Err(StudyError::Damaged { path, reason }) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
                 self.study.store.note(&json!({ "damaged": name, "reason": reason }).to_string())?;
-                self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
+                self.redone.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
                 Ok(None)
             }
             other => other,
         }
-    }
-
-    /// Removes the mark of a complete study, once in a run. Call this before the first value that may not be
-    /// in the tables.
-    pub(super) fn open_study(&self) -> Result<(), StudyError> {
-        if self.is_opened.swap(true, Ordering::Relaxed) {
-            return Ok(());
-        }
-        self.study.folder.mark_incomplete()
     }
 
     pub(super) fn must_stop(&self) -> bool {
@@ -150,9 +157,7 @@ impl<'a, E: Experiment> Session<'a, E> {
         let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
         let (failed, warned) = (with(Head::FAILED), with(Head::WARNED));
-        let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
-        redone.sort();
-        redone.dedup();
+        let redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().collect();
         Ok(Summary { finished, failed, warned, total, elsewhere, redone })
     }
 }
@@ -162,61 +167,23 @@ impl<'a, E: Experiment> Session<'a, E> {
 /// Each process begins at a random block and continues in order from there, so two processes seldom meet at a
 /// block. A process that meets another one moves to a new random block.
 #[derive(Debug)]
-pub(super) struct Queue(Mutex<Blocks>);
-
-#[derive(Debug)]
-struct Blocks {
-    waiting: VecDeque<Range<usize>>,
-    elsewhere: VecDeque<Range<usize>>,
+pub(super) struct Blocks {
+    pub(super) waiting: VecDeque<Range<usize>>,
+    pub(super) elsewhere: VecDeque<Range<usize>>,
 }
 
-impl Queue {
-    fn new(blocks: impl Iterator<Item = Range<usize>>) -> Self {
-        let (waiting, elsewhere) = (begun_anywhere(blocks.collect()), VecDeque::new());
-        Self(Mutex::new(Blocks { waiting, elsewhere }))
-    }
-
-    /// Takes the next block.
-    pub(super) fn next(&self) -> Option<Range<usize>> {
-        self.blocks().waiting.pop_front()
-    }
-
-    /// Notes that another process has a block, and moves to another block of the queue.
-    pub(super) fn leave(&self, ramps: Range<usize>) {
-        let mut blocks = self.blocks();
-        blocks.elsewhere.push_back(ramps);
-        blocks.waiting = begun_anywhere(std::mem::take(&mut blocks.waiting));
-    }
-
-    /// Removes the finished blocks, and returns the number of their ramps.
-    fn strike(&self, entries: &Entries) -> usize {
-        let Blocks { waiting, elsewhere } = &mut *self.blocks();
-        let mut ramps = 0;
-        for blocks in [waiting, elsewhere] {
-            blocks.retain(|block| {
-                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
-                ramps += if is_done { block.len() } else { 0 };
-                !is_done
-            });
-        }
-        ramps
-    }
-
-    /// Returns the ramps of other processes.
-    pub(super) fn elsewhere(&self) -> Vec<usize> {
-        self.blocks().elsewhere.iter().cloned().flatten().collect()
+impl Blocks {
+    /// Notes that another process has a block, and moves to another waiting block.
+    pub(super) fn leave(&mut self, ramps: Range<usize>) {
+        self.elsewhere.push_back(ramps);
+        self.waiting = begun_anywhere(std::mem::take(&mut self.waiting));
     }
 
     /// Moves up to `count` blocks of other processes to the waiting blocks, for another attempt.
-    pub(super) fn retry(&self, count: usize) {
-        let mut blocks = self.blocks();
-        let mut tried = begun_anywhere(std::mem::take(&mut blocks.elsewhere));
-        blocks.elsewhere = tried.split_off(count.min(tried.len()));
-        blocks.waiting.append(&mut tried);
-    }
-
-    fn blocks(&self) -> MutexGuard<'_, Blocks> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(super) fn retry(&mut self, count: usize) {
+        let mut tried = begun_anywhere(std::mem::take(&mut self.elsewhere));
+        self.elsewhere = tried.split_off(count.min(tried.len()));
+        self.waiting.append(&mut tried);
     }
 }
 

@@ -7,30 +7,29 @@ use std::time::Duration;
 use granular_edmd::Simulation;
 use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
-#[cfg(feature = "cli")]
-use crate::Study;
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
 use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
 use crate::parameters::derived_seed;
 use crate::plan::ramp::Step;
 use crate::sliced::{self, Riders};
-use crate::{Experiment, Plan, Protocol, Run, SavedDriving, Start};
+use crate::{Experiment, Protocol, Run, SavedDriving, Start, Study};
 
 /// A value to be run.
 pub(super) struct Value<'a, E: Experiment> {
-    pub(super) plan: &'a Plan<E>,
+    pub(super) study: &'a Study<E>,
     pub(super) origin: Origin,
     pub(super) experiment: E,
     pub(super) step: Step,
     /// The record from which the value starts; `None` for a fresh start.
     pub(super) before: Option<&'a Record<E>>,
-    /// Folder of the study.
-    pub(super) folder: &'a Path,
 }
 
-/// The saved data of an unfinished value: its origin, the work so far, the state of its run and its driving.
-pub(super) type Partial<E> = (Origin, WorkOf<E>, Checkpoint, Option<Vec<u8>>);
+/// The saved data of an unfinished value.
+pub(super) type Partial<E> = Saved<WorkOf<E>>;
+
+/// The work so far, the state of its run and its driving.
+pub(super) type Saved<W> = (W, Checkpoint, Option<Vec<u8>>);
 
 type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 
@@ -38,6 +37,7 @@ type WorkOf<E> = Work<<E as Experiment>::Sample, <E as Experiment>::Observer>;
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Work<S, O> {
+    pub(super) origin: Origin,
     /// The start of the value.
     start: Cycles,
     steps: u64,
@@ -64,6 +64,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
         let work = |steps, measured| Work {
+            origin: self.origin.clone(),
             start,
             steps,
             is_prepared: false,
@@ -74,9 +75,9 @@ impl<'a, E: Experiment> Value<'a, E> {
         if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
-            let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
-            let work = work(self.plan.protocol().steps() - missing, measured);
-            match self.go_on((self.origin.clone(), work, state, driving), self.folder) {
+            let missing = self.study.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
+            let work = work(self.study.plan.protocol().steps() - missing, measured);
+            match self.go_on((work, state, driving), self.study.folder()) {
                 Err(StudyError::Damaged { .. }) => {}
                 made => return made,
             }
@@ -102,7 +103,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         is_resumed: bool,
     ) -> Result<Riders, StudyError> {
         let Origin { ramp, value, seed, .. } = self.origin;
-        let start = Start { folder: self.folder, ramp, value, seed, time, is_resumed };
+        let start = Start { folder: self.study.folder(), ramp, value, seed, time, is_resumed };
         let companion = self.experiment.companion(&start).map_err(|source| self.cannot_start(source))?;
         Ok(Riders { driving, companion, is_under_way: false })
     }
@@ -110,15 +111,15 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// Returns whether the record of the same value in another study contains all data for the record of this
     /// value.
     pub(super) fn is_finished_by(&self, Record { contents, .. }: &Record<E>) -> bool {
-        let (samples, all) = (contents.measured.samples.len() as u64, self.plan.protocol().samples());
+        let (samples, all) = (contents.measured.samples.len() as u64, self.study.plan.protocol().samples());
         let is_whole = if contents.outcome == Outcome::Completed { samples == all } else { samples < all };
-        is_whole && (contents.state.is_some() || !self.plan.keeps_state(self.origin.value))
+        is_whole && (contents.state.is_some() || !self.study.plan.keeps_state(self.origin.value))
     }
 
     /// Returns the record of this value, made from the record of the same value in another study.
     pub(super) fn taken_over(&self, Record { contents, .. }: Record<E>) -> Record<E> {
         let origin = Origin { maker: contents.origin.maker, ..self.origin.clone() };
-        let keeps = self.plan.keeps_state(self.origin.value);
+        let keeps = self.study.plan.keeps_state(self.origin.value);
         let (state, driving) = (contents.state.filter(|_| keeps), contents.driving.filter(|_| keeps));
         let contents = Contents { origin, state, driving, ..contents };
         Record { experiment: self.experiment.clone(), contents }
@@ -130,7 +131,7 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// If the data saved in `path` do not belong to this value, or the companion cannot be created.
     pub(super) fn go_on(&'a self, partial: Partial<E>, path: &Path) -> Result<Active<'a, E>, StudyError> {
         let mut driving = self.driving()?;
-        let is_loaded = match (&mut driving, &partial.3) {
+        let is_loaded = match (&mut driving, &partial.2) {
             (Some(driving), Some(bytes)) => driving.load(bytes).is_ok(),
             (driving, bytes) => driving.is_none() && bytes.is_none(),
         };
@@ -141,8 +142,8 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run, riders })
     }
 
-    fn state_of(&self, (_, work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
-        let protocol = self.plan.protocol();
+    fn state_of(&self, (work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
+        let protocol = self.study.plan.protocol();
         work.check(protocol)?;
         check(work.start == self.start(), "it starts elsewhere")?;
         let [from, to] = [work.steps, protocol.steps().min(work.steps + 1)]
@@ -174,7 +175,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let walls = before.last_boundary(&self.plan.protocol().step(before.contents.steps));
+        let walls = before.last_boundary(&self.study.plan.protocol().step(before.contents.steps));
         let run = walls.and_then(|walls| Self::resume(state, &before.experiment, walls));
         let mut run = run.map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
@@ -208,9 +209,9 @@ impl<E: Experiment> Study<E> {
         }
         let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
         let experiment = self.plan.experiment_at(ramp, step.at)?;
-        let (plan, origin, before) = (&self.plan, self.origin(ramp, value), before.as_ref());
-        let value = Value { plan, origin, experiment, step, before, folder: self.folder() };
-        let (run, end) = (value.first_state()?, plan.protocol().cycles() as f64);
+        let (origin, before) = (self.origin(ramp, value), before.as_ref());
+        let value = Value { study: self, origin, experiment, step, before };
+        let (run, end) = (value.first_state()?, self.plan.protocol().cycles() as f64);
         let end = value.start().time(end, value.experiment.cycle());
         Ok((value.experiment, run, end))
     }
@@ -228,7 +229,7 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     pub(super) fn is_done(&self) -> bool {
-        self.work.steps >= self.value.plan.protocol().steps()
+        self.work.steps >= self.value.study.plan.protocol().steps()
     }
 
     /// Runs the next step, which settles or takes a sample, for at most the wall-clock time `slice`. Returns
@@ -246,7 +247,7 @@ impl<E: Experiment> Active<'_, E> {
             }
             Ok(RunEnd::WallClock) => Ok(false),
             Ok(RunEnd::Collisions) => {
-                let most = self.value.plan.protocol().most_collisions.unwrap_or(u64::MAX);
+                let most = self.value.study.plan.protocol().most_collisions.unwrap_or(u64::MAX);
                 Err(self.limited(format!("it has reached the limit of {most} collisions")))
             }
             Ok(_) => Err(Outcome::Stopped { time }),
@@ -265,7 +266,7 @@ impl<E: Experiment> Active<'_, E> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
         }
-        let interval = self.value.plan.protocol().step(self.work.steps);
+        let interval = self.value.study.plan.protocol().step(self.work.steps);
         let observer = &mut self.work.measured.observer;
         let prepared = self.value.experiment.prepare(&interval, &mut self.run, observer);
         prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
@@ -273,7 +274,7 @@ impl<E: Experiment> Active<'_, E> {
 
     /// Runs the next step to its end, and takes its sample on the way if the step has one.
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
-        let (protocol, cycle) = (self.value.plan.protocol(), self.value.experiment.cycle());
+        let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
         let [to_sample, to_end] = [end - (1.0 - protocol.phase), end]
             .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
@@ -298,24 +299,21 @@ impl<E: Experiment> Active<'_, E> {
     /// Returns the limits of one part of the value's run.
     fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
         let limits = Limits::until(end).with_wall_clock(slice);
-        let Some(most) = self.value.plan.protocol().most_collisions else { return limits };
+        let Some(most) = self.value.study.plan.protocol().most_collisions else { return limits };
         let done = self.run.counters().since(&self.work.counters).collisions();
         limits.with_most_collisions(most.saturating_sub(done))
     }
 
     /// Returns the data from which the unfinished value can continue later.
-    #[expect(clippy::type_complexity, reason = "a `Partial` by reference")]
-    pub(super) fn partial(
-        &self,
-    ) -> Result<(&Origin, &WorkOf<E>, Checkpoint, Option<Vec<u8>>), ExperimentError> {
-        Ok((&self.value.origin, &self.work, self.run.checkpoint(), self.riders.saved()?))
+    pub(super) fn partial(&self) -> Result<Saved<&WorkOf<E>>, ExperimentError> {
+        Ok((&self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
     /// Returns the record of the value after its last step. If the value stalled, failed or reached a limit,
     /// the record holds the state in which the value started, and the next value starts from this state.
     pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
         let Self { value, work, run, riders } = self;
-        let (start, cycles) = (work.start, value.plan.protocol().cycles());
+        let (start, cycles) = (work.start, value.study.plan.protocol().cycles());
         let (end, state) = match outcome {
             Outcome::Completed => (Cycles { count: start.count + cycles, ..start }, run.checkpoint()),
             Outcome::Stopped { time } => (Cycles { since: time, count: 0 }, run.checkpoint()),
@@ -323,9 +321,9 @@ impl<E: Experiment> Active<'_, E> {
         };
         let driving = riders.saved().map_err(|source| value.cannot_start(source))?;
         let parts = [state.rule(), state.boundary()];
-        let state = value.plan.keeps_state(value.origin.value).then_some(state);
+        let state = value.study.plan.keeps_state(value.origin.value).then_some(state);
         let contents = Contents {
-            origin: value.origin.clone(),
+            origin: work.origin,
             leg: value.step.leg,
             at: value.step.at,
             outcome,

@@ -154,7 +154,7 @@ impl<E: Experiment> fmt::Debug for Column<E> {
 pub struct Table<E: Experiment> {
     name: String,
     columns: Vec<Heading>,
-    rows: OfRecord<E, Vec<Vec<f64>>>,
+    pub(crate) rows: OfRecord<E, Vec<Vec<f64>>>,
 }
 
 impl<E: Experiment> Table<E> {
@@ -180,10 +180,6 @@ impl<E: Experiment> Table<E> {
     /// Returns the headings of the columns.
     pub fn columns(&self) -> &[Heading] {
         &self.columns
-    }
-
-    pub(crate) fn rows(&self, record: &Record<E>) -> Vec<Vec<f64>> {
-        (self.rows)(record)
     }
 }
 

@@ -9,7 +9,6 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
-use super::with_error;
 use crate::parameters::{self, Scalar};
 use crate::{Experiment, ExperimentError, Interval};
 
@@ -130,7 +129,9 @@ impl<E: Experiment> Record<E> {
     /// Returns the mean of the column of this name, or `None` if no column of this name has an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
-        with_error(&columns, column)?.estimate(self)
+        let named = columns.iter().filter(|known| known.name() == column && known.has_error());
+        // If the tables of samples and of values each have such a column, the latter counts.
+        named.max_by_key(|known| known.in_values)?.estimate(self)
     }
 }
 

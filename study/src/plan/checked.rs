@@ -158,14 +158,10 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the experiment accepts the parameters of each value, or of a selection if there are many
     /// values.
     pub(crate) fn check_experiments(&self) -> Result<(), PlanError> {
-        // If parameters vary, the experiment as given is never run, so it need not be valid.
-        if self.varied.is_empty() {
-            self.parts.experiment.check().map_err(|source| Self::refused(&[], source))?;
-        }
         let values = self.value_count();
         let all = tried(self.point_count() * values);
         for (ramp, value) in all.map(|index| (index / values * self.parts.repeats, index % values)) {
-            self.sound_experiment(&self.parameters(ramp, value))?;
+            self.sound_experiment(ramp, self.at(value))?;
         }
         self.check_disks()?;
         self.check_ramp()
@@ -175,10 +171,9 @@ impl<E: Experiment> Plan<E> {
     /// ramp keeps its disks.
     fn check_ramp(&self) -> Result<(), PlanError> {
         let (Some(ramp), true) = (&self.parts.ramp, self.value_count() > 1) else { return Ok(()) };
-        let varied = self.parameters(0, 1);
-        let refused = |source| Self::refused(&varied, source);
-        let first = self.experiment_of(&self.parameters(0, 0))?;
-        let next = self.experiment_of(&varied)?;
+        let [first_at, next_at] = [0, 1].map(|value| self.at(value));
+        let refused = |source| self.refused(0, next_at, source);
+        let (first, next) = (self.experiment_at(0, first_at)?, self.experiment_at(0, next_at)?);
         if first.disks(0).map_err(refused)? == next.disks(0).map_err(refused)? {
             return Ok(());
         }
@@ -197,12 +192,11 @@ impl<E: Experiment> Plan<E> {
         let mut ramps = vec![0];
         for axis in &self.parts.sweep {
             stride /= axis.len();
-            ramps.extend(axis.tried().filter(|index| *index > 0).map(|index| index * stride));
+            ramps.extend(axis.values.tried().filter(|index| *index > 0).map(|index| index * stride));
         }
         for ramp in ramps {
-            let varied = self.parameters(ramp, 0);
-            let disks = self.sound_experiment(&varied)?.disks(0);
-            disks.map_err(|source| Self::refused(&varied, source))?;
+            let disks = self.sound_experiment(ramp, self.at(0))?.disks(0);
+            disks.map_err(|source| self.refused(ramp, self.at(0), source))?;
         }
         Ok(())
     }

@@ -41,8 +41,9 @@ pub struct Ramp {
     parameter: String,
     values: Values,
     course: Course,
+    /// The width to which transitions are bisected, or `None` without bisection.
     #[serde(skip_serializing_if = "Option::is_none")]
-    refine: Option<Width>,
+    pub(super) refine: Option<Width>,
 }
 
 from_file! {
@@ -124,14 +125,9 @@ impl Ramp {
         Ok(Self { refine: Some(width), ..self })
     }
 
-    /// Returns the width to which transitions are bisected, or `None` without bisection.
-    pub(super) const fn refinement(&self) -> Option<Width> {
-        self.refine
-    }
-
-    /// Returns whether a value lies between the first and the last value of the ramp.
-    pub(crate) fn spans(&self, at: f64) -> bool {
-        self.value(0) <= at && at <= self.value(self.values.len() - 1)
+    /// Returns whether a bisection can reach this value.
+    pub(crate) fn bisects(&self, at: f64) -> bool {
+        self.refine.is_some() && self.value(0) <= at && at <= self.value(self.values.len() - 1)
     }
 
     /// Returns the name of the parameter.
@@ -230,7 +226,7 @@ impl Ramp {
         if let Some((leg, at)) = self.at(seen.len()) {
             return Err(Step { leg: Some(leg), at: Some(at), before: seen.len().checked_sub(1) });
         }
-        let Some(width) = self.refinement() else { return Ok(Vec::new()) };
+        let Some(width) = self.refine else { return Ok(Vec::new()) };
         let mut search = Search { seen, width, halves: own..seen.len(), brackets: Vec::new() };
         for (near, far) in (0..own).zip(1..own) {
             search.between(near, far)?;

@@ -45,7 +45,7 @@ pub(super) use from_file;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Axis {
     parameter: String,
-    values: Values,
+    pub(super) values: Values,
 }
 
 from_file! {
@@ -90,11 +90,6 @@ impl Axis {
     /// Returns the value with this index, or `None` beyond the last value.
     pub fn value(&self, index: usize) -> Option<Scalar> {
         (index < self.len()).then(|| self.values.at(index))
-    }
-
-    /// Returns the indices of the values that are checked when a plan is made.
-    pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
-        self.values.tried()
     }
 
     /// Converts the values of a list to the type of the parameter, so that equal plans have equal files.
@@ -188,12 +183,10 @@ impl Values {
         if list.is_empty() {
             return Err(PlanError::varied(parameter, "has no values"));
         }
-        match list.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) {
-            Some(value) => {
-                Err(PlanError::varied(parameter, format!("has a value that is not finite: {value}")))
-            }
-            None => Ok(()),
-        }
+        let Some(value) = list.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) else {
+            return Ok(());
+        };
+        Err(PlanError::varied(parameter, format!("has a value that is not finite: {value}")))
     }
 
     /// Returns a value that occurs twice in the list, or `None` if there is none.

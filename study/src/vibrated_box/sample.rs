@@ -76,13 +76,6 @@ impl Measurement {
         }
     }
 
-    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of
-    /// one diameter, and fractions.
-    pub(super) fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
-        let samples = self.samples as f64;
-        self.profile.iter().enumerate().map(move |(bin, sum)| (bin as f64 + 0.5, sum / samples))
-    }
-
     fn add_profile(&mut self, snapshot: &Snapshot<'_>) {
         let profile = profile(snapshot);
         self.samples += 1;
@@ -143,7 +136,8 @@ impl Record<VibratedBox> {
     /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of
     /// one diameter, and fractions.
     pub fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.observer().profile()
+        let Measurement { samples, profile, .. } = self.observer();
+        profile.iter().enumerate().map(|(bin, sum)| (bin as f64 + 0.5, sum / *samples as f64))
     }
 
     /// Returns the densest layer of the profile, or `None` without samples.
