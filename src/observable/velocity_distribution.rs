@@ -26,8 +26,8 @@ use crate::{Disk, ParameterError};
 /// blocks of samples. A sample is left out if its disks all move alike, up to rounding.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
-/// [`about_flow`](Self::about_flow) subtracts a mean velocity. The unit of velocity then comes from a
-/// temperature with $`N - 1`$ in place of $`N`$ for each mean.
+/// [`about_flow`](Self::about_flow) subtracts a mean velocity. For each mean velocity
+/// that is subtracted, the temperature in the unit of velocity counts one disk fewer.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

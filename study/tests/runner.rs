@@ -489,6 +489,7 @@ fn a_value_is_played_back_and_any_collision_of_it() {
     assert_eq!(lines(&of(&["--before", "51", "--out", "before.checkpoint"])), [""; 0]);
     let rest = ["replay", "study", "--ramp", "1", "--start", "before.checkpoint", "--from", "-1"];
     assert_eq!(lines(&scratch.runs(&[rest.as_slice(), &["--until", &until]].concat())), all[50..=120]);
+    assert_eq!(lines(&scratch.runs(&rest)), all[50..]);
     for name in ["before.xyz", "before.csv", "before.data"] {
         assert_eq!(code(&of(&["--before", "51", "--out", name])), Some(0));
         let rest = lines(&of(&["--start", name, "--from", "-1"]));

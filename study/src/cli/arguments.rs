@@ -131,7 +131,8 @@ pub(super) struct Place {
     /// --shrink` makes a start from disks that overlap.
     #[arg(long)]
     pub(super) start: Option<PathBuf>,
-    /// Absolute time at which the run ends; the end of the value if not given.
+    /// Absolute time at which the run ends. By default, this is the end of the value. From a file at a time
+    /// outside the value, or with a plan alone, the run has as many cycles as the value.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
 }

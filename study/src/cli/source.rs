@@ -38,6 +38,9 @@ impl<E: Experiment> Source<E> {
             let (experiment, run, end) = Study::<E>::open(path)?.start_of(ramp, value)?;
             (run, experiment.cycle(), end)
         } else {
+            // A study may know the times of the value, unless others before it are still to be done.
+            let study = path.is_dir().then(|| Study::<E>::open(path)).transpose()?;
+            let known = study.and_then(|study| study.start_of(ramp, value).ok());
             let path = if path.is_dir() { &path.join("plan.toml") } else { path };
             let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
             let (experiment, seed) = (plan.experiment(ramp, value)?, plan.ramp_seed(ramp));
@@ -47,7 +50,9 @@ impl<E: Experiment> Source<E> {
                 None => Err("it starts where another one ended: `run` the plan, and give the folder".into()),
             };
             let run = run.map_err(|source| StudyError::Build { ramp, value, source })?;
-            let end = run.time() + plan.protocol().cycles() as f64 * experiment.cycle();
+            let is_within = |(_, first, end): &(E, Run<E>, f64)| (first.time()..*end).contains(&run.time());
+            let later = run.time() + plan.protocol().cycles() as f64 * experiment.cycle();
+            let end = known.filter(is_within).map_or(later, |(_, _, end)| end);
             (run, experiment.cycle(), end)
         };
         let (start, until) = (run.time(), until.unwrap_or(end));
