@@ -141,7 +141,8 @@ pub trait CollisionRule {
         None
     }
 
-    /// Returns the rule as data if it is a rule of this crate, or a remedy or a table made of such rules.
+    /// Returns the rule as data if it is a rule of this crate. A rule that wraps other rules, or a table of
+    /// rules, must be made of such rules only.
     ///
     /// Files of walls hold their rules in this form. A custom rule has none.
     fn known(&self) -> Option<KnownRule> {

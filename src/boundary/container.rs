@@ -159,7 +159,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall that has its own rule.
+    /// Returns the same container with a wall at which disks collide by this rule instead of their own.
     ///
     /// # Errors
     /// If the container has no such wall.

@@ -62,7 +62,7 @@ pub struct Part {
 
 /// Properties.
 impl Part {
-    /// Returns the same part with its own rule.
+    /// Returns the same part, at which disks collide by this rule instead of their own.
     #[must_use]
     pub fn with_rule(self, rule: impl CollisionRule + Send + Sync + 'static) -> Self {
         Self { conduct: Conduct::rule(rule), ..self }

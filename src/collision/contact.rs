@@ -161,8 +161,8 @@ impl Contact {
 
     /// Returns the effective radius, R₁R₂/(R₁ + R₂).
     ///
-    /// At a straight wall, it is the radius of the disk; in a hollow one, it is larger. The laws of Hertz for
-    /// elastic and viscoelastic grains need it.
+    /// At a straight wall, it is the radius of the disk; at a concave wall, it is larger. The laws of Hertz
+    /// for elastic and viscoelastic grains need it.
     ///
     /// ```
     /// use granular_edmd::collision::Contact;

@@ -4,8 +4,8 @@ use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialRespon
 use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
-/// The contact-duration (TC) model over any rule: a collision loses no energy if one of the bodies collided
-/// less than t_c ago (Luding and McNamara 1998).
+/// The contact-duration (TC) model added to any rule: a collision loses no energy if one of the bodies
+/// collided less than t_c ago (Luding and McNamara 1998).
 ///
 /// Without the model, disks in dense inelastic states collide infinitely often in finite time, and the run
 /// ends with an error. The simulation counts the collisions that the model changes; their number shows

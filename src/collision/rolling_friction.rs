@@ -1,11 +1,11 @@
-//! Rolling friction over any rule.
+//! Rolling friction added to any rule.
 
 use super::{CollisionRule, Contact, Impulse, KnownRule};
 use crate::quantity::non_negative;
 use crate::{Fingerprint, ParameterError};
 
-/// Rolling friction over any rule: a couple slows the relative spin of the partners, up to a limit that grows
-/// with the normal impulse.
+/// Rolling friction added to any rule: a couple slows the relative spin of the partners, up to a limit that
+/// grows with the normal impulse.
 ///
 /// With the relative spin $`\omega'`$ that the inner rule leaves, and the effective radius
 /// $`R = R_1R_2/(R_1 + R_2)`$,

@@ -147,7 +147,7 @@ impl Crossings {
             let [start, stop] = self.line.map(|point| point + shift);
             let along = stop - start;
             let across = along.perp();
-            // The distance from the line, times its length, as a parabola of the elapsed time.
+            // The distance from the line times the line's length, as a polynomial in the elapsed time.
             let gap = [
                 (flight.position - start).dot(across),
                 flight.velocity.dot(across),

@@ -30,11 +30,12 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 ///
 /// The runs have three disks and four walls, collisions with each partner and in all regimes, a fourth disk
 /// that comes in and is taken out before each sample, and up to fifty samples each, at the times that the
-/// observer requests. The first run starts at time 0 and is cut twice: between two samples, and after a
-/// sample; the runs that continue it must ask for the sample that was next. Further runs start later and
-/// between two sampling times, at a late time, and before 0; the last one has ten thousand samples. A run
-/// ends early if the observer stops it or fails. The observer keeps what it has collected in the check, so
-/// make a new one for a measurement. The page "Validation" says which planted faults the check finds.
+/// observer requests. The first run starts at time 0 and is cut twice: once partway between two samples, and
+/// once right after a sample. A run that continues it must ask for the same next sample as before the cut.
+/// Further runs start later and between two sampling times, at a late time, and before 0; the last one has
+/// ten thousand samples. A run ends early if the observer stops it or fails. The observer keeps what it has
+/// collected in the check, so make a new one for a measurement. The page "Validation" says which planted
+/// faults the check finds.
 ///
 /// # Errors
 /// Returns the first broken promise.

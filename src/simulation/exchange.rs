@@ -52,7 +52,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Prepares the run for other walls, and these walls for the run. Returns the number of walls, and cells
-    /// for them. Walls that react begin at the time origin, so the origin moves to the present.
+    /// for them. The motion of walls that react is given from the time origin on, so the origin moves to the
+    /// present.
     pub(super) fn admit(&mut self, boundary: &mut impl Boundary) -> Result<(usize, Cells), BuildError> {
         let by = if boundary.state().is_empty() { 0.0 } else { self.clock.exact_offset() };
         boundary.set_time_origin(self.clock.origin + by);

@@ -49,7 +49,7 @@ pub enum Warning {
         wall: usize,
         /// The name of the wall, if the simulation itself was asked for its warnings.
         name: Option<String>,
-        /// The displacement of the wall.
+        /// Distance by which this wall jumped.
         by: f64,
         /// Number of jumps of all walls.
         jumps: u64,

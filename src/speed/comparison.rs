@@ -17,7 +17,8 @@ const ROUNDS: usize = 201;
 /// 122 heads have a probability of 0.0018.
 const OUTSIDE: usize = 78;
 
-/// Runs a copy of the simulation for `collisions` collisions, with disks or walls, and returns the report.
+/// Runs a copy of the simulation until it has had `collisions` collisions, of disks and with walls together,
+/// and returns the report.
 ///
 /// Equal calls do the same work, from the same state. In a benchmark with criterion, too, take a fixed number
 /// of collisions: in a longer run, a rule with other physics would leave the state. Each iteration of the

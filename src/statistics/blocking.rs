@@ -30,7 +30,7 @@ const LARGEST: f64 = 1e100;
 /// gas whose collisions are otherwise independent. Sizes with fewer than eight blocks are not considered.
 ///
 /// An error is [converged](Estimate::is_converged) if there are such blocks, and if the largest error of any
-/// blocks leaves at least 120 independent samples, $`n_i`$. The error is then raised by the share $`60/n_i`$,
+/// blocks leaves at least 120 independent samples, $`n_i`$. The error is then multiplied by $`1 + 60/n_i`$,
 /// because errors that are small by chance pass this test more often than others. If an error is not
 /// converged, it is the largest that was found.
 ///

@@ -7,9 +7,9 @@ const FEWEST_BLOCKS: u64 = 8;
 
 /// Smallest number of independent samples from which an error can be trusted.
 ///
-/// In one case of a thousand, the blocks of 50 independent samples look like the blocks of 120 or more. If
-/// half of this number were enough, every tenth series of 30 independent samples would be called converged,
-/// with an error too small by a third.
+/// In one case in a thousand, blocks made from 50 independent samples look like blocks made from 120 or more.
+/// If half of this number were enough, every tenth series of 30 independent samples would be called
+/// converged, with an error too small by a third.
 pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Relative excess of a trusted error over the error from its blocks, times the number of independent
@@ -17,7 +17,7 @@ pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 ///
 /// A series is called converged if its error is small, and some errors are small by chance. Trusted errors
 /// are therefore too small on average, especially errors from few samples. With this excess, the true mean
-/// lies within two errors in nine cases of ten or more, at any length. The table of
+/// lies within two errors in nine cases in ten or more, at any length. The table of
 /// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 

@@ -267,8 +267,8 @@ impl Row<'_> {
             _ => None,
         };
         let Some(angle) = self.get(Angle, 0) else { return Ok(half.map_or(0.0, |half| 2.0 * half)) };
-        // An angle of many turns has few digits left for its position within a turn. The writer made the
-        // orientation from its sine and cosine, so these are compared.
+        // An angle of many turns has few digits left for its position within a turn. The writer
+        // computed the orientation from the sine and cosine of half the angle, so these are compared.
         let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
         if half.is_none_or(|half| (libm::sin(half) * cos - libm::cos(half) * sin).abs() < ALIKE) {
             return Ok(angle);

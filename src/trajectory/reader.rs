@@ -161,8 +161,8 @@ impl Reader {
     /// Reads a frame of a file.
     ///
     /// # Errors
-    /// The same as for [`read_from`](Self::read_from), and if the file cannot be opened. The error names the
-    /// file.
+    /// The errors of [`read_from`](Self::read_from), and an error if the file cannot be opened. Each error
+    /// names the file.
     pub fn read(&self, path: impl AsRef<Path>) -> Result<State, ReadError> {
         let path = path.as_ref();
         let file = File::open(path).map_err(|source| ReadError::Open { path: path.to_owned(), source })?;

@@ -30,7 +30,7 @@ pub trait SavedDriving: Driving + Send {
     /// Restores the state of a saved driving.
     ///
     /// # Errors
-    /// If the bytes belong to another driving.
+    /// If the bytes were saved by another [`Driving`].
     fn load(&mut self, bytes: &[u8]) -> Result<(), ExperimentError>;
 }
 

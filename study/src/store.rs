@@ -311,7 +311,7 @@ impl Entry {
 pub(super) struct Head {
     pub(super) ramp: usize,
     pub(super) value: usize,
-    /// If a value has several records, the record with the highest edition counts. Records of a value with
+    /// If a value has several records, the one with the highest edition is used. Records of a value with
     /// equal editions have the same contents.
     edition: u16,
     /// The marks of the record: a sum of the constants of this type.

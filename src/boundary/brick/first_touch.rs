@@ -77,7 +77,7 @@ impl Brick {
         beside.stretches(wait).find_map(|(from, to)| self.touch_between(path, from, to))
     }
 
-    /// Returns the first touch between two times at which the disk is beside the brick.
+    /// Returns the first touch between two times, between which the disk stays beside the brick.
     fn touch_between(&self, path: &Path, from: f64, to: f64) -> Option<f64> {
         let (here, wait) = (path.later(from), to - from);
         let side = self.side(here.place);

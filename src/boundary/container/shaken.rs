@@ -13,7 +13,7 @@ impl Container {
     /// A positive speed moves floor and lid to the right, and the sides up.
     ///
     /// # Errors
-    /// If the container has no such wall, the wall slides already, or the speed is not finite.
+    /// If the container has no such wall, if the wall already slides, or if the speed is not finite.
     ///
     /// ```
     /// use granular_edmd::boundary::{Container, Wall};

@@ -12,7 +12,7 @@ const DISK: u32 = (1 << 28) - 1;
 const ONE: u32 = DISK + 1;
 const AT_WALL: u32 = 1 << 31;
 
-/// Value that stands for the number of slots taken if the last slot links to more disks.
+/// Stored in place of the number of slots taken, when the last slot links to more disks.
 pub(super) const CROWDED: usize = SLOTS + 1;
 
 const _: () = assert!(MOST_DISKS <= DISK as usize + 1);

@@ -15,8 +15,8 @@ pub enum Remedy {
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
-    /// Slow collisions are lossless already, but the disks are too slow: a disk is at rest or squeezed, or
-    /// walls drive it forever.
+    /// Slow collisions already lose no energy, yet the run stalls: a disk is at rest or squeezed, so that its
+    /// collisions are too slow, or walls keep driving it.
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,

@@ -109,7 +109,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(record)
     }
 
-    /// Takes the next value over from an earlier study, or runs it from the record `before`. Returns false if
+    /// Takes over the next value from an earlier study, or runs it from the record `before`. Returns false if
     /// the value was interrupted.
     fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<bool, StudyError> {
         let (study, value, started) = (self.session.study, self.seen.len(), Instant::now());
