@@ -11,8 +11,8 @@ use super::folder::{files_in, open_lock};
 
 /// Largest number of blocks of ramps, each with its lock file. A process claims whole blocks. With 64
 /// processes, a few percent of the time is lost at the end, when some processes have a block left and the
-/// others none.
-const BLOCKS: usize = 1024;
+/// others none. The folder of a study stays below a thousand files.
+const BLOCKS: usize = 960;
 
 /// The lock files of the blocks.
 #[derive(Debug, Clone)]
@@ -82,11 +82,11 @@ mod tests {
         let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
         let claims = Claims::new(&root, 9_997);
         let all: Vec<Range<usize>> = claims.blocks().collect();
-        assert_eq!((all.len(), &all[1], all.last()), (1000, &(10..20), Some(&(9990..9_997))));
-        let claim = claims.claim(10).unwrap().unwrap();
+        assert_eq!((all.len(), &all[1], all.last()), (909, &(11..22), Some(&(9988..9_997))));
+        let claim = claims.claim(11).unwrap().unwrap();
         assert!(claims.claim(17).unwrap().is_none());
-        assert!(claims.claim(20).unwrap().is_some());
-        assert_eq!(claims.taken().unwrap(), vec![Range { start: 10, end: 20 }]);
+        assert!(claims.claim(22).unwrap().is_some());
+        assert_eq!(claims.taken().unwrap(), vec![Range { start: 11, end: 22 }]);
         drop(claim);
         assert_eq!(claims.taken().unwrap(), []);
         assert!(claims.claim(17).unwrap().is_some());
