@@ -41,7 +41,7 @@ fn areas_that_depend_on_the_kind_are_refused_by_name() -> Outcome {
     for outcome in refusals(&Part::block(corners())?)? {
         let error = outcome.expect_err("an area that is known");
         let text = error.source().ok_or("an observer's error has a cause")?.to_string();
-        assert!(text.contains("free area") && text.contains("parts with an inside for all kinds"), "{text}");
+        assert!(text.contains("free area") && text.contains("stop all kinds of disks"), "{text}");
     }
     for outcome in refusals(&Part::polyline(corners())?)? {
         outcome?;
