@@ -10,8 +10,8 @@ use crate::{Disk, ParameterError};
 
 /// Returns the same disks with Maxwellian velocities of this temperature.
 ///
-/// The center of mass is at rest, and all angular velocities stay unchanged. A single disk keeps its
-/// velocity.
+/// The center of mass is at rest, except for a single disk, which gets the velocity that is drawn. All
+/// angular velocities stay unchanged.
 ///
 /// Each component of a velocity is a normal variable of variance $`T/m`$. The total momentum is then removed,
 /// in proportion to the masses.

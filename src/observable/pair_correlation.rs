@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-9;
 /// error from the scatter of several runs. The cost of a sample is proportional to the number of disks.
 ///
 /// A run ends with an error if the range is more than half of a period, if no finite region is left between
-/// the walls, or if a wall enters the region enlarged by the range on all sides.
+/// the walls, or if a wall can enter the region enlarged by the range on all sides.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

@@ -92,8 +92,9 @@ pub enum Warning {
         upwards: f64,
     },
     /// The disks have gained energy since the run was built, or since disks, walls or gravity were last
-    /// changed between two runs, though no wall moves or is warm, and no disk came in or left: a rule gains
-    /// energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
+    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, and no disk
+    /// came in or left: a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds
+    /// such a rule.
     EnergyGained {
         /// Energy at that time.
         before: f64,

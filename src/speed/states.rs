@@ -63,11 +63,11 @@ pub fn dense() -> Result<PaperBox, StateError> {
 /// are 0.1, 0.3 and 0.65.
 ///
 /// # Errors
-/// If the area fraction is not in `1e-4..=0.78`. A square lattice has room for no more disks, and fewer would
-/// take hours to settle.
+/// If the area fraction is not in `1e-4..=0.766`. A square lattice has room for no more disks, and fewer
+/// would take hours to settle.
 #[inline]
 pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
-    accept((1e-4..=0.78).contains(&area_fraction), "area fraction", "in 1e-4..=0.78", area_fraction)?;
+    accept((1e-4..=0.766).contains(&area_fraction), "area fraction", "in 1e-4..=0.766", area_fraction)?;
     let side = side(DISKS as f64, area_fraction);
     let container = Container::periodic(side, side)?;
     let disks = even_lattice(&container, DISKS, 0.5)?;

@@ -223,6 +223,28 @@ fn a_piston_that_is_set_during_a_run_begins_then() -> Outcome {
     Ok(())
 }
 
+/// A checkpoint keeps the piston, also for a caller who would allow other walls.
+#[cfg(feature = "serde")]
+#[test]
+fn the_same_walls_are_not_other_walls() -> Outcome {
+    let lid_of = |run: &Simulation<Elastic, Container>| lid(&run.snapshot(), 16.0);
+    let piston =
+        Piston::new(6.0, [-12.0, 9.0])?.with_force(1.5)?.with_spring(1.6, 1.0)?.with_start(2.0, 0.5)?;
+    let container = Container::closed(14.0, 16.0)?.with_piston(Wall::Lid, piston)?;
+    let disks = initial::lattice(&Container::closed(14.0, 10.0)?, 40, 0.4)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 3)?;
+    let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build()?;
+    run.run_until(3.0, &mut ())?;
+    let mut resumed =
+        Simulation::resume(&run.checkpoint(), Elastic, container).with_another_boundary().build()?;
+    assert_eq!(lid_of(&resumed), lid_of(&run));
+    for run in [&mut run, &mut resumed] {
+        run.run_until(20.0, &mut ())?;
+    }
+    assert_eq!((resumed.disks(), lid_of(&resumed)), (run.disks(), lid_of(&run)));
+    Ok(())
+}
+
 /// A piston and a motion of the same wall would replace each other.
 #[test]
 fn a_motion_does_not_replace_a_piston() -> Outcome {

@@ -56,7 +56,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
 
     /// Allows a boundary that differs from the checkpoint's.
     ///
-    /// All events are then predicted anew, as [`Simulation::set_boundary`] does.
+    /// If it differs, all events are predicted anew, and a [`Piston`](crate::wall::Piston) begins in its
+    /// initial state, as after [`Simulation::set_boundary`]. The checkpoint does not hold the former walls,
+    /// so no warning says how far they jumped.
     pub const fn with_another_boundary(mut self) -> Self {
         self.another_boundary = true;
         self
@@ -76,13 +78,14 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             return Err(CheckpointError::AnotherRule);
         }
         crate::simulation::traffic::check_inlets(&self.boundary, &saved.inlets)?;
-        if self.another_boundary {
+        let (given, fingerprint) = (self.boundary.domain(), self.boundary.fingerprint());
+        let is_same = saved.boundary == fingerprint;
+        if self.another_boundary && !(is_same && fingerprint.is_some() && saved.domain == given) {
             return self.build_anew();
         }
-        if saved.boundary != self.boundary.fingerprint() {
+        if !is_same {
             return Err(CheckpointError::AnotherBoundary);
         }
-        let given = self.boundary.domain();
         if saved.domain != given {
             return Err(CheckpointError::Domain { saved: saved.domain, given });
         }
