@@ -141,9 +141,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
 ///    wall changes by the impulse along the normal divided by the [`mass`](Surface::mass), and by the impulse
 ///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
-///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall changes its
-///    position instantaneously. The result is [`Reaction::Moved`] if the velocity changes, which needs a
-///    finite mass.
+///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall jumps. The result
+///    is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
 ///     `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
@@ -381,8 +380,7 @@ pub trait Boundary {
         Vec::new()
     }
 
-    /// Restores a state that [`state`](Self::state) returned. The numbers describe the walls at the present
-    /// time origin.
+    /// Restores a state that [`state`](Self::state) returned. It describes the walls at the present origin.
     ///
     /// # Errors
     /// If the numbers are not a state of this boundary.

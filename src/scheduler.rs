@@ -54,7 +54,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// # Guarantees of the engine
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
 ///   never comes.
-/// - `reset` is called first, and again whenever many times change at once, as when the epoch moves. After a
+/// - `reset` is called first, and again whenever many times change together, as when the epoch moves. After a
 ///   `reset` with $`n`$ times, `set` is called only for disks below $`n`$.
 /// - For each event, the engine calls `earliest`, and then `set` for the disks whose next event has changed,
 ///   mostly one or two. In between, it calls [`upcoming`](Self::upcoming) in systems so large that memory is

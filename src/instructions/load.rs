@@ -5,7 +5,7 @@
 
 use std::arch::x86_64::{__m128d, __m256d, __m512d, _mm_loadu_pd, _mm256_loadu_pd, _mm512_loadu_pd};
 
-/// Reads two numbers at once.
+/// Reads two numbers with one instruction.
 #[allow(unsafe_code)]
 #[target_feature(enable = "avx2")]
 #[inline]
@@ -14,7 +14,7 @@ pub(crate) fn two(numbers: &[f64; 2]) -> __m128d {
     unsafe { _mm_loadu_pd(numbers.as_ptr()) }
 }
 
-/// Reads four numbers at once.
+/// Reads four numbers with one instruction.
 #[allow(unsafe_code)]
 #[target_feature(enable = "avx2")]
 #[inline]
@@ -23,7 +23,7 @@ pub(crate) fn four(numbers: &[f64; 4]) -> __m256d {
     unsafe { _mm256_loadu_pd(numbers.as_ptr()) }
 }
 
-/// Reads eight numbers at once.
+/// Reads eight numbers with one instruction.
 #[allow(unsafe_code)]
 #[target_feature(enable = "avx512f")]
 #[inline]

@@ -167,7 +167,7 @@ impl BucketQueue {
         let Self { due, open, page, .. } = self;
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
-            // The times of these disks are scattered in memory. Requests for all of them at once take hardly
+            // The times of these disks are scattered in memory. Requests for all of them together take hardly
             // longer than requests for a few.
             for &disk in disks {
                 prefetch(due, disk as usize);

@@ -11,7 +11,7 @@ use wide::Wide;
 
 /// A tournament: the earliest disk of each match enters the next round, until one disk is left.
 ///
-/// Processors with vector instructions, which compare the times of four or eight disks at once, play matches
+/// Processors with vector instructions, which compare the times of four or eight disks together, play matches
 /// of 32 disks. Other processors play matches of four, and with more than 32 768 disks, all do. The results
 /// are the same.
 #[derive(Debug, Clone, Default)]

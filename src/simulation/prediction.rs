@@ -17,7 +17,7 @@ use vector::pairs;
 
 /// Number of pairs that are predicted side by side.
 ///
-/// Each step of the arithmetic is written for all lanes at once. The compiler turns it into vector
+/// Each step of the arithmetic is written for all lanes together. The compiler turns it into vector
 /// instructions, and no branch depends on whether a pair approaches: such a branch would be a coin toss.
 pub(super) const LANES: usize = 4;
 

@@ -216,7 +216,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {
-        // However the run ends here, the next run checks its limits before its first event.
+        // In all cases, the next run checks its limits before its first event.
         self.clock.events_to_look = 1;
         if let Some(end) = watch.reached(&self.counters) {
             return Ok(Some(end));

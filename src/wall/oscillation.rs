@@ -41,7 +41,7 @@ impl Oscillation {
 pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
     let mut number = (phase / length).floor();
     // The end of a piece belongs to the next one. The quotient may be rounded down to the previous piece.
-    // That piece would end at the requested phase, and a search would make no step.
+    // The previous piece would end at the requested phase, and a search would make no step.
     if phase >= (number + 1.0) * length {
         number += 1.0;
     }

@@ -166,7 +166,7 @@ pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
     /// Number of values that were not finished: they stalled, failed, or reached a limit. Such values have
-    /// fewer samples or none; [`Outcome::reason`](crate::Outcome::reason) says why.
+    /// fewer samples, or no sample; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
     /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The study's files
     /// `logs/*.jsonl` contain the warnings.

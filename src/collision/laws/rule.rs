@@ -1,4 +1,4 @@
-//! The check of a rule against all laws at once.
+//! The check of a rule against all laws together.
 
 use super::hostile::{contacts_of_all_kinds, hostile_contacts};
 use super::random::random_contacts;

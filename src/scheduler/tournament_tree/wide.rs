@@ -1,4 +1,4 @@
-//! A tournament in matches of 32, for processors that compare the times of several disks at once.
+//! A tournament in matches of 32, for processors that compare the times of several disks together.
 //!
 //! The runner-up is known before the winner's event is carried out. The next event can therefore begin while
 //! the processor is still busy with the winner's new time, which is known last. Only the branch on whether

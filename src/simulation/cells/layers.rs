@@ -12,7 +12,7 @@
 //!     . r r o o c o o r r .
 //!     . r r o o o o o r r .     The home of the large disk is not drawn. It is about as large as
 //!     . r r o o o o o r r .     the disk, and consists of a power of two of cells along each side.
-//!     . r r r r r r r r r .     Disks of its own class and of larger ones look for it there.
+//!     . r r r r r r r r r .     Disks of the same and of larger classes look for it there.
 //!     . r r r r r r r r r .
 //!     . . . . . . . . . . .
 //! ```

@@ -32,7 +32,7 @@ impl Trajectory {
         self.position + self.velocity * offset
     }
 
-    /// Returns position and velocity in a row, for arithmetic on all four numbers at once.
+    /// Returns position and velocity in a row, for arithmetic on all four numbers together.
     #[inline]
     pub(in crate::simulation) fn row(&self) -> [f64; 4] {
         [self.position.x, self.position.y, self.velocity.x, self.velocity.y]

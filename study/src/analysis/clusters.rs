@@ -153,7 +153,7 @@ impl Clusters {
 /// The result has the largest number of clusters, from 1 to 4, whose pairs are all separated by $`D > 4`$
 /// ([`Clusters::separation`]).
 ///
-/// A k-means search finds as many clusters as requested, so the number must follow from the result itself.
+/// A k-means search finds the requested number of clusters, so the number must follow from the result itself.
 /// Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each half the
 /// density falls away from the cut. The mean of a half is therefore at most $`\sqrt3`$ standard deviations of
 /// this half away from the cut, with equality for the uniform density. A single cloud thus has

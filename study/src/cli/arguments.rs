@@ -132,7 +132,7 @@ pub(super) struct Place {
     #[arg(long)]
     pub(super) start: Option<PathBuf>,
     /// Absolute time at which the run ends. By default, this is the end of the value. From a file at a time
-    /// outside the value, or with a plan alone, the run has as many cycles as the value.
+    /// outside the value, or with a plan alone, the run has the number of cycles of the value.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
 }

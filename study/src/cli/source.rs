@@ -38,8 +38,9 @@ impl<E: Experiment> Source<E> {
             let (experiment, run, end) = Study::<E>::open(path)?.start_of(ramp, value)?;
             (run, experiment.cycle(), end)
         } else {
-            // A study may know the times of the value, unless others before it are still to be done.
-            let study = path.is_dir().then(|| Study::<E>::open(path)).transpose()?;
+            // A study knows the times of the value, unless others before it are still to be done. A start
+            // file needs only the plan, so nothing else about the folder is an error here.
+            let study = if path.is_dir() { Study::<E>::open(path).ok() } else { None };
             let known = study.and_then(|study| study.start_of(ramp, value).ok());
             let path = if path.is_dir() { &path.join("plan.toml") } else { path };
             let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;

@@ -1,4 +1,4 @@
-//! The exits of two disks from their cells at once (AVX2 and AVX-512).
+//! The exits of two disks from their cells, computed together (AVX2 and AVX-512).
 //!
 //! A mask is a number with all bits set in the lanes where it is true.
 
