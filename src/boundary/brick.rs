@@ -181,6 +181,19 @@ impl Brick {
         })
     }
 
+    /// Returns a point that moves with the brick, and the way from there to the surface, which does not turn:
+    /// the start, or the center and the radius of a circle. A circle that turns about its center stays where
+    /// it is.
+    pub(super) fn anchor(&self) -> (DVec2, DVec2) {
+        match self.shape {
+            Shape::Segment(segment) => (segment.from, DVec2::ZERO),
+            Shape::Arc(arc) => match arc.ends() {
+                Some([(start, _), _]) => (start, DVec2::ZERO),
+                None => (arc.center, arc.radius * DVec2::X),
+            },
+        }
+    }
+
     /// Returns the points that fix the position of the brick.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {

@@ -139,7 +139,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         match wall.checked_sub(self.boundary.wall_count()) {
-            Some(index) => self.obstacles.get(index).map(Disk::position),
+            Some(index) => self.obstacles.get(index).map(|disk| disk.position() + disk.radius() * DVec2::X),
             None => self.boundary.wall_point(wall, time),
         }
     }

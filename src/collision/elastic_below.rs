@@ -14,10 +14,16 @@ use crate::{Fingerprint, ParameterError};
 /// A disk that comes to rest on a floor then bounces at the speed $`v_c`$, once every $`2v_c/g`$. Many disks
 /// share the energy that the last fast collisions left them. If the tangential response loses nothing, their
 /// granular temperature stays constant. This temperature may be far below $`m v_c^2`$, and the lower it is,
-/// the more often disks collide. [`LeastRebound`](super::LeastRebound) bounds the number of collisions. In a
-/// gas of temperature $`T`$, the remedy removes the share $`1 - (1 + x)\,e^{-x} \approx x^2/2`$ of the normal
-/// dissipation, with $`x = m v_c^2/4T`$: the dissipation in collisions below $`v_c`$. The page `docs/rest.md`
-/// of the repository compares the remedies.
+/// the more often disks collide. [`LeastRebound`](super::LeastRebound) bounds the number of collisions. The
+/// page `docs/rest.md` of the repository compares the remedies.
+///
+/// Collisions with $`v_c \le v_n < v_c/r_n`$ lose less, too, but keep the regime of the inner rule. In a gas of
+/// temperature $`T`$, with a constant $`r_n`$ and $`x = m v_c^2/4T`$, the remedy removes this share of the
+/// normal dissipation:
+///
+/// ```math
+/// 1 - \frac{e^{-x} - r_n^2\,e^{-x/r_n^2}}{1 - r_n^2} \approx \frac{x^2}{2\,r_n^2}
+/// ```
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Regime};

@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cells::{CellSize, Cells};
 use super::lookahead::Lookahead;
-use super::state::{Bodies, Clock, Identities, Ledger, falls_forever};
+use super::state::{Bodies, Clock, Identities, Ledger};
 use super::{BuildError, Counters, Scratch, Simulation};
 use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
@@ -134,9 +134,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         if !self.disks.is_empty() {
             check_epoch(&clock, 0.0)?;
         }
-        // Along a periodic direction, gravity adds energy forever.
-        let has_source = falls_forever(gravity, &boundary.domain());
-        let ledger = Ledger::new(self.start_time, bodies.energy(0.0), has_source);
+        let energy = bodies.energies(0.0, &boundary.domain()).iter().sum();
+        let ledger = Ledger::new(self.start_time, energy);
         let mut simulation = Simulation {
             rule: self.rule,
             boundary,

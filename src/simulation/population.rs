@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::builder::{cells_around, check_epoch, check_speeds, fit};
 use super::lookahead::Lookahead;
-use super::state::{Clock, falls_forever};
+use super::state::Clock;
 use super::{BuildError, Simulation};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
@@ -103,7 +103,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Begins a new balance of the energy, after a change that is not part of a run.
     pub(super) fn balance_anew(&mut self, domain: &Domain) {
-        let energy = self.bodies.energy(self.clock.now);
-        self.ledger.balance_anew(energy, falls_forever(self.gravity(), domain));
+        let energies = self.bodies.energies(self.clock.now, domain);
+        self.ledger.balance_anew(energies.iter().sum());
     }
 }

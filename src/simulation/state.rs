@@ -19,5 +19,5 @@ pub(super) use forecast::{Earliest, Exit, Forecast};
 pub(super) use guard::Guard;
 pub(super) use guard::{Standstill, effort, least_progress};
 pub(super) use identities::Identities;
-pub(super) use ledger::{Ledger, falls_forever};
+pub(super) use ledger::Ledger;
 pub(super) use pace::FARTHEST;

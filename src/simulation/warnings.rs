@@ -92,18 +92,19 @@ pub enum Warning {
         upwards: f64,
     },
     /// The disks have gained energy since the run was built, or since disks, walls or gravity were last
-    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, and no disk
-    /// came in or left: a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds
-    /// such a rule.
+    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, no disk came in
+    /// or left, and no remedy [`LeastRebound`](crate::collision::LeastRebound) added any: a rule gains energy.
+    /// [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
     EnergyGained {
         /// Energy at that time.
         before: f64,
         /// Energy now.
         now: f64,
     },
-    /// No disk can reach a sink, and none has been removed in a thousand collisions or more: walls block the
-    /// sink, for example because they are closer than a radius to a line for centers. A gate that opens later
-    /// is a harmless cause.
+    /// No disk has room to touch a sink, and none has been removed in a thousand collisions or more: walls
+    /// cover the sink, for example because they are closer than a radius to a line for centers. A gate that
+    /// opens later is a harmless cause. Walls farther away that separate all disks from a sink, or leave only
+    /// too narrow a way to it, are not noticed.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
@@ -132,7 +133,7 @@ impl fmt::Display for Warning {
             ),
             Self::LongContactDuration { share_of_time, elastic, collisions } => write!(
                 formatter,
-                "the contact duration is {} of the time between two collisions of a disk ({elastic} of {collisions} \
+                "the contact duration is {} times the time between two collisions of a disk ({elastic} of {collisions} \
                  collisions lost nothing), so it removes about {} % of the dissipation; a shorter one is needed",
                 Rounded(*share_of_time),
                 Rounded((225.0 * share_of_time).min(100.0))
@@ -162,7 +163,7 @@ impl fmt::Display for Warning {
             ),
             Self::ClosedSink { name, .. } => write!(
                 formatter,
-                "no disk can get to the sink \"{name}\", since walls are in its way: a line for centers must be farther \
+                "no disk has room at the sink \"{name}\", since walls are in its way: a line for centers must be farther \
                  from them than a radius"
             ),
             Self::DisksWait { inlet, waiting } => write!(
@@ -278,8 +279,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     fn energy_gained(&self) -> Option<Warning> {
         let has_source = self.ledger.has_source || self.counters.least_rebound_collisions > 0;
-        let (before, now) = (self.ledger.energy, self.bodies.energy(self.clock.now));
-        let is_more = now - before > GAIN * (now.abs() + before.abs());
+        let [kinetic, potential] = self.bodies.energies(self.clock.now, &self.boundary.domain());
+        let (before, now) = (self.ledger.energy, kinetic + potential);
+        // Disks that fall forever have large energies of both kinds, whose rounding exceeds their sum.
+        let is_more = now - before > GAIN * (kinetic + potential.abs() + before.abs());
         (!has_source && is_more).then_some(Warning::EnergyGained { before, now })
     }
 

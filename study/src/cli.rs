@@ -151,6 +151,9 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
     for file in &summary.redone {
         say(&format!("{} was damaged and has been done again", file.display()))?;
     }
+    if STOP.load(Ordering::Relaxed) && !summary.is_complete() {
+        say("stopped; all work is saved, also on unfinished values: the same command continues")?;
+    }
     say(&format!("{} of {} values have ended in {}", summary.finished, summary.total, out.display()))?;
     let logs = out.join("logs/*.jsonl");
     for (count, fate, of) in [
@@ -188,7 +191,8 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     } else {
         let [done, running, begun, waiting] = [done, running, begun, waiting].map(|ramps| ramps.len());
         let counts = format!("{done} done, {running} running, {begun} begun, {waiting} waiting");
-        say(&format!("{ramps} ramps: {counts}; {}tables of all", if has_tables { "" } else { "no " }))?;
+        let not = if has_tables { "" } else { "do not " };
+        say(&format!("{ramps} ramps: {counts}; the tables {not}have all values"))?;
         if left.is_finite() {
             say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
         }

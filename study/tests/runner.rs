@@ -147,7 +147,7 @@ fn ramps_in_many_processes_are_a_study() {
     let status = scratch.runs(&["status", "many"]);
     assert_eq!(code(&status), Some(8));
     let (ramps, times) = said(&status).split_once('\n').map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
-    assert_eq!(ramps, "4 ramps: 3 done, 0 running, 0 begun, 1 waiting; no tables of all");
+    assert_eq!(ramps, "4 ramps: 3 done, 0 running, 0 begun, 1 waiting; the tables do not have all values");
     assert!(times.starts_with("about ") && times.ends_with(" core seconds are left\n"), "{times}");
     let mut json: serde_json::Value =
         serde_json::from_slice(&scratch.runs(&["status", "many", "--json"]).stdout).unwrap();
@@ -316,7 +316,10 @@ fn a_plan_may_come_from_standard_input() {
     let output = scratch.command(&["check", "-"]).stdin(plan).output().unwrap();
     let said = said(&output);
     assert_eq!(code(&output), Some(0));
-    assert!(said.starts_with("4 ramps of 1 value of 20 cycles, 2 repeats among them\n  0 to 1: "), "{said}");
+    assert!(
+        said.starts_with("4 ramps of 1 value of 20 cycles, with 2 repeats of each point\n  0 to 1: "),
+        "{said}"
+    );
 }
 
 #[test]

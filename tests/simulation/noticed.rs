@@ -293,6 +293,35 @@ fn a_part_that_jumps_is_named() {
     assert!(said.contains("gate") && said.contains("1.81859"), "{said}");
 }
 
+/// A drum with a slit turns about its center, which stays where it is; a whole drum looks the same from any side.
+#[test]
+fn an_arc_that_jumps_about_its_center_is_a_warning() {
+    let center = DVec2::new(6.0, 5.0);
+    let drum = |brick: Brick, rate: f64| {
+        let part = Part::new([brick.two_sided()]).unwrap().with_rotation(center, rate).unwrap();
+        Vessel::new(walls()).with("drum", part).unwrap()
+    };
+    let disks = [Disk::new(center, 0.5).unwrap()];
+    let jump = |brick: Brick, other: Brick| {
+        let mut run = Simulation::builder(Elastic, drum(brick, 0.5)).disks(disks).build().unwrap();
+        run.run_until(3.0, &mut ()).unwrap();
+        run.set_boundary(drum(other, 0.9)).unwrap();
+        run.warnings()
+    };
+    let slit = Brick::arc(center, 3.0, 0.3, 6.1).unwrap();
+    let turned = jump(slit, slit);
+    // The chord of the angle 1.2.
+    let chord = 6.0 * 0.6_f64.sin();
+    assert!(
+        matches!(turned[..], [Warning::WallJumped { by, .. }] if (by - chord).abs() < 1e-12),
+        "{turned:?}"
+    );
+    let circle = |radius: f64| Brick::circle(center, radius).unwrap();
+    assert_eq!(jump(circle(3.0), circle(3.0)), []);
+    let grown = jump(circle(3.0), circle(4.0));
+    assert!(matches!(grown[..], [Warning::WallJumped { by, .. }] if (by - 1.0).abs() < 1e-12), "{grown:?}");
+}
+
 #[test]
 fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
     let warnings = |duration: f64| {
@@ -308,7 +337,7 @@ fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
     assert!(
         matches!(long[..], [Warning::LongContactDuration { elastic, collisions, .. }] if elastic < collisions)
     );
-    assert!(long[0].to_string().contains("of the time between two collisions"), "{}", long[0]);
+    assert!(long[0].to_string().contains("times the time between two collisions"), "{}", long[0]);
 }
 
 /// Only one disk takes part in a collision with a wall.

@@ -118,6 +118,26 @@ fn energy_without_a_source_is_a_warning() -> Outcome {
     Ok(())
 }
 
+/// Disks that fall along a periodic direction keep their energy, so a gain is noticed there, too.
+#[test]
+fn energy_without_a_source_is_a_warning_where_disks_fall_forever() -> Outcome {
+    for pull in [DVec2::new(0.3, -0.5), DVec2::new(0.0, -0.5)] {
+        for gain in [0.0, 1e-3] {
+            let rule =
+                from_fn(move |contact: &Contact| Impulse::new(contact.normal_impulse(1.0 + gain), 0.0));
+            let boxes = [Container::periodic(20.0, 20.0)?, walls()?.with_periodic_sides()?];
+            for container in boxes {
+                let disks = gas(&container)?;
+                let mut run = Simulation::builder(rule, container).disks(disks).gravity(pull).build()?;
+                run.run_until(300.0, &mut ())?;
+                let warned = matches!(run.warnings()[..], [Warning::EnergyGained { .. }]);
+                assert_eq!(warned, gain > 0.0, "{pull} {gain}: {:?}", run.warnings());
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Changes gravity, walls or disks, runs on, and returns the warnings.
 fn change_and_go_on<R: CollisionRule>(
     mut run: Simulation<R, Container>,

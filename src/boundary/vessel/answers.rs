@@ -70,7 +70,8 @@ impl Boundary for Vessel {
         };
         let Wall { part, brick } = self.walls.get(brick)?;
         let placed = &self.parts[*part];
-        Some(placed.part.travel().pose(placed.phase.after(time)).outward(brick.landmarks().next()?))
+        let (place, aside) = brick.anchor();
+        Some(placed.part.travel().pose(placed.phase.after(time)).outward(place) + aside)
     }
 
     fn edges(&self, time: f64) -> Domain {

@@ -111,7 +111,7 @@ impl Random {
     fn wall(&mut self, mass: f64, radius: f64, kinds: &[Kind]) -> Partner {
         let kind = if self.below(4) == 0 { self.kind(kinds) } else { Kind::WALL };
         let mass = if self.below(4) == 0 { mass } else { f64::INFINITY };
-        let radii = [f64::INFINITY, radius * self.decades(2.0), -radius * (1.05 + self.size())];
+        let radii = [f64::INFINITY, radius * self.decades(2.0), -radius * (1.001 + self.size())];
         Partner::wall(mass, radii[self.below(3)], kind)
     }
 

@@ -221,7 +221,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
 /// with equal impulses in all contacts of [`check`] have the same fingerprint. Rules without a fingerprint
 /// are not compared.
 ///
-/// Pairs of different kinds are compared up to kind 255, most of them in one contact. The check cannot see
+/// Pairs of different kinds are compared up to kind 255, most of them in two contacts. The check cannot see
 /// other differences. If two such rules are of one type, the check refuses different fingerprints. Rules of
 /// two types may act alike and have different fingerprints.
 ///

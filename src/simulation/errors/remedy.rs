@@ -38,8 +38,8 @@ impl fmt::Display for Remedy {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::ElasticWhenSlow => {
-                "matter that comes to rest, an inelastic collapse, or disks that walls squeeze; remedies are the rules \
-                 LeastRebound, ElasticBelow and ContactDuration, or more room"
+                "matter that comes to rest, an inelastic collapse, or disks that walls squeeze; remedies are a contact \
+                 duration (the rule ContactDuration), the rules LeastRebound and ElasticBelow, or more room"
             }
             Self::LongerContactDuration => {
                 "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"
@@ -55,7 +55,7 @@ impl fmt::Display for Remedy {
             }
             Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
             Self::ClosedSink => {
-                "matter comes to rest, and no disk can get to a sink, since walls are in its way; \
+                "matter comes to rest, and no disk has room at a sink, since walls are in its way; \
                  Simulation::warnings names it"
             }
             Self::LessProgress => "time advances, but the least progress that was asked for is larger",

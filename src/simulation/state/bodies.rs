@@ -12,6 +12,7 @@ use glam::DVec2;
 use super::forecast::{Earliest, Exit, Forecast};
 use super::identities::Identities;
 use super::properties::Properties;
+use crate::boundary::Domain;
 use crate::collision::{Body, Material};
 use crate::observable::Moving;
 use crate::{Disk, Gravity};
@@ -276,14 +277,15 @@ impl Bodies {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }
 
-    /// Returns the kinetic and potential energy of all disks.
-    pub(in crate::simulation) fn energy(&self, offset: f64) -> f64 {
+    /// Returns the kinetic and the potential energy of all disks. Positions are unwrapped, so a disk that falls
+    /// across a periodic edge keeps its energy.
+    pub(in crate::simulation) fn energies(&self, offset: f64, domain: &Domain) -> [f64; 2] {
         let pull = self.gravity.acceleration();
-        let of = |disk: Disk| {
-            let kinetic = disk.translational_energy() + disk.rotational_energy();
-            kinetic - disk.mass() * pull.dot(disk.position())
-        };
-        (0..self.len()).map(|disk| of(self.disk(disk, offset))).sum()
+        let disks = (0..self.len()).map(|disk| self.disk(disk, offset));
+        disks.fold([0.0; 2], |[kinetic, potential], disk| {
+            let moving = disk.translational_energy() + disk.rotational_energy();
+            [kinetic + moving, potential - disk.mass() * pull.dot(domain.unwrapped(&disk))]
+        })
     }
 
     /// Moves the epoch forward by this time.

@@ -1,10 +1,5 @@
 //! The energy at the start of a run, and whether anything may have added energy since.
 
-use glam::DVec2;
-
-use crate::Gravity;
-use crate::boundary::Domain;
-
 /// The energy balance of a run. It reveals a rule or a wall that adds energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -23,13 +18,13 @@ pub(in crate::simulation) struct Ledger {
 }
 
 impl Ledger {
-    pub(in crate::simulation) const fn new(start: f64, energy: f64, has_source: bool) -> Self {
-        Self { since: start, disk_time: 0.0, energy, has_source, is_running: false }
+    pub(in crate::simulation) const fn new(start: f64, energy: f64) -> Self {
+        Self { since: start, disk_time: 0.0, energy, has_source: false, is_running: false }
     }
 
     /// Begins a new balance of the energy.
-    pub(in crate::simulation) const fn balance_anew(&mut self, energy: f64, has_source: bool) {
-        (self.energy, self.has_source) = (energy, has_source);
+    pub(in crate::simulation) const fn balance_anew(&mut self, energy: f64) {
+        (self.energy, self.has_source) = (energy, false);
     }
 
     /// Returns the sum of the times that all disks have spent in the run, which now has `disks` disks.
@@ -41,9 +36,4 @@ impl Ledger {
     pub(in crate::simulation) fn count(&mut self, now: f64, before: usize) {
         (self.disk_time, self.since, self.has_source) = (self.disk_time_at(now, before), now, true);
     }
-}
-
-/// Returns whether gravity pulls along a periodic direction. Disks then fall forever, and gain energy.
-pub(in crate::simulation) fn falls_forever(gravity: Gravity, domain: &Domain) -> bool {
-    gravity.acceleration() * domain.periods() != DVec2::ZERO
 }

@@ -36,7 +36,7 @@ pub(super) fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
     let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
     let repeats = match plan.repeats() {
         1 => String::new(),
-        repeats => format!(", {repeats} repeats among them"),
+        repeats => format!(", with {repeats} repeats of each point"),
     };
     let (ramp, value) = (counted(ramps, "ramp"), counted(values, "value"));
     say(&format!("{ramp} of {value} of {cycles} cycles{repeats}"))?;

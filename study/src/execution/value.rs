@@ -248,7 +248,8 @@ impl<E: Experiment> Active<'_, E> {
             Ok(RunEnd::WallClock) => Ok(false),
             Ok(RunEnd::Collisions) => {
                 let most = self.value.study.plan.protocol().most_collisions.unwrap_or(u64::MAX);
-                Err(self.limited(format!("it has reached the limit of {most} collisions")))
+                Err(self
+                    .limited(format!("it has reached the limit of {most} collisions with disks and walls")))
             }
             Ok(_) => Err(Outcome::Stopped { time }),
             Err(error @ RunError::Stalled { .. }) => Err(Outcome::Stalled { time, reason: chain(&error) }),

@@ -277,16 +277,25 @@ impl Steps {
     /// Returns the value of an index below the number of values.
     ///
     /// Each value is computed from its index, not from the previous value, so rounding errors do not
-    /// accumulate. Equal steps give the decimal fractions that a reader of the plan expects.
+    /// accumulate. Where a reader of the plan expects a decimal fraction, the value is one.
     fn value(&self, index: usize) -> f64 {
         match self.step {
             Some(step) => self.decimal(index, step),
             None if index + 1 == self.count => self.to,
-            None => {
-                let share = index as f64 / (self.count - 1) as f64;
-                self.from * libm::pow(self.to / self.from, share)
-            }
+            None => self.in_ratio(index as f64 / (self.count - 1) as f64),
         }
+    }
+
+    /// Returns the value at a share of the way, in equal ratios. A value that differs from a number of few
+    /// digits by rounding alone is that number: 100, not 99.99999999999999.
+    fn in_ratio(&self, share: f64) -> f64 {
+        let ratio = self.to / self.from;
+        let value = self.from * libm::pow(ratio, share);
+        let near = format!("{value:.11e}").parse().unwrap_or(value);
+        let logarithm = libm::log(ratio);
+        // The rounding of the share counts as often as the logarithm says. Neighbors stay different values.
+        let rounding = (f64::EPSILON * (4.0 + logarithm)).min(0.25 * logarithm / (self.count - 1) as f64);
+        if (near - value).abs() <= rounding * value { near } else { value }
     }
 
     /// Returns a value in equal steps. If the first value and the step are decimal fractions, so is the

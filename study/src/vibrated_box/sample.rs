@@ -4,7 +4,7 @@ use granular_edmd::observable::{
     Accumulator, CenterOfMass, Collision, ConvectionOrder, DenseLayer, Energies, EnergyChange, HeightProfile,
     Observable, Observer, OrderParameters, Snapshot, Temperatures,
 };
-use granular_edmd::statistics::Estimate;
+use granular_edmd::statistics::{BlockedMean, Estimate};
 
 use super::VibratedBox;
 use crate::analysis::{StateCriteria, thermal_noise};
@@ -38,6 +38,13 @@ pub struct Sample {
     pub collisions: u64,
     /// Mean energy change in these collisions, or 0 without collisions.
     pub energy_change: f64,
+}
+
+impl Sample {
+    /// Returns the mean energy change, NaN without collisions.
+    const fn known_change(&self) -> f64 {
+        if self.collisions == 0 { f64::NAN } else { self.energy_change }
+    }
 }
 
 /// The observer of the box: energy changes since the last sample, and the profile of all samples.
@@ -146,7 +153,13 @@ impl Record<VibratedBox> {
     }
 
     /// Returns the mean energy change in a collision of two disks, over all collisions.
+    ///
+    /// The mean is NaN without collisions, and the error is NaN if fewer than two samples have any.
     pub fn energy_change(&self) -> Estimate {
+        let changes = self.samples().iter().map(Sample::known_change).filter(|change| !change.is_nan());
+        if changes.clone().count() < 2 {
+            return changes.collect::<BlockedMean>().estimate();
+        }
         let collisions: f64 = self.samples().iter().map(|sample| sample.collisions as f64).sum();
         let total: f64 = self.samples().iter().map(|s| s.collisions as f64 * s.energy_change).sum();
         let mean = total / collisions;
@@ -184,7 +197,7 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
         Column::sampled("rotational_energy", "energy", |s: &Sample| s.rotational_energy),
         Column::sampled("vertical_temperature", "energy", |s: &Sample| s.vertical_temperature),
         Column::of_sample("collisions", "1", |s: &Sample| s.collisions),
-        Column::of_sample("energy_change", "energy", |s: &Sample| s.energy_change),
+        Column::of_sample("energy_change", "energy", Sample::known_change),
         Column::estimated("energy_change", "energy", Record::energy_change),
         Column::of_record("thermal_noise", "velocity", Record::thermal_noise),
         Column::of_record("densest_packing", "1", |record| {

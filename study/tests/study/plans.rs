@@ -189,6 +189,31 @@ fn values_by_rule_are_values() -> Result<(), AnyError> {
     Ok(())
 }
 
+/// Equal ratios reach numbers of few digits: whole numbers stay whole, and decades are decades.
+#[test]
+fn equal_ratios_are_the_numbers_that_one_expects() -> Result<(), AnyError> {
+    let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
+    let plan = |parameter: &str, rule: &str| {
+        let text = format!("{head}[[sweep]]\nparameter = \"{parameter}\"\nvalues = {{ {rule} }}\n");
+        Plan::<VibratedBox>::from_toml(&text)
+    };
+    let frictions = |rule: &str| -> Result<Vec<f64>, AnyError> {
+        let plan = plan("friction", rule)?;
+        (0..plan.ramp_count()).map(|ramp| Ok(plan.experiment(ramp, 0)?.friction)).collect()
+    };
+    assert_eq!(frictions("from = 1e-3, to = 1.0, log = 4")?, [1e-3, 0.01, 0.1, 1.0]);
+    let sixths = frictions("from = 1e-3, to = 1.0, log = 7")?;
+    assert_eq!((sixths[2], sixths[4]), (0.01, 0.1));
+    assert!((sixths[1] - 0.001 * 10_f64.sqrt()).abs() < 1e-15, "{sixths:?}");
+    let close = frictions("from = 0.1, to = 0.10000000000000002, log = 2")?;
+    assert_eq!(close, [0.1, 0.100_000_000_000_000_02]);
+    let many = plan("disks", "from = 1, to = 16, log = 5")?;
+    let counts: Vec<_> =
+        (0..5).map(|ramp| many.experiment(ramp, 0).map(|it| it.disks)).collect::<Result<_, _>>()?;
+    assert_eq!(counts, [1, 2, 4, 8, 16]);
+    Ok(())
+}
+
 /// Equal steps from decimal fractions are decimal fractions. Numbers that are none stay as they are.
 #[test]
 fn equal_steps_are_the_numbers_that_one_expects() -> Result<(), AnyError> {

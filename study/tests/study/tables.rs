@@ -99,6 +99,31 @@ fn repeats_have_seeds_of_their_own_and_are_told_together() -> Result<(), AnyErro
     Ok(())
 }
 
+/// Samples and repeats without collisions have no energy change, and one alone has no error.
+#[test]
+fn an_energy_change_comes_from_collisions() -> Result<(), AnyError> {
+    let base = Base::Thermal { temperature: 2.0 };
+    let experiment =
+        VibratedBox::new(2, 8.0, base).with_height(9.0).with_gravity(0.05).with_inelasticity(0.1);
+    let plan = Plan::new(experiment, Protocol::new(0, 3, 3)?, 9)?.with_repeats(6)?;
+    let (scratch, study) = done(&plan, "few-collisions");
+    for row in table(&scratch.0, "samples.csv")? {
+        assert_eq!(row["collisions"] == "0", row["energy_change"].is_empty(), "{row:?}");
+    }
+    let (mut means, mut lone) = (Vec::new(), 0);
+    for (row, record) in table(&scratch.0, "values.csv")?.iter().zip(study.records()) {
+        let collided = record?.samples().iter().filter(|sample| sample.collisions > 0).count();
+        assert_eq!(collided == 0, row["energy_change"].is_empty(), "{row:?}");
+        assert_eq!(collided < 2, row["energy_change_error"].is_empty(), "{row:?}");
+        lone += usize::from(collided == 1);
+        means.extend(row["energy_change"].parse::<f64>());
+    }
+    assert!(lone > 0 && means.len() < 6, "{means:?}");
+    let together: f64 = table(&scratch.0, "points.csv")?[0]["energy_change"].parse()?;
+    assert!(together <= means.iter().fold(-1.0, |a: f64, b| a.max(*b)), "{together} {means:?}");
+    Ok(())
+}
+
 /// Tables of an unfinished study never mix the repeats of one point with those of another.
 #[test]
 fn tables_of_a_study_half_done_keep_points_apart() -> Result<(), AnyError> {

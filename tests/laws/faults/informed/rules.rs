@@ -102,6 +102,15 @@ fn partners(rules: &mut Rules) {
         let [disk, wall] = contact.radii();
         wall < 0.0 && -wall < 1.2 * disk
     });
+    rules.gain("close fit", "gain in hollow walls up to a fiftieth larger than the disk", |contact| {
+        let [disk, wall] = contact.radii();
+        wall < 0.0 && -wall < 1.02 * disk
+    });
+    rules.rule("pair of kinds", "gain of the kinds 200 and 201, less than friction takes", FREE, |contact| {
+        let gains = contact.is_between(Kind::new(200), Kind::new(201));
+        let normal = contact.normal_impulse(if gains { 1.02 } else { 0.9 });
+        Impulse::new(normal, frictional(contact, 1.0).tangential())
+    });
     rules.gain("small pegs", "gain at round walls smaller than a tenth of the disk", |contact| {
         let [disk, wall] = contact.radii();
         contact.kinds()[1] == Kind::WALL && wall > 0.0 && wall < 0.1 * disk
