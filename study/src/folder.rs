@@ -68,14 +68,6 @@ impl Folder {
         Ok(names.filter_map(place).collect())
     }
 
-    /// Returns an error if the folder has records of version 0.3, which this version does not read.
-    pub(super) fn check_format(&self) -> Result<(), StudyError> {
-        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
-            return Err(StudyError::refused(&self.root, OUTDATED));
-        }
-        Ok(())
-    }
-
     /// Returns whether the folder holds a study. A plan alone is not a study: a user may keep plans there,
     /// among other files. A study has a lock file beside its plan from the beginning, soon a README, and then
     /// records. A copy of a study may lack some of these.
@@ -85,27 +77,24 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Creates the folder if needed, and locks it in order to write a plan.
-    pub(super) fn prepare(&self) -> Result<Locked, StudyError> {
-        self.check_free()?;
-        create(&self.root)?;
-        self.take_lock()
-    }
-
-    /// Writes the provenance and the README, except for files that exist already. The caller holds the lock.
-    pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
-        if !self.root.join(LOGS).exists() && !self.provenance().exists() {
-            write(&self.provenance(), provenance.as_bytes())?;
-        }
-        self.write_about()
-    }
-
     pub(super) fn provenance(&self) -> PathBuf {
         self.root.join(PROVENANCE)
     }
 
-    /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
-    fn write_about(&self) -> Result<(), StudyError> {
+    /// Returns the path of the mark that all ramps are finished and in the tables. The mark is removed before
+    /// a value is written that the tables may lack.
+    pub(super) fn complete(&self) -> PathBuf {
+        self.root.join(COMPLETE)
+    }
+
+    /// Returns whether the folder has records.
+    pub(super) fn has_logs(&self) -> bool {
+        self.root.join(LOGS).exists()
+    }
+
+    /// Writes the README of the folder, if it is missing or cut short. An edited README stays. The caller
+    /// holds the lock.
+    pub(super) fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
         let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
         if path.exists() && !fs::read(&path).is_ok_and(is_cut) {
@@ -116,7 +105,7 @@ impl Folder {
 
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
     /// a plan.
-    fn check_free(&self) -> Result<(), StudyError> {
+    pub(super) fn check_free(&self) -> Result<(), StudyError> {
         if !self.root.is_dir() {
             // If the folder cannot be created, the attempt to create it returns the error.
             return Ok(());
@@ -134,18 +123,13 @@ impl Folder {
         Ok(())
     }
 
+    /// Returns the text of the plan, or an error if the folder has records of version 0.3, which this version
+    /// does not read.
     pub(super) fn read_plan(&self) -> Result<String, StudyError> {
+        if self.root.join(RAMPS).exists() && !self.has_logs() {
+            return Err(StudyError::refused(&self.root, OUTDATED));
+        }
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
-    }
-
-    /// Returns whether all ramps are finished and in the tables.
-    pub(super) fn is_complete(&self) -> bool {
-        self.root.join(COMPLETE).exists()
-    }
-
-    /// Removes the mark of a complete study. Call this before a value is written that the tables may lack.
-    pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
-        remove(&self.root.join(COMPLETE))
     }
 
     /// Writes the mark that all ramps are in the tables, and removes the files of unfinished values that are
@@ -160,21 +144,14 @@ impl Folder {
             // A user may keep other files in this folder.
             let _ = fs::remove_dir(&folder);
         }
-        write(&self.root.join(COMPLETE), b"")
+        write(&self.complete(), b"")
     }
 
-    fn take_lock(&self) -> Result<Locked, StudyError> {
+    /// Waits for the lock of the whole study, which allows writing to its folder. Creates the folder if needed.
+    pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
         let lock = Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })?;
         remove_temporaries(&self.root)?;
-        Ok(lock)
-    }
-
-    /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
-    pub(super) fn lock(&self) -> Result<Locked, StudyError> {
-        let lock = self.take_lock()?;
-        // The process that wrote the plan may have been killed before it wrote the README.
-        self.write_about()?;
         Ok(lock)
     }
 }

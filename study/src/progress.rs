@@ -84,7 +84,7 @@ impl<E: Experiment> Study<E> {
         }
         let heads = || entries.of(ramp..ramp + 1).map(Entry::head);
         let Some(first) = heads().find(|head| head.has(Head::FAILED)) else { return Ok(false) };
-        self.folder.mark_incomplete()?;
+        remove(&self.folder.complete())?;
         for value in heads().map(|head| head.value).filter(|value| *value >= first.value) {
             // A process that was killed just after it had finished the value may have left this file.
             remove(&self.folder.partial(ramp, value))?;

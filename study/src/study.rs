@@ -28,10 +28,11 @@ pub struct Study<E> {
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// The code that may continue the study, and the makers whose records the study accepts.
-    provenance: Option<Provenance>,
     /// The maker of this program's records.
     maker: Maker,
+    /// Keys of the makers whose records the study accepts, separated by blanks; empty before the check of the
+    /// code.
+    accepted: String,
 }
 
 impl<E: Experiment> Study<E> {
@@ -44,7 +45,7 @@ impl<E: Experiment> Study<E> {
         if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
             return Err(StudyError::refused(study.folder(), "holds a study already"));
         }
-        Ok(Self { provenance: study.check_code()?, ..study })
+        study.checked()
     }
 
     /// Opens the study in a folder.
@@ -53,8 +54,7 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds no study or cannot be read, if the plan was changed or belongs to another
     /// experiment, or if other code made the study ([`StudyError::Code`]).
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
-        let study = Self::found_in(folder.as_ref())?;
-        Ok(Self { provenance: study.check_code()?, ..study })
+        Self::found_in(folder.as_ref())?.checked()
     }
 
     /// Opens the study in a folder, or creates a new one.
@@ -81,8 +81,11 @@ impl<E: Experiment> Study<E> {
         if !study.folder.holds_study() || !study.folder.provenance().exists() {
             study.put_plan(check)?;
         }
-        study.check_plan()?;
-        Ok(Self { provenance: study.check_code()?, ..study })
+        study.checked()
+    }
+
+    fn checked(self) -> Result<Self, StudyError> {
+        Ok(Self { accepted: self.check_unchanged()?, ..self })
     }
 
     /// Allows this program to continue a study that other code made, and returns the differences between the
@@ -129,7 +132,7 @@ impl<E: Experiment> Study<E> {
         let (revision, columns) = (E::revision(), columns::<E>());
         let maker = Maker { version, results: RESULTS, revision, columns };
         let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
-        Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
+        Ok(Self { folder, store, claims, plan, text, hash, maker, accepted: String::new() })
     }
 
     /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
@@ -138,14 +141,18 @@ impl<E: Experiment> Study<E> {
     /// The plan is checked under the lock: of the processes that start at the same time, one checks the plan,
     /// and the others wait.
     fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        let _lock = self.folder.prepare()?;
+        self.folder.check_free()?;
+        let _lock = self.folder.lock()?;
         let is_new = !self.folder.plan().exists();
         if is_new {
             check(&self.plan)?;
             write(&self.folder.plan(), self.text.as_bytes())?;
         }
         // If a process is killed here, the folder has a plan but no provenance and no records.
-        self.folder.put(&self.ours().text())?;
+        self.folder.write_about()?;
+        if !self.folder.has_logs() && !self.folder.provenance().exists() {
+            write(&self.folder.provenance(), self.ours().text().as_bytes())?;
+        }
         Ok(is_new)
     }
 
@@ -186,31 +193,21 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::foreign(&path))
     }
 
-    /// Returns the provenance of the folder, or an error if this program may not continue the study.
-    fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
-        self.folder.check_format()?;
+    /// Checks that the folder has this plan, and that this program may continue the study. Returns the keys of
+    /// the makers whose records the study accepts.
+    pub(super) fn check_unchanged(&self) -> Result<String, StudyError> {
+        if self.folder.read_plan()? != self.text {
+            // Two files that differ may hold the same plan.
+            let found = Self::plan_in(&self.folder)?;
+            let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
+            StudyError::if_different(self.folder.root(), differences)?;
+        }
         let provenance = self.read_provenance()?;
         let differences = self.ours().differences(provenance.as_ref());
         if differences.is_empty() {
-            return Ok(provenance);
+            return Ok(provenance.as_ref().map_or_else(String::new, Provenance::keys));
         }
         Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
-    }
-
-    /// Checks that the plan and the code in the folder are unchanged.
-    pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
-        self.check_plan()?;
-        self.check_code().map(drop)
-    }
-
-    fn check_plan(&self) -> Result<(), StudyError> {
-        if self.folder.read_plan()? == self.text {
-            return Ok(());
-        }
-        // Two files that differ may hold the same plan.
-        let found = Self::plan_in(&self.folder)?;
-        let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
-        StudyError::if_different(self.folder.root(), differences)
     }
 
     /// Returns the folder of the study.
@@ -248,8 +245,7 @@ impl<E: Experiment> Study<E> {
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
             return Err(StudyError::damaged(path, "it is of another value"));
         }
-        let is_accepted = |code: &Provenance| code.keys().split(' ').any(|key| key == found.maker.key());
-        if self.is_ours(found) || self.provenance.as_ref().is_some_and(is_accepted) {
+        if self.accepted.split(' ').any(|key| key == found.maker.key()) {
             return Ok(());
         }
         Err(StudyError::changed(path, "revision"))

@@ -18,7 +18,7 @@ use super::{Experiment, Plan, Record, Study, StudyError};
 impl<E: Experiment> Study<E> {
     /// Returns whether the folder has tables of all values.
     pub fn has_tables(&self) -> bool {
-        self.folder.is_complete() && files(&self.plan, self.folder()).all(|file| file.exists())
+        self.folder.complete().exists() && files(&self.plan, self.folder()).all(|file| file.exists())
     }
 
     /// Writes the tables of all finished records into the folder of the study, and returns the number of
@@ -31,6 +31,7 @@ impl<E: Experiment> Study<E> {
     /// If a record is damaged or missing, or a file cannot be read or written.
     pub fn write_tables(&self) -> Result<usize, StudyError> {
         let _lock = self.folder.lock()?;
+        self.folder.write_about()?;
         self.tables(self.folder())
     }
 
@@ -66,7 +67,7 @@ impl<E: Experiment> Study<E> {
             }
             // In a complete or damaged study, a missing record is an error: a table that lacks a row must not
             // look complete.
-            if !entries.is_done(ramp) && (self.folder.is_complete() || self.store.damage().is_some()) {
+            if !entries.is_done(ramp) && (self.folder.complete().exists() || self.store.damage().is_some()) {
                 let missing =
                     || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
                 return Err(self.store.damage().unwrap_or_else(missing));

@@ -224,7 +224,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         self.seen.push(study.plan.seen(&record));
         // The tables may lack this value, and later ones of the run.
         if !self.session.is_opened.swap(true, Ordering::Relaxed) {
-            study.folder.mark_incomplete()?;
+            remove(&study.folder.complete())?;
         }
         let marks = [
             (Head::LAST, study.plan.next(&self.seen).is_none()),
