@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use granular_edmd::file::Locked;
 
 use super::StudyError;
-use super::folder::{files_in, open_lock};
+use super::folder::{files_in, try_lock};
 
 /// Largest number of blocks of ramps, each with its lock file. A process claims whole blocks. With 64
 /// processes, a few percent of the time is lost at the end, when some processes have a block left and the
@@ -43,18 +43,9 @@ impl Claims {
         self.size > 1
     }
 
-    /// Claims the block of a ramp, or returns `None` if another process has it. The claim ends with the
-    /// process, even if the process is killed.
-    ///
-    /// The lock file is never deleted. Otherwise, two processes could hold locks on two different files of
-    /// the same name.
+    /// Claims the block of a ramp, or returns `None` if another process has it.
     pub(super) fn claim(&self, ramp: usize) -> Result<Option<Locked>, StudyError> {
-        let path = self.folder.join(format!("{:04}", ramp / self.size));
-        match Locked::take(open_lock(&path)?) {
-            Ok(locked) => Ok(Some(locked)),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(source)) => Err(StudyError::NoLock { path, source }),
-        }
+        try_lock(&self.folder.join(format!("{:04}", ramp / self.size)))
     }
 
     /// Returns the blocks of ramps that processes are running.

@@ -5,7 +5,7 @@
 //! knows that the writer of any temporary file in the folder is dead.
 
 use std::ffi::OsString;
-use std::fs::{self, DirEntry, File};
+use std::fs::{self, DirEntry, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -87,20 +87,18 @@ impl Folder {
         self.root.join(COMPLETE)
     }
 
-    /// Returns whether the folder has records.
-    pub(super) fn has_logs(&self) -> bool {
-        self.root.join(LOGS).exists()
-    }
-
-    /// Writes the README of the folder, if it is missing or cut short. An edited README stays. The caller
-    /// holds the lock.
-    pub(super) fn write_about(&self) -> Result<(), StudyError> {
+    /// Writes the README if it is missing or cut short, and the provenance if it is missing and the folder has
+    /// no records. An edited README stays. The caller holds the lock.
+    pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         let path = self.root.join(README);
         let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
-        if path.exists() && !fs::read(&path).is_ok_and(is_cut) {
+        if !path.exists() || fs::read(&path).is_ok_and(is_cut) {
+            write(&path, ABOUT.as_bytes())?;
+        }
+        if self.provenance().exists() || self.root.join(LOGS).exists() {
             return Ok(());
         }
-        write(&path, ABOUT.as_bytes())
+        write(&self.provenance(), provenance.as_bytes())
     }
 
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
@@ -126,7 +124,7 @@ impl Folder {
     /// Returns the text of the plan, or an error if the folder has records of version 0.3, which this version
     /// does not read.
     pub(super) fn read_plan(&self) -> Result<String, StudyError> {
-        if self.root.join(RAMPS).exists() && !self.has_logs() {
+        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
             return Err(StudyError::refused(&self.root, OUTDATED));
         }
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
@@ -166,8 +164,21 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
+/// Takes the lock of a file, or returns `None` if another process has it. The lock ends with the process, even
+/// if the process is killed.
+///
+/// A lock file is never deleted. Otherwise, two processes could hold locks on two different files of the same
+/// name.
+pub(super) fn try_lock(path: &Path) -> Result<Option<Locked>, StudyError> {
+    match Locked::take(open_lock(path)?) {
+        Ok(locked) => Ok(Some(locked)),
+        Err(TryLockError::WouldBlock) => Ok(None),
+        Err(TryLockError::Error(source)) => Err(StudyError::NoLock { path: path.to_owned(), source }),
+    }
+}
+
 /// Opens a lock file, and creates the file and its folder if necessary.
-pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
+fn open_lock(path: &Path) -> Result<File, StudyError> {
     let open = || File::options().read(true).write(true).create(true).truncate(false).open(path);
     let opened = match (open(), path.parent()) {
         (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {

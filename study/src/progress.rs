@@ -88,7 +88,7 @@ impl<E: Experiment> Study<E> {
         for value in heads().map(|head| head.value).filter(|value| *value >= first.value) {
             // A process that was killed just after it had finished the value may have left this file.
             remove(&self.folder.partial(ramp, value))?;
-            self.store.void(ramp, value)?;
+            self.store.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])?;
         }
         self.store.refreshed()?;
         Ok(true)

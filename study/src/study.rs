@@ -12,7 +12,7 @@ use super::experiment::record::{Maker, Origin};
 use super::folder::{Folder, if_there, write};
 use super::parameters::{self, tree};
 use super::store::Store;
-use super::{Difference, Experiment, Plan, PlanError, StudyError};
+use super::{Difference, Experiment, Plan, StudyError};
 
 /// A [`Plan`] in a folder, with the records of its finished values.
 ///
@@ -42,7 +42,7 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study or anything else, or cannot be written.
     pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
-        if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
+        if study.folder.holds_study() || !study.put_plan(true)? {
             return Err(StudyError::refused(study.folder(), "holds a study already"));
         }
         study.checked()
@@ -65,21 +65,18 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study with another plan, a study that other code made ([`StudyError::Code`]), or
     /// other files but no study, or if the folder cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
-        Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
+        Self::open_or_put(folder.as_ref(), plan.clone(), true)
     }
 
-    /// Opens the study in a folder. If there is none, checks the plan and writes it to the folder.
+    /// Opens the study in a folder. If there is none, writes the plan to the folder. Before, it checks the
+    /// experiments of a plan that is not yet proven.
     ///
     /// An existing plan is not checked again, since it was checked when it was written: the check takes
     /// seconds in large studies, and each of many processes would repeat it.
-    pub(super) fn open_or_put(
-        folder: &Path,
-        plan: Plan<E>,
-        check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>,
-    ) -> Result<Self, StudyError> {
+    pub(super) fn open_or_put(folder: &Path, plan: Plan<E>, is_proven: bool) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder)?, plan)?;
         if !study.folder.holds_study() || !study.folder.provenance().exists() {
-            study.put_plan(check)?;
+            study.put_plan(is_proven)?;
         }
         study.checked()
     }
@@ -100,8 +97,10 @@ impl<E: Experiment> Study<E> {
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
         let before = study.read_provenance()?;
-        let accepted = before.as_ref().map_or_else(String::new, Provenance::keys);
-        let now = Provenance { accepted, ..study.ours() };
+        let mut now = study.provenance();
+        if let Some(before) = &before {
+            now.accepted = format!("{} {}", before.accepted, now.accepted);
+        }
         let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
             let _lock = study.folder.lock()?;
@@ -135,29 +134,27 @@ impl<E: Experiment> Study<E> {
         Ok(Self { folder, store, claims, plan, text, hash, maker, accepted: String::new() })
     }
 
-    /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
-    /// plan.
+    /// Writes the plan to the folder. Returns false if the folder already has a plan.
     ///
     /// The plan is checked under the lock: of the processes that start at the same time, one checks the plan,
     /// and the others wait.
-    fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
+    fn put_plan(&self, is_proven: bool) -> Result<bool, StudyError> {
         self.folder.check_free()?;
         let _lock = self.folder.lock()?;
         let is_new = !self.folder.plan().exists();
+        if is_new && !is_proven {
+            self.plan.check_experiments()?;
+        }
         if is_new {
-            check(&self.plan)?;
             write(&self.folder.plan(), self.text.as_bytes())?;
         }
         // If a process is killed here, the folder has a plan but no provenance and no records.
-        self.folder.write_about()?;
-        if !self.folder.has_logs() && !self.folder.provenance().exists() {
-            write(&self.folder.provenance(), self.ours().text().as_bytes())?;
-        }
+        self.folder.put(&self.provenance().text())?;
         Ok(is_new)
     }
 
     /// Returns the provenance that this program gives to a study.
-    fn ours(&self) -> Provenance {
+    pub(super) fn provenance(&self) -> Provenance {
         let (experiment, maker) = (&self.plan.parts.experiment, &self.maker);
         let program = std::env::current_exe().ok();
         let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
@@ -175,7 +172,7 @@ impl<E: Experiment> Study<E> {
             program: program.to_string_lossy().into_owned(),
             target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
             plan: self.hash.to_hex().to_string(),
-            accepted: String::new(),
+            accepted: maker.key(),
         }
     }
 
@@ -203,9 +200,9 @@ impl<E: Experiment> Study<E> {
             StudyError::if_different(self.folder.root(), differences)?;
         }
         let provenance = self.read_provenance()?;
-        let differences = self.ours().differences(provenance.as_ref());
+        let differences = self.provenance().differences(provenance.as_ref());
         if differences.is_empty() {
-            return Ok(provenance.as_ref().map_or_else(String::new, Provenance::keys));
+            return Ok(provenance.map_or_else(String::new, |there| there.accepted));
         }
         Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
     }
@@ -245,7 +242,7 @@ impl<E: Experiment> Study<E> {
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
             return Err(StudyError::damaged(path, "it is of another value"));
         }
-        if self.accepted.split(' ').any(|key| key == found.maker.key()) {
+        if self.is_ours(found) || self.accepted.split(' ').any(|key| key == found.maker.key()) {
             return Ok(());
         }
         Err(StudyError::changed(path, "revision"))
@@ -260,7 +257,7 @@ impl<E: Experiment> Study<E> {
 /// The file `provenance.json`: the code that may continue a study, which is the code that began the study or
 /// was accepted last, and the code that was accepted earlier.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-struct Provenance {
+pub(super) struct Provenance {
     results: String,
     revision: String,
     columns: String,
@@ -271,7 +268,7 @@ struct Provenance {
     target: String,
     /// Hash of the plan.
     plan: String,
-    /// Keys of the earlier makers that the study accepts, separated by blanks.
+    /// Keys of the makers whose records the study accepts, separated by blanks: the present maker is the last.
     accepted: String,
 }
 
@@ -280,7 +277,7 @@ const DECIDING: [&str; 5] = ["results", "revision", "columns", "rule", "boundary
 
 impl Provenance {
     /// Returns the text of the file.
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         // Texts are always JSON.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
@@ -293,12 +290,6 @@ impl Provenance {
             Difference { field: name.to_owned(), old, new }
         });
         all.into_iter().filter(|field| field.old != field.new).collect()
-    }
-
-    /// Returns the keys of the present maker and of the earlier, accepted makers, separated by blanks.
-    fn keys(&self) -> String {
-        let Self { results, revision, columns, accepted, .. } = self;
-        format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()
     }
 }
 

@@ -31,7 +31,7 @@ impl<E: Experiment> Study<E> {
     /// If a record is damaged or missing, or a file cannot be read or written.
     pub fn write_tables(&self) -> Result<usize, StudyError> {
         let _lock = self.folder.lock()?;
-        self.folder.write_about()?;
+        self.folder.put(&self.provenance().text())?;
         self.tables(self.folder())
     }
 
@@ -118,11 +118,6 @@ impl Rows {
     fn push(&mut self, first: &str, cells: impl IntoIterator<Item = Scalar>) -> Result<(), StudyError> {
         let row = row(first, cells) + "\n";
         self.draft.write_all(row.as_bytes()).map_err(StudyError::io("write", &self.path))
-    }
-
-    /// Renames the finished table to its final name.
-    fn finish(self) -> Result<(), StudyError> {
-        self.draft.finish().map_err(StudyError::io("write", &self.path))
     }
 }
 
@@ -314,7 +309,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     fn finish(self) -> Result<(), StudyError> {
         let own = self.more.into_iter().map(|(_, rows)| rows);
         let all = [self.values, self.samples, self.points, self.described].into_iter();
-        all.chain(self.transitions).chain(own).try_for_each(Rows::finish)
+        let mut all = all.chain(self.transitions).chain(own);
+        all.try_for_each(|Rows { path, draft }| draft.finish().map_err(StudyError::io("write", &path)))
     }
 }
 

@@ -280,11 +280,11 @@ impl<E: Experiment> Active<'_, E> {
             .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
         let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
             &mut self.work;
-        if protocol.step(*steps).sample.is_none() {
+        let Some(sample) = protocol.step(*steps).sample else {
             return sliced::run(&mut self.run, &to_end, &mut self.riders, &mut (), is_under_way);
-        }
+        };
         // A slice may have ended between the sample and the end of the step.
-        if samples.len() as u64 == protocol.samples_of(*steps) {
+        if samples.len() as u64 == sample {
             let ended = sliced::run(&mut self.run, &to_sample, &mut self.riders, observer, is_under_way)?;
             if ended != RunEnd::Time {
                 return Ok(ended);
@@ -343,10 +343,10 @@ impl<S, O> Work<S, O> {
     /// Checks that the work so far fits the protocol.
     fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
         check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
-        let (samples, next) = (protocol.samples_of(self.steps), protocol.samples_of(self.steps + 1));
-        let found = self.measured.samples.len() as u64;
+        let (left, found) = (protocol.steps() - self.steps, self.measured.samples.len() as u64);
+        let samples = protocol.samples().saturating_sub(left);
         // The sample of an unfinished step may have been taken already.
-        let is_taken = found == next && self.steps < protocol.steps();
+        let is_taken = found == samples + 1 && (1..=protocol.samples()).contains(&left);
         check(found == samples || is_taken, "its samples are not as many as its steps")
     }
 }

@@ -134,7 +134,9 @@ impl<E: Experiment> Plan<E> {
         for (axis, name) in self.parts.sweep.iter_mut().zip(&self.varied) {
             let Some(first) = axis.value(0) else { continue };
             let kind = probe::<E>(&self.tree, axis.parameter(), name, &first)?;
-            axis.set_kind(&kind)?;
+            // Equal plans have equal files. Values that differ may become the same value of this type.
+            axis.values.set_kind(&kind);
+            axis.check()?;
             let _ = parameters::set(&mut self.tree, name, &kind);
         }
         if let (Some(ramp), Some(name)) = (&self.parts.ramp, self.varied.last())
