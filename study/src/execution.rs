@@ -1,7 +1,7 @@
 //! Runs of a study, which compute the missing values; and the controls that watch and stop a run.
 
 mod ramp;
-mod session;
+pub(super) mod session;
 mod value;
 
 use std::fmt;

@@ -7,7 +7,6 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::{Fingerprint, RESULTS};
 
-use super::claims::Claims;
 use super::experiment::record::{Maker, Origin};
 use super::folder::{Folder, if_there, write};
 use super::parameters::{self, tree};
@@ -22,7 +21,6 @@ use super::{Difference, Experiment, Plan, StudyError};
 pub struct Study<E> {
     pub(super) folder: Folder,
     pub(super) store: Store,
-    pub(super) claims: Claims,
     pub(super) plan: Plan<E>,
     /// The text of the plan in its file.
     text: String,
@@ -130,8 +128,8 @@ impl<E: Experiment> Study<E> {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let (revision, columns) = (E::revision(), columns::<E>());
         let maker = Maker { version, results: RESULTS, revision, columns };
-        let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
-        Ok(Self { folder, store, claims, plan, text, hash, maker, accepted: String::new() })
+        let store = Store::new(folder.root());
+        Ok(Self { folder, store, plan, text, hash, maker, accepted: String::new() })
     }
 
     /// Writes the plan to the folder. Returns false if the folder already has a plan.

@@ -5,6 +5,8 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
+use granular_edmd::simulation::Warning;
+
 use super::session::{LOOK, Session};
 use super::value::{Active, Partial, Value};
 use crate::experiment::record::{Contents, Outcome, Record};
@@ -36,10 +38,10 @@ pub(super) fn attempt<E: Experiment>(
     ramps: &Range<usize>,
 ) -> Result<bool, StudyError> {
     let study = session.study;
-    let claim = study.claims.claim(ramps.start)?;
+    let claim = session.claims.claim(ramps.start)?;
     // A single ramp of a larger block can run without a claim: a caller that runs a single ramp assigns each
     // ramp to one process.
-    if claim.is_none() && !(session.ramps.len() == 1 && study.claims.is_shared()) {
+    if claim.is_none() && !(session.ramps.len() == 1 && session.claims.is_shared()) {
         return Ok(false);
     }
     // Other processes may have finished some of the ramps before this process got the claim.
@@ -117,7 +119,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
             let record = work.taken_over(record);
-            let warnings: Vec<_> = record.counters().warnings().iter().map(ToString::to_string).collect();
+            let warnings = record.counters().warnings();
             return self.keep(record, &warnings, None);
         }
         let mut active = match self.saved(&work)? {
@@ -126,8 +128,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         };
         self.advance(active.steps());
         let Some(outcome) = self.steps(&mut active)? else { return Ok(false) };
-        let warnings = active.warnings();
-        self.keep(active.record(outcome)?, &warnings, Some(started.elapsed()))
+        let (record, warnings) = active.record(outcome)?;
+        self.keep(record, &warnings, Some(started.elapsed()))
     }
 
     /// Returns an earlier study's record of the next value, or `None` if no earlier study has a suitable one.
@@ -177,7 +179,6 @@ impl<E: Experiment> Walk<'_, '_, E> {
                 self.save(active)?;
                 saved = Instant::now();
             }
-            let rest = self.session.study.plan.protocol().steps() - active.steps();
             let until_save = control.save_interval.saturating_sub(saved.elapsed());
             let ended = match control.most_seconds.filter(|most| began.elapsed().as_secs_f64() > *most) {
                 Some(most) => Err(active.limited(format!("it has taken more than {most} s"))),
@@ -187,7 +188,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
                 Ok(true) => self.advance(1),
                 Ok(false) => {}
                 Err(outcome) => {
-                    self.advance(rest);
+                    self.advance(self.session.study.plan.protocol().steps() - active.steps());
                     return Ok(Some(outcome));
                 }
             }
@@ -210,7 +211,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn keep(
         &mut self,
         record: Record<E>,
-        warnings: &[String],
+        warnings: &[Warning],
         time: Option<Duration>,
     ) -> Result<bool, StudyError> {
         let study = self.session.study;
@@ -231,7 +232,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
             value: record.value_index(),
             outcome: record.outcome().name(),
             reason: record.outcome().reason(),
-            warnings: &warnings.join("; "),
+            warnings: &warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
             collisions: record.counters().disk_collisions,
             taken_over: time.is_none(),
             seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use granular_edmd::Simulation;
-use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
+use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError, Warning};
 
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
@@ -218,11 +218,6 @@ impl<E: Experiment> Study<E> {
 }
 
 impl<E: Experiment> Active<'_, E> {
-    /// Returns the warnings of the simulation.
-    pub(super) fn warnings(&self) -> Vec<String> {
-        self.run.warnings().iter().map(ToString::to_string).collect()
-    }
-
     /// Returns the number of finished steps.
     pub(super) const fn steps(&self) -> u64 {
         self.work.steps
@@ -309,9 +304,10 @@ impl<E: Experiment> Active<'_, E> {
         Ok((&self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
-    /// Returns the record of the value after its last step. If the value stalled, failed or reached a limit,
-    /// the record holds the state in which the value started, and the next value starts from this state.
-    pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
+    /// Returns the record of the value after its last step, and the warnings of the simulation. If the value
+    /// stalled, failed or reached a limit, the record holds the state in which the value started, and the next
+    /// value starts from this state.
+    pub(super) fn record(self, outcome: Outcome) -> Result<(Record<E>, Vec<Warning>), StudyError> {
         let Self { value, work, run, riders } = self;
         let (start, cycles) = (work.start, value.study.plan.protocol().cycles());
         let (end, state) = match outcome {
@@ -335,7 +331,7 @@ impl<E: Experiment> Active<'_, E> {
             driving: driving.filter(|_| state.is_some()),
             state,
         };
-        Ok(Record { experiment: value.experiment.clone(), contents })
+        Ok((Record { experiment: value.experiment.clone(), contents }, run.warnings()))
     }
 }
 

@@ -90,7 +90,7 @@ impl Axis {
 
     /// Returns the value with this index, or `None` beyond the last value.
     pub fn value(&self, index: usize) -> Option<Scalar> {
-        (index < self.len()).then(|| self.values.at(index))
+        self.values.at(index)
     }
 }
 
@@ -144,11 +144,11 @@ impl Values {
         }
     }
 
-    /// Returns the value of an index below the number of values.
-    pub(super) fn at(&self, index: usize) -> Scalar {
+    /// Returns the value with this index, or `None` beyond the last value.
+    pub(super) fn at(&self, index: usize) -> Option<Scalar> {
         match self {
-            Self::List(list) => list[index].clone(),
-            Self::Rule(steps) => steps.value(index).into(),
+            Self::List(list) => list.get(index).cloned(),
+            Self::Rule(steps) => (index < steps.count).then(|| steps.value(index).into()),
         }
     }
 
@@ -164,7 +164,7 @@ impl Values {
     /// Returns the indices of the values that are checked. They include the smallest and the largest value,
     /// wherever these are in a list, since an experiment usually accepts a range.
     pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
-        let number = |index: &usize| self.at(*index).number().unwrap_or(0.0);
+        let number = |index: &usize| self.at(*index).and_then(|value| value.number()).unwrap_or(0.0);
         let order = |one: &usize, other: &usize| number(one).total_cmp(&number(other));
         let all = if matches!(self, Self::List(_)) { 0..self.len() } else { 0..0 };
         let extremes = [all.clone().min_by(order), all.max_by(order)];

@@ -7,9 +7,9 @@ use granular_edmd::observable::{
 use granular_edmd::statistics::Estimate;
 
 use super::VibratedBox;
+use crate::Record;
 use crate::analysis::thermal_noise;
 use crate::experiment::record;
-use crate::Record;
 
 /// Largest number of bins of a profile. A bin is one diameter high.
 const MOST_BINS: usize = 65_536;
