@@ -147,7 +147,7 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         Some(ramp) => study.run_ramp(ramp, &control),
         None => study.run(&control),
     })?;
-    watch.end();
+    drop(watch);
     for file in &summary.redone {
         say(&format!("{} was damaged and has been done again", file.display()))?;
     }

@@ -104,10 +104,6 @@ impl Folder {
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
     /// a plan.
     pub(super) fn check_free(&self) -> Result<(), StudyError> {
-        if !self.root.is_dir() {
-            // If the folder cannot be created, the attempt to create it returns the error.
-            return Ok(());
-        }
         for entry in files_in(&self.root)? {
             let name = entry.file_name();
             let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));

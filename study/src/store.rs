@@ -11,7 +11,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use granular_edmd::file::{Damage, Locked, Seal};
+use granular_edmd::file::{Locked, Seal};
 use serde::de::DeserializeOwned;
 
 use super::StudyError;
@@ -119,7 +119,15 @@ impl Store {
 
     /// Reads the contents of an entry.
     pub(super) fn read<T: DeserializeOwned>(&self, entry: &Entry) -> Result<T, StudyError> {
-        let contents = self.state().contents(entry)?.map_err(|_| "its checksum does not match");
+        let mut state = self.state();
+        let LogFile { path, file, .. } = &mut state.logs[entry.log as usize];
+        let opened = match file {
+            Some(file) => Ok(file),
+            none => File::open(&*path).map(|file| none.insert(file)),
+        };
+        let read = opened.and_then(|file| read_piece(file, entry)).map_err(StudyError::io("read", path))?;
+        drop(state);
+        let contents = read.map_err(|_| "its checksum does not match");
         contents.and_then(|contents| decoded(&contents)).map_err(|reason| self.damaged(entry, reason))
     }
 
@@ -147,15 +155,6 @@ impl Store {
 }
 
 impl State {
-    fn contents(&mut self, entry: &Entry) -> Result<Result<Vec<u8>, Damage>, StudyError> {
-        let LogFile { path, file, .. } = &mut self.logs[entry.log as usize];
-        let opened = match file {
-            Some(file) => Ok(file),
-            none => File::open(&*path).map(|file| none.insert(file)),
-        };
-        opened.and_then(|file| read_piece(file, entry)).map_err(StudyError::io("read", path))
-    }
-
     fn writer(&mut self, folder: &Path) -> Result<&mut Writer, StudyError> {
         match &mut self.writer {
             Some(writer) => Ok(writer),
