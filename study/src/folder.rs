@@ -18,14 +18,11 @@ use super::StudyError;
 /// Text of the README in the folder of a study.
 const ABOUT: &str = include_str!("folder.txt");
 
-const PLAN: &str = "plan.toml";
-const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const LOGS: &str = "logs";
 const UNFINISHED: &str = "unfinished";
 /// Name of the folder in which version 0.3 kept records.
 const RAMPS: &str = "ramps";
-const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
 const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
     finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
@@ -50,7 +47,7 @@ impl Folder {
     }
 
     pub(super) fn plan(&self) -> PathBuf {
-        self.root.join(PLAN)
+        self.root.join("plan.toml")
     }
 
     /// Returns the path of the file that keeps an unfinished value.
@@ -78,17 +75,17 @@ impl Folder {
     }
 
     pub(super) fn provenance(&self) -> PathBuf {
-        self.root.join(PROVENANCE)
+        self.root.join("provenance.json")
     }
 
     /// Returns the path of the mark that all ramps are finished and in the tables. The mark is removed before
     /// a value is written that the tables may lack.
     pub(super) fn complete(&self) -> PathBuf {
-        self.root.join(COMPLETE)
+        self.root.join("complete")
     }
 
-    /// Writes the README if it is missing or cut short, and the provenance if it is missing and the folder has
-    /// no records. An edited README stays. The caller holds the lock.
+    /// Writes the README if it is missing or cut short, and the provenance if it is missing and the folder
+    /// has no records. An edited README stays. The caller holds the lock.
     pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         let path = self.root.join(README);
         let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
@@ -141,7 +138,7 @@ impl Folder {
         write(&self.complete(), b"")
     }
 
-    /// Waits for the lock of the whole study, which allows writing to its folder. Creates the folder if needed.
+    /// Waits for the lock of the whole study, in order to write to its folder. Creates the folder if needed.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
         let lock = Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })?;
@@ -160,11 +157,11 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Takes the lock of a file, or returns `None` if another process has it. The lock ends with the process, even
-/// if the process is killed.
+/// Takes the lock of a file, or returns `None` if another process has it. The lock ends with the process,
+/// even if the process is killed.
 ///
-/// A lock file is never deleted. Otherwise, two processes could hold locks on two different files of the same
-/// name.
+/// A lock file is never deleted. Otherwise, two processes could hold locks on two different files of the
+/// same name.
 pub(super) fn try_lock(path: &Path) -> Result<Option<Locked>, StudyError> {
     match Locked::take(open_lock(path)?) {
         Ok(locked) => Ok(Some(locked)),

@@ -84,13 +84,12 @@ impl<E: Experiment> Study<E> {
     /// other code.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
-        if let Some(record) = self.known_record(ramp, value)? {
-            return Ok(Some(record));
+        if self.store.known().find(ramp, value).is_none() {
+            self.store.refreshed()?;
         }
-        match (self.store.refreshed()?.find(ramp, value), self.store.damage()) {
-            (Some(entry), _) => self.read(entry).map(Some),
+        match (self.known_record(ramp, value)?, self.store.damage()) {
             (None, Some(error)) => Err(error),
-            (None, None) => Ok(None),
+            (found, _) => Ok(found),
         }
     }
 

@@ -188,8 +188,8 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::foreign(&path))
     }
 
-    /// Checks that the folder has this plan, and that this program may continue the study. Returns the keys of
-    /// the makers whose records the study accepts.
+    /// Checks that the folder has this plan, and that this program may continue the study. Returns the keys
+    /// of the makers whose records the study accepts.
     pub(super) fn check_unchanged(&self) -> Result<String, StudyError> {
         if self.folder.read_plan()? != self.text {
             // Two files that differ may hold the same plan.
@@ -266,7 +266,7 @@ pub(super) struct Provenance {
     target: String,
     /// Hash of the plan.
     plan: String,
-    /// Keys of the makers whose records the study accepts, separated by blanks: the present maker is the last.
+    /// Keys of the makers whose records the study accepts, separated by blanks, the present one last.
     accepted: String,
 }
 

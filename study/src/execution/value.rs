@@ -305,8 +305,8 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     /// Returns the record of the value after its last step, and the warnings of the simulation. If the value
-    /// stalled, failed or reached a limit, the record holds the state in which the value started, and the next
-    /// value starts from this state.
+    /// stalled, failed or reached a limit, the record holds the state in which the value started, and the
+    /// next value starts from this state.
     pub(super) fn record(self, outcome: Outcome) -> Result<(Record<E>, Vec<Warning>), StudyError> {
         let Self { value, work, run, riders } = self;
         let (start, cycles) = (work.start, value.study.plan.protocol().cycles());
