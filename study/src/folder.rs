@@ -98,9 +98,10 @@ impl Folder {
         write(&self.provenance(), provenance.as_bytes())
     }
 
-    /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
-    /// a plan.
+    /// Creates the folder if needed. Checks that it has a plan, or nothing but a lock and temporary files,
+    /// which are written before a plan.
     pub(super) fn check_free(&self) -> Result<(), StudyError> {
+        create(&self.root)?;
         for entry in files_in(&self.root)? {
             let name = entry.file_name();
             let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));
@@ -138,7 +139,7 @@ impl Folder {
         write(&self.complete(), b"")
     }
 
-    /// Waits for the lock of the whole study, in order to write to its folder. Creates the folder if needed.
+    /// Waits for the lock of the whole study, in order to write to its folder.
     pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
         let lock = Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })?;

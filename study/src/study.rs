@@ -140,10 +140,10 @@ impl<E: Experiment> Study<E> {
         self.folder.check_free()?;
         let _lock = self.folder.lock()?;
         let is_new = !self.folder.plan().exists();
-        if is_new && !is_proven {
-            self.plan.check_experiments()?;
-        }
         if is_new {
+            if !is_proven {
+                self.plan.check_experiments()?;
+            }
             write(&self.folder.plan(), self.text.as_bytes())?;
         }
         // If a process is killed here, the folder has a plan but no provenance and no records.
