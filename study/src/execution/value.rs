@@ -270,9 +270,13 @@ impl<E: Experiment> Active<'_, E> {
     /// Runs the next step to its end, and takes its sample on the way if the step has one.
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
+        let done = self.run.counters().since(&self.work.counters).collisions();
+        let left = protocol.most_collisions.unwrap_or(u64::MAX).saturating_sub(done);
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
-        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end]
-            .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
+        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end].map(|cycles| {
+            let end = self.work.start.time(cycles, cycle);
+            Limits::until(end).with_wall_clock(slice).with_most_collisions(left)
+        });
         let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
             &mut self.work;
         let Some(sample) = protocol.step(*steps).sample else {
@@ -289,14 +293,6 @@ impl<E: Experiment> Active<'_, E> {
             samples.push(self.value.experiment.sample(&snapshot, observer));
         }
         sliced::run(&mut self.run, &to_end, &mut self.riders, observer, is_under_way)
-    }
-
-    /// Returns the limits of one part of the value's run.
-    fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
-        let limits = Limits::until(end).with_wall_clock(slice);
-        let Some(most) = self.value.study.plan.protocol().most_collisions else { return limits };
-        let done = self.run.counters().since(&self.work.counters).collisions();
-        limits.with_most_collisions(most.saturating_sub(done))
     }
 
     /// Returns the data from which the unfinished value can continue later.
