@@ -161,6 +161,8 @@ impl Container {
 
     /// Returns the same container with a wall at which disks collide by this rule instead of their own.
     ///
+    /// A wall has one response: a rule, a temperature and an absorbing wall replace each other.
+    ///
     /// # Errors
     /// If the container has no such wall.
     pub fn with_rule(

@@ -21,8 +21,9 @@ use crate::{Fingerprint, Kind};
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
 /// their own motion.
 ///
-/// A new part is at rest, follows the rule of the disks, and has the default kind of walls. Corners are added
-/// automatically wherever bricks end and a disk can touch the end.
+/// A new part is at rest, follows the rule of the disks, and has the default kind of walls. It has one
+/// response: a rule, a temperature and an absorbing part replace each other. Corners are added automatically
+/// wherever bricks end and a disk can touch the end.
 ///
 /// | constructor | disks are free |
 /// |---|---|

@@ -140,7 +140,7 @@ pub enum Response<'a> {
     /// The wall takes the disk out of the run.
     ///
     /// Observers see a last collision, after which the disk has the velocity of the wall and no spin: the
-    /// wall receives all of the relative momentum.
+    /// wall receives all of the relative momentum. The spin is lost, also at a wall that turns freely.
     Absorbing,
 }
 

@@ -22,7 +22,8 @@ const LEAST_GAIN: f64 = 0.05;
 const APART: f64 = 1e-9;
 
 /// Returns these disks, of any mix of radii, packed at random below the height `below` (or the lid, if that
-/// is lower).
+/// is lower). If the ends are periodic and the period is not higher than `below`, disks also lie across the
+/// edge.
 ///
 /// The disks start small at random positions, and move and collide without loss. Step by step, each of them
 /// grows into the room that it finds, until it has its full radius. Disks of two sizes reach an area fraction
