@@ -123,7 +123,7 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
     let plan = Plan::from_toml_unproven(&read(path)?).map_err(StudyError::unreadable(path))?;
-    Ok(Study::open_or_put(folder, plan, Plan::check_experiments).map_err(|error| match error {
+    Ok(Study::open_or_put(folder, plan, false).map_err(|error| match error {
         StudyError::Plan(source) => StudyError::unreadable(path)(source),
         error => error,
     })?)
@@ -147,7 +147,7 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         Some(ramp) => study.run_ramp(ramp, &control),
         None => study.run(&control),
     })?;
-    watch.end();
+    drop(watch);
     for file in &summary.redone {
         say(&format!("{} was damaged and has been done again", file.display()))?;
     }

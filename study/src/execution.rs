@@ -1,7 +1,7 @@
 //! Runs of a study, which compute the missing values; and the controls that watch and stop a run.
 
 mod ramp;
-mod session;
+pub(super) mod session;
 mod value;
 
 use std::fmt;
@@ -234,7 +234,7 @@ impl<E: Experiment> Study<E> {
     /// Writes the tables, unless another process has written them in between. A run of the whole study also
     /// writes lost tables again. A run of one ramp does not, if the study is marked as complete.
     fn write_tables_once(&self, is_whole: bool) -> Result<(), StudyError> {
-        let is_there = || if is_whole { self.has_tables() } else { self.folder.is_complete() };
+        let is_there = || if is_whole { self.has_tables() } else { self.folder.complete().exists() };
         if is_there() {
             return Ok(());
         }

@@ -5,7 +5,7 @@
 //! knows that the writer of any temporary file in the folder is dead.
 
 use std::ffi::OsString;
-use std::fs::{self, DirEntry, File};
+use std::fs::{self, DirEntry, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -18,14 +18,11 @@ use super::StudyError;
 /// Text of the README in the folder of a study.
 const ABOUT: &str = include_str!("folder.txt");
 
-const PLAN: &str = "plan.toml";
-const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const LOGS: &str = "logs";
 const UNFINISHED: &str = "unfinished";
 /// Name of the folder in which version 0.3 kept records.
 const RAMPS: &str = "ramps";
-const COMPLETE: &str = "complete";
 const LOCK: &str = "lock";
 const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
     finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
@@ -50,7 +47,7 @@ impl Folder {
     }
 
     pub(super) fn plan(&self) -> PathBuf {
-        self.root.join(PLAN)
+        self.root.join("plan.toml")
     }
 
     /// Returns the path of the file that keeps an unfinished value.
@@ -68,14 +65,6 @@ impl Folder {
         Ok(names.filter_map(place).collect())
     }
 
-    /// Returns an error if the folder has records of version 0.3, which this version does not read.
-    pub(super) fn check_format(&self) -> Result<(), StudyError> {
-        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
-            return Err(StudyError::refused(&self.root, OUTDATED));
-        }
-        Ok(())
-    }
-
     /// Returns whether the folder holds a study. A plan alone is not a study: a user may keep plans there,
     /// among other files. A study has a lock file beside its plan from the beginning, soon a README, and then
     /// records. A copy of a study may lack some of these.
@@ -85,42 +74,34 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Creates the folder if needed, and locks it in order to write a plan.
-    pub(super) fn prepare(&self) -> Result<Locked, StudyError> {
-        self.check_free()?;
-        create(&self.root)?;
-        self.take_lock()
-    }
-
-    /// Writes the provenance and the README, except for files that exist already. The caller holds the lock.
-    pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
-        if !self.root.join(LOGS).exists() && !self.provenance().exists() {
-            write(&self.provenance(), provenance.as_bytes())?;
-        }
-        self.write_about()
-    }
-
     pub(super) fn provenance(&self) -> PathBuf {
-        self.root.join(PROVENANCE)
+        self.root.join("provenance.json")
     }
 
-    /// Writes the README of the folder, if it is missing or cut short. An edited README stays.
-    fn write_about(&self) -> Result<(), StudyError> {
+    /// Returns the path of the mark that all ramps are finished and in the tables. The mark is removed before
+    /// a value is written that the tables may lack.
+    pub(super) fn complete(&self) -> PathBuf {
+        self.root.join("complete")
+    }
+
+    /// Writes the README if it is missing or cut short, and the provenance if it is missing and the folder
+    /// has no records. An edited README stays. The caller holds the lock.
+    pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         let path = self.root.join(README);
         let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
-        if path.exists() && !fs::read(&path).is_ok_and(is_cut) {
+        if !path.exists() || fs::read(&path).is_ok_and(is_cut) {
+            write(&path, ABOUT.as_bytes())?;
+        }
+        if self.provenance().exists() || self.root.join(LOGS).exists() {
             return Ok(());
         }
-        write(&path, ABOUT.as_bytes())
+        write(&self.provenance(), provenance.as_bytes())
     }
 
-    /// Checks that the folder has a plan, or nothing but a lock and temporary files, which are written before
-    /// a plan.
-    fn check_free(&self) -> Result<(), StudyError> {
-        if !self.root.is_dir() {
-            // If the folder cannot be created, the attempt to create it returns the error.
-            return Ok(());
-        }
+    /// Creates the folder if needed. Checks that it has a plan, or nothing but a lock and temporary files,
+    /// which are written before a plan.
+    pub(super) fn check_free(&self) -> Result<(), StudyError> {
+        create(&self.root)?;
         for entry in files_in(&self.root)? {
             let name = entry.file_name();
             let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));
@@ -134,18 +115,13 @@ impl Folder {
         Ok(())
     }
 
+    /// Returns the text of the plan, or an error if the folder has records of version 0.3, which this version
+    /// does not read.
     pub(super) fn read_plan(&self) -> Result<String, StudyError> {
+        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
+            return Err(StudyError::refused(&self.root, OUTDATED));
+        }
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
-    }
-
-    /// Returns whether all ramps are finished and in the tables.
-    pub(super) fn is_complete(&self) -> bool {
-        self.root.join(COMPLETE).exists()
-    }
-
-    /// Removes the mark of a complete study. Call this before a value is written that the tables may lack.
-    pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
-        remove(&self.root.join(COMPLETE))
     }
 
     /// Writes the mark that all ramps are in the tables, and removes the files of unfinished values that are
@@ -160,21 +136,14 @@ impl Folder {
             // A user may keep other files in this folder.
             let _ = fs::remove_dir(&folder);
         }
-        write(&self.root.join(COMPLETE), b"")
+        write(&self.complete(), b"")
     }
 
-    fn take_lock(&self) -> Result<Locked, StudyError> {
+    /// Waits for the lock of the whole study, in order to write to its folder.
+    pub(super) fn lock(&self) -> Result<Locked, StudyError> {
         let path = self.root.join(LOCK);
         let lock = Locked::wait(open_lock(&path)?).map_err(|source| StudyError::NoLock { path, source })?;
         remove_temporaries(&self.root)?;
-        Ok(lock)
-    }
-
-    /// Waits for the lock of the whole study, and locks the study in order to write to its folder.
-    pub(super) fn lock(&self) -> Result<Locked, StudyError> {
-        let lock = self.take_lock()?;
-        // The process that wrote the plan may have been killed before it wrote the README.
-        self.write_about()?;
         Ok(lock)
     }
 }
@@ -189,8 +158,21 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
+/// Takes the lock of a file, or returns `None` if another process has it. The lock ends with the process,
+/// even if the process is killed.
+///
+/// A lock file is never deleted. Otherwise, two processes could hold locks on two different files of the
+/// same name.
+pub(super) fn try_lock(path: &Path) -> Result<Option<Locked>, StudyError> {
+    match Locked::take(open_lock(path)?) {
+        Ok(locked) => Ok(Some(locked)),
+        Err(TryLockError::WouldBlock) => Ok(None),
+        Err(TryLockError::Error(source)) => Err(StudyError::NoLock { path: path.to_owned(), source }),
+    }
+}
+
 /// Opens a lock file, and creates the file and its folder if necessary.
-pub(super) fn open_lock(path: &Path) -> Result<File, StudyError> {
+fn open_lock(path: &Path) -> Result<File, StudyError> {
     let open = || File::options().read(true).write(true).create(true).truncate(false).open(path);
     let opened = match (open(), path.parent()) {
         (Err(error), Some(folder)) if error.kind() == io::ErrorKind::NotFound => {

@@ -58,7 +58,6 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod analysis;
-mod claims;
 #[cfg(feature = "cli")]
 pub mod cli;
 mod errors;

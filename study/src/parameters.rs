@@ -219,26 +219,22 @@ pub(super) fn place(varied: &[(&str, Scalar)]) -> String {
 
 /// Returns the fields in which two trees differ.
 pub(super) fn differences(old: &Table, new: &Table) -> Vec<Difference> {
-    let mut found = Vec::new();
-    collect_differences("", old, new, &mut found);
-    found
-}
-
-fn collect_differences(prefix: &str, old: &Table, new: &Table, found: &mut Vec<Difference>) {
     let added = new.keys().filter(|name| !old.contains_key(*name));
-    for name in old.keys().chain(added) {
-        let field = format!("{prefix}{name}");
-        match (old.get(name), new.get(name)) {
-            (Some(Value::Table(old)), Some(Value::Table(new))) => {
-                collect_differences(&format!("{field}."), old, new, found);
+    let of = |name: &String| match (old.get(name), new.get(name)) {
+        (Some(Value::Table(old)), Some(Value::Table(new))) => {
+            let mut inner = differences(old, new);
+            for found in &mut inner {
+                found.field.insert_str(0, &format!("{name}."));
             }
-            (old, new) if old == new => {}
-            (old, new) => {
-                let [old, new] = [old, new].map(|value| value.map(ToString::to_string));
-                found.push(Difference { field, old, new });
-            }
+            inner
         }
-    }
+        (old, new) if old == new => Vec::new(),
+        (old, new) => {
+            let [old, new] = [old, new].map(|value| value.map(ToString::to_string));
+            vec![Difference { field: name.clone(), old, new }]
+        }
+    };
+    old.keys().chain(added).flat_map(of).collect()
 }
 
 /// Returns the seed that follows from a seed and this index.

@@ -1,5 +1,6 @@
 //! The progress of a study: its ramps, failed values, and the time that it takes.
 
+use super::execution::session::Claims;
 use super::folder::remove;
 use super::store::{Entry, Head};
 use super::{Experiment, Study, StudyError};
@@ -35,7 +36,7 @@ impl<E: Experiment> Study<E> {
     /// If the folder cannot be read.
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
         let mut all = vec![RampStatus::Waiting; self.plan.ramp_count()];
-        let (taken, unfinished) = (self.claims.taken()?, self.folder.unfinished()?);
+        let (taken, unfinished) = (self.claims().taken()?, self.folder.unfinished()?);
         let entries = self.store.refreshed()?;
         let begun = entries.heads().map(|head| head.ramp).chain(unfinished.iter().map(|place| place[0]));
         let begun = begun.map(|ramp| (ramp, RampStatus::Begun));
@@ -51,6 +52,10 @@ impl<E: Experiment> Study<E> {
             *status = if entries.is_done(ramp) { RampStatus::Done } else { *status };
         }
         Ok(all)
+    }
+
+    fn claims(&self) -> Claims {
+        Claims::new(self.folder(), self.plan.ramp_count())
     }
 
     /// Returns the ramp and value indices of all values that stalled, failed or reached a limit.
@@ -77,18 +82,18 @@ impl<E: Experiment> Study<E> {
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
         self.check_ramp(ramp)?;
         self.check_unchanged()?;
-        let claim = self.claims.claim(ramp)?;
+        let claim = self.claims().claim(ramp)?;
         let entries = self.store.refreshed()?;
         if claim.is_none() || !entries.is_done(ramp) {
             return Ok(false);
         }
         let heads = || entries.of(ramp..ramp + 1).map(Entry::head);
         let Some(first) = heads().find(|head| head.has(Head::FAILED)) else { return Ok(false) };
-        self.folder.mark_incomplete()?;
+        remove(&self.folder.complete())?;
         for value in heads().map(|head| head.value).filter(|value| *value >= first.value) {
             // A process that was killed just after it had finished the value may have left this file.
             remove(&self.folder.partial(ramp, value))?;
-            self.store.void(ramp, value)?;
+            self.store.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])?;
         }
         self.store.refreshed()?;
         Ok(true)

@@ -1,5 +1,7 @@
 //! The results of a study: records, points and transitions.
 
+use std::ops::Range;
+
 use granular_edmd::statistics::Estimate;
 
 use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
@@ -82,13 +84,12 @@ impl<E: Experiment> Study<E> {
     /// other code.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
-        if let Some(record) = self.known_record(ramp, value)? {
-            return Ok(Some(record));
+        if self.store.known().find(ramp, value).is_none() {
+            self.store.refreshed()?;
         }
-        match (self.store.refreshed()?.find(ramp, value), self.store.damage()) {
-            (Some(entry), _) => self.read(entry).map(Some),
+        match (self.known_record(ramp, value)?, self.store.damage()) {
             (None, Some(error)) => Err(error),
-            (None, None) => Ok(None),
+            (found, _) => Ok(found),
         }
     }
 
@@ -128,24 +129,23 @@ impl<E: Experiment> Study<E> {
 
     /// Iterates over all finished records, ramp by ramp, and reads them one by one.
     pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        self.records_of(0..self.plan.ramp_count())
+        self.records_of(Ok(0..self.plan.ramp_count()))
     }
 
     /// Iterates over all finished records of a ramp, and reads them one by one.
     ///
     /// If there is no such ramp, the only item is an error.
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        let missing = self.check_ramp(ramp).err();
-        let ramps = if missing.is_some() { 0..0 } else { ramp..ramp + 1 };
-        missing.into_iter().map(Err).chain(self.records_of(ramps))
+        self.records_of(self.check_ramp(ramp).map(|()| ramp..ramp + 1))
     }
 
     fn records_of(
         &self,
-        ramps: std::ops::Range<usize>,
+        ramps: Result<Range<usize>, StudyError>,
     ) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        let (entries, error) = match self.store.refreshed() {
-            Ok(entries) => (entries.of(ramps).copied().collect::<Vec<Entry>>(), None),
+        let found = ramps.and_then(|ramps| Ok(self.store.refreshed()?.of(ramps).copied().collect()));
+        let (entries, error): (Vec<Entry>, _) = match found {
+            Ok(entries) => (entries, None),
             Err(error) => (Vec::new(), Some(error)),
         };
         error.into_iter().map(Err).chain(entries.into_iter().map(|entry| self.read(&entry)))

@@ -6,17 +6,16 @@
 mod log;
 
 use std::collections::HashSet;
-use std::fs::{DirEntry, File, TryLockError};
+use std::fs::{DirEntry, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use granular_edmd::file::{Damage, Locked, Seal};
-use serde::Serialize;
+use granular_edmd::file::{Locked, Seal};
 use serde::de::DeserializeOwned;
 
 use super::StudyError;
-use super::folder::{decoded, encoded, files_in, open_lock};
+use super::folder::{decoded, files_in, try_lock};
 use super::parameters::anywhere;
 use log::{HEAD, Log, Piece, pieces, read_piece};
 
@@ -120,25 +119,20 @@ impl Store {
 
     /// Reads the contents of an entry.
     pub(super) fn read<T: DeserializeOwned>(&self, entry: &Entry) -> Result<T, StudyError> {
-        let contents = self.state().contents(entry)?.map_err(|_| "its checksum does not match");
+        let mut state = self.state();
+        let LogFile { path, file, .. } = &mut state.logs[entry.log as usize];
+        let opened = match file {
+            Some(file) => Ok(file),
+            none => File::open(&*path).map(|file| none.insert(file)),
+        };
+        let read = opened.and_then(|file| read_piece(file, entry)).map_err(StudyError::io("read", path))?;
+        drop(state);
+        let contents = read.map_err(|_| "its checksum does not match");
         contents.and_then(|contents| decoded(&contents)).map_err(|reason| self.damaged(entry, reason))
     }
 
-    /// Appends the record of a value to the log of this process.
-    pub(super) fn append<T: DeserializeOwned + Serialize>(
-        &self,
-        head: Head,
-        record: &impl Serialize,
-    ) -> Result<(), StudyError> {
-        self.push(head, &encoded::<T>(&self.folder, record)?)
-    }
-
-    /// Marks a value as unfinished.
-    pub(super) fn void(&self, ramp: usize, value: usize) -> Result<(), StudyError> {
-        self.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])
-    }
-
-    fn push(&self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
+    /// Appends the encoded record of a value to the log of this process.
+    pub(super) fn push(&self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
         let mut state = self.state();
         let before = state.entries.latest(head.ramp, head.value);
         let edition = before.map_or(0, |entry| entry.head().edition + 1);
@@ -161,15 +155,6 @@ impl Store {
 }
 
 impl State {
-    fn contents(&mut self, entry: &Entry) -> Result<Result<Vec<u8>, Damage>, StudyError> {
-        let LogFile { path, file, .. } = &mut self.logs[entry.log as usize];
-        let opened = match file {
-            Some(file) => Ok(file),
-            none => File::open(&*path).map(|file| none.insert(file)),
-        };
-        opened.and_then(|file| read_piece(file, entry)).map_err(StudyError::io("read", path))
-    }
-
     fn writer(&mut self, folder: &Path) -> Result<&mut Writer, StudyError> {
         match &mut self.writer {
             Some(writer) => Ok(writer),
@@ -188,14 +173,9 @@ impl Writer {
         let names =
             known.into_iter().chain((count..).map(|number| folder.join(format!("{number:04}.records"))));
         for path in names {
-            let lines = path.with_extension("jsonl");
-            match Locked::take(open_lock(&lines)?) {
-                Ok(lines) => {
-                    let log = Log::open(&path, SEAL).map_err(|error| failed("write", &path, error))?;
-                    return Ok(Self { path, log, lines, is_whole: false, at_risk: 0.0 });
-                }
-                Err(TryLockError::WouldBlock) => {}
-                Err(TryLockError::Error(source)) => return Err(StudyError::NoLock { path: lines, source }),
+            if let Some(lines) = try_lock(&path.with_extension("jsonl"))? {
+                let log = Log::open(&path, SEAL).map_err(|error| failed("write", &path, error))?;
+                return Ok(Self { path, log, lines, is_whole: false, at_risk: 0.0 });
             }
         }
         Err(StudyError::NoLock { path: folder.to_owned(), source: io::ErrorKind::WouldBlock.into() })
@@ -322,7 +302,7 @@ pub(super) struct Head {
 
 impl Head {
     /// The mark of a value that counts as unfinished.
-    const VOID: u16 = 1;
+    pub(super) const VOID: u16 = 1;
     /// The mark of the last value of its ramp.
     pub(super) const LAST: u16 = 2;
     /// The mark of a value that stalled, failed or reached a limit.

@@ -7,12 +7,11 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::{Fingerprint, RESULTS};
 
-use super::claims::Claims;
 use super::experiment::record::{Maker, Origin};
 use super::folder::{Folder, if_there, write};
 use super::parameters::{self, tree};
 use super::store::Store;
-use super::{Difference, Experiment, Plan, PlanError, StudyError};
+use super::{Difference, Experiment, Plan, StudyError};
 
 /// A [`Plan`] in a folder, with the records of its finished values.
 ///
@@ -22,16 +21,16 @@ use super::{Difference, Experiment, Plan, PlanError, StudyError};
 pub struct Study<E> {
     pub(super) folder: Folder,
     pub(super) store: Store,
-    pub(super) claims: Claims,
     pub(super) plan: Plan<E>,
     /// The text of the plan in its file.
     text: String,
     /// Hash of the plan, which ties a record to its study.
     hash: blake3::Hash,
-    /// The code that may continue the study, and the makers whose records the study accepts.
-    provenance: Option<Provenance>,
     /// The maker of this program's records.
     maker: Maker,
+    /// Keys of the makers whose records the study accepts, separated by blanks; empty before the check of the
+    /// code.
+    accepted: String,
 }
 
 impl<E: Experiment> Study<E> {
@@ -41,10 +40,10 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study or anything else, or cannot be written.
     pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
-        if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
+        if study.folder.holds_study() || !study.put_plan(true)? {
             return Err(StudyError::refused(study.folder(), "holds a study already"));
         }
-        Ok(Self { provenance: study.check_code()?, ..study })
+        study.checked()
     }
 
     /// Opens the study in a folder.
@@ -53,8 +52,7 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds no study or cannot be read, if the plan was changed or belongs to another
     /// experiment, or if other code made the study ([`StudyError::Code`]).
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
-        let study = Self::found_in(folder.as_ref())?;
-        Ok(Self { provenance: study.check_code()?, ..study })
+        Self::found_in(folder.as_ref())?.checked()
     }
 
     /// Opens the study in a folder, or creates a new one.
@@ -65,24 +63,24 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study with another plan, a study that other code made ([`StudyError::Code`]), or
     /// other files but no study, or if the folder cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
-        Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
+        Self::open_or_put(folder.as_ref(), plan.clone(), true)
     }
 
-    /// Opens the study in a folder. If there is none, checks the plan and writes it to the folder.
+    /// Opens the study in a folder. If there is none, writes the plan to the folder. Before, it checks the
+    /// experiments of a plan that is not yet proven.
     ///
     /// An existing plan is not checked again, since it was checked when it was written: the check takes
     /// seconds in large studies, and each of many processes would repeat it.
-    pub(super) fn open_or_put(
-        folder: &Path,
-        plan: Plan<E>,
-        check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>,
-    ) -> Result<Self, StudyError> {
+    pub(super) fn open_or_put(folder: &Path, plan: Plan<E>, is_proven: bool) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder)?, plan)?;
         if !study.folder.holds_study() || !study.folder.provenance().exists() {
-            study.put_plan(check)?;
+            study.put_plan(is_proven)?;
         }
-        study.check_plan()?;
-        Ok(Self { provenance: study.check_code()?, ..study })
+        study.checked()
+    }
+
+    fn checked(self) -> Result<Self, StudyError> {
+        Ok(Self { accepted: self.check_unchanged()?, ..self })
     }
 
     /// Allows this program to continue a study that other code made, and returns the differences between the
@@ -97,8 +95,10 @@ impl<E: Experiment> Study<E> {
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
         let before = study.read_provenance()?;
-        let accepted = before.as_ref().map_or_else(String::new, Provenance::keys);
-        let now = Provenance { accepted, ..study.ours() };
+        let mut now = study.provenance();
+        if let Some(before) = &before {
+            now.accepted = format!("{} {}", before.accepted, now.accepted);
+        }
         let differences = now.differences(before.as_ref());
         if !differences.is_empty() {
             let _lock = study.folder.lock()?;
@@ -128,29 +128,31 @@ impl<E: Experiment> Study<E> {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let (revision, columns) = (E::revision(), columns::<E>());
         let maker = Maker { version, results: RESULTS, revision, columns };
-        let (store, claims) = (Store::new(folder.root()), Claims::new(folder.root(), plan.ramp_count()));
-        Ok(Self { folder, store, claims, plan, text, hash, provenance: None, maker })
+        let store = Store::new(folder.root());
+        Ok(Self { folder, store, plan, text, hash, maker, accepted: String::new() })
     }
 
-    /// Writes the plan to the folder if the plan passes `check`. Returns false if the folder already has a
-    /// plan.
+    /// Writes the plan to the folder. Returns false if the folder already has a plan.
     ///
     /// The plan is checked under the lock: of the processes that start at the same time, one checks the plan,
     /// and the others wait.
-    fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
-        let _lock = self.folder.prepare()?;
+    fn put_plan(&self, is_proven: bool) -> Result<bool, StudyError> {
+        self.folder.check_free()?;
+        let _lock = self.folder.lock()?;
         let is_new = !self.folder.plan().exists();
         if is_new {
-            check(&self.plan)?;
+            if !is_proven {
+                self.plan.check_experiments()?;
+            }
             write(&self.folder.plan(), self.text.as_bytes())?;
         }
         // If a process is killed here, the folder has a plan but no provenance and no records.
-        self.folder.put(&self.ours().text())?;
+        self.folder.put(&self.provenance().text())?;
         Ok(is_new)
     }
 
     /// Returns the provenance that this program gives to a study.
-    fn ours(&self) -> Provenance {
+    pub(super) fn provenance(&self) -> Provenance {
         let (experiment, maker) = (&self.plan.parts.experiment, &self.maker);
         let program = std::env::current_exe().ok();
         let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
@@ -168,7 +170,7 @@ impl<E: Experiment> Study<E> {
             program: program.to_string_lossy().into_owned(),
             target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
             plan: self.hash.to_hex().to_string(),
-            accepted: String::new(),
+            accepted: maker.key(),
         }
     }
 
@@ -186,31 +188,21 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::foreign(&path))
     }
 
-    /// Returns the provenance of the folder, or an error if this program may not continue the study.
-    fn check_code(&self) -> Result<Option<Provenance>, StudyError> {
-        self.folder.check_format()?;
+    /// Checks that the folder has this plan, and that this program may continue the study. Returns the keys
+    /// of the makers whose records the study accepts.
+    pub(super) fn check_unchanged(&self) -> Result<String, StudyError> {
+        if self.folder.read_plan()? != self.text {
+            // Two files that differ may hold the same plan.
+            let found = Self::plan_in(&self.folder)?;
+            let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
+            StudyError::if_different(self.folder.root(), differences)?;
+        }
         let provenance = self.read_provenance()?;
-        let differences = self.ours().differences(provenance.as_ref());
+        let differences = self.provenance().differences(provenance.as_ref());
         if differences.is_empty() {
-            return Ok(provenance);
+            return Ok(provenance.map_or_else(String::new, |there| there.accepted));
         }
         Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
-    }
-
-    /// Checks that the plan and the code in the folder are unchanged.
-    pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
-        self.check_plan()?;
-        self.check_code().map(drop)
-    }
-
-    fn check_plan(&self) -> Result<(), StudyError> {
-        if self.folder.read_plan()? == self.text {
-            return Ok(());
-        }
-        // Two files that differ may hold the same plan.
-        let found = Self::plan_in(&self.folder)?;
-        let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
-        StudyError::if_different(self.folder.root(), differences)
     }
 
     /// Returns the folder of the study.
@@ -248,8 +240,7 @@ impl<E: Experiment> Study<E> {
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
             return Err(StudyError::damaged(path, "it is of another value"));
         }
-        let is_accepted = |code: &Provenance| code.keys().split(' ').any(|key| key == found.maker.key());
-        if self.is_ours(found) || self.provenance.as_ref().is_some_and(is_accepted) {
+        if self.is_ours(found) || self.accepted.split(' ').any(|key| key == found.maker.key()) {
             return Ok(());
         }
         Err(StudyError::changed(path, "revision"))
@@ -264,7 +255,7 @@ impl<E: Experiment> Study<E> {
 /// The file `provenance.json`: the code that may continue a study, which is the code that began the study or
 /// was accepted last, and the code that was accepted earlier.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-struct Provenance {
+pub(super) struct Provenance {
     results: String,
     revision: String,
     columns: String,
@@ -275,7 +266,7 @@ struct Provenance {
     target: String,
     /// Hash of the plan.
     plan: String,
-    /// Keys of the earlier makers that the study accepts, separated by blanks.
+    /// Keys of the makers whose records the study accepts, separated by blanks, the present one last.
     accepted: String,
 }
 
@@ -284,7 +275,7 @@ const DECIDING: [&str; 5] = ["results", "revision", "columns", "rule", "boundary
 
 impl Provenance {
     /// Returns the text of the file.
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         // Texts are always JSON.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
@@ -297,12 +288,6 @@ impl Provenance {
             Difference { field: name.to_owned(), old, new }
         });
         all.into_iter().filter(|field| field.old != field.new).collect()
-    }
-
-    /// Returns the keys of the present maker and of the earlier, accepted makers, separated by blanks.
-    fn keys(&self) -> String {
-        let Self { results, revision, columns, accepted, .. } = self;
-        format!("{accepted} {results}:{revision}:{columns}").trim_start().to_owned()
     }
 }
 

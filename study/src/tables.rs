@@ -18,7 +18,7 @@ use super::{Experiment, Plan, Record, Study, StudyError};
 impl<E: Experiment> Study<E> {
     /// Returns whether the folder has tables of all values.
     pub fn has_tables(&self) -> bool {
-        self.folder.is_complete() && files(&self.plan, self.folder()).all(|file| file.exists())
+        self.folder.complete().exists() && files(&self.plan, self.folder()).all(|file| file.exists())
     }
 
     /// Writes the tables of all finished records into the folder of the study, and returns the number of
@@ -31,6 +31,7 @@ impl<E: Experiment> Study<E> {
     /// If a record is damaged or missing, or a file cannot be read or written.
     pub fn write_tables(&self) -> Result<usize, StudyError> {
         let _lock = self.folder.lock()?;
+        self.folder.put(&self.provenance().text())?;
         self.tables(self.folder())
     }
 
@@ -66,7 +67,7 @@ impl<E: Experiment> Study<E> {
             }
             // In a complete or damaged study, a missing record is an error: a table that lacks a row must not
             // look complete.
-            if !entries.is_done(ramp) && (self.folder.is_complete() || self.store.damage().is_some()) {
+            if !entries.is_done(ramp) && (self.folder.complete().exists() || self.store.damage().is_some()) {
                 let missing =
                     || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
                 return Err(self.store.damage().unwrap_or_else(missing));
@@ -117,11 +118,6 @@ impl Rows {
     fn push(&mut self, first: &str, cells: impl IntoIterator<Item = Scalar>) -> Result<(), StudyError> {
         let row = row(first, cells) + "\n";
         self.draft.write_all(row.as_bytes()).map_err(StudyError::io("write", &self.path))
-    }
-
-    /// Renames the finished table to its final name.
-    fn finish(self) -> Result<(), StudyError> {
-        self.draft.finish().map_err(StudyError::io("write", &self.path))
     }
 }
 
@@ -313,7 +309,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     fn finish(self) -> Result<(), StudyError> {
         let own = self.more.into_iter().map(|(_, rows)| rows);
         let all = [self.values, self.samples, self.points, self.described].into_iter();
-        all.chain(self.transitions).chain(own).try_for_each(Rows::finish)
+        let mut all = all.chain(self.transitions).chain(own);
+        all.try_for_each(|Rows { path, draft }| draft.finish().map_err(StudyError::io("write", &path)))
     }
 }
 

@@ -13,6 +13,7 @@ pub use sample::{Measurement, Sample};
 
 use std::sync::LazyLock;
 
+use super::analysis::StateCriteria;
 use super::experiment::columns::{Meanings, meanings};
 use super::{Column, Experiment, ExperimentError, Record, Table};
 use granular_edmd::boundary::{Container, Wall};
@@ -241,17 +242,49 @@ impl Experiment for VibratedBox {
         &MEANINGS
     }
 
+    /// No column has the name of a parameter, since the parameter could then not vary.
     fn columns() -> Vec<Column<Self>> {
-        sample::columns()
+        vec![
+            Column::of_record("state", "", |record| Self::state(record).unwrap_or_default()),
+            Column::sampled("one_roll", "velocity", |s: &Sample| s.one_roll),
+            Column::averaged("one_roll_magnitude", "velocity", |s: &Sample| s.one_roll.abs()),
+            Column::sampled("two_rolls", "velocity", |s: &Sample| s.two_rolls),
+            Column::sampled("center_of_mass_height", "diameter", |s: &Sample| s.height),
+            Column::sampled("translational_energy", "energy", |s: &Sample| s.translational_energy),
+            Column::sampled("rotational_energy", "energy", |s: &Sample| s.rotational_energy),
+            Column::sampled("vertical_temperature", "energy", |s: &Sample| s.vertical_temperature),
+            Column::of_sample("collisions", "1", |s: &Sample| s.collisions),
+            Column::of_sample("energy_change", "energy", Sample::known_change),
+            Column::estimated("energy_change", "energy", Record::energy_change),
+            Column::of_record("thermal_noise", "velocity", Record::thermal_noise),
+            Column::of_record("densest_packing", "1", |record| {
+                record.densest_layer().map_or(f64::NAN, |layer| layer.packing_fraction)
+            }),
+            Column::of_record("densest_height", "diameter", |record| {
+                record.densest_layer().map_or(f64::NAN, |layer| layer.height)
+            }),
+            Column::of_record("collisions", "1", |record| record.counters().disk_collisions),
+            Column::of_record("wall_collisions", "1", |record| record.counters().wall_collisions),
+            Column::of_record("contact_duration_collisions", "1", |record| {
+                record.counters().contact_duration_collisions
+            }),
+            Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap),
+            Column::of_record("warnings", "1", |record| record.counters().warnings().len() as f64),
+        ]
     }
 
     fn tables() -> Vec<Table<Self>> {
-        sample::tables()
+        vec![Table::new("profiles", [("layer_height", "diameter"), ("packing_fraction", "1")], |record| {
+            record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
+        })]
     }
 
     /// Returns the name of the convective regime; `None` without samples.
     fn state(record: &Record<Self>) -> Option<String> {
-        sample::regime(record)
+        let (noise, layer) = (record.thermal_noise(), record.densest_layer());
+        let criteria = StateCriteria::default().with_base_speed(record.experiment().base.speed());
+        let found = criteria.and_then(|criteria| criteria.classify(&record.order(), noise, layer));
+        found.ok().map(|found| found.regime().to_string())
     }
 
     /// Returns false for parameters that cannot change along a ramp: the size and the sides of the box, the

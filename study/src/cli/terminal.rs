@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 use super::Failure;
 use crate::{Progress, StudyError};
@@ -70,7 +70,7 @@ pub(super) fn end_at_once(file: Option<PathBuf>) -> Result<(), ctrlc::Error> {
     })
 }
 
-/// Display of a running study.
+/// Display of a running study. It is cleared when it is dropped.
 pub(super) struct Watch {
     /// The bar, if there is a terminal.
     bar: Option<ProgressBar>,
@@ -84,7 +84,8 @@ impl Watch {
             ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent}% {per_sec}, {eta} left");
         // The template is valid.
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = io::stderr().is_terminal().then(|| ProgressBar::new(0).with_style(style));
+        let bar = || ProgressBar::new(0).with_style(style).with_finish(ProgressFinish::AndClear);
+        let bar = io::stderr().is_terminal().then(bar);
         Self { bar, shown: Mutex::new(Instant::now()) }
     }
 
@@ -109,11 +110,5 @@ impl Watch {
         let percent = 100.0 * progress.done as f64 / progress.total.max(1) as f64;
         let line = format!("{percent:.1} % ({} of {} steps)", progress.done, progress.total);
         let _ = writeln!(io::stderr(), "{line}");
-    }
-
-    pub(super) fn end(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
     }
 }

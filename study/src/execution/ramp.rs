@@ -5,10 +5,12 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
+use granular_edmd::simulation::Warning;
+
 use super::session::{LOOK, Session};
 use super::value::{Active, Partial, Value};
 use crate::experiment::record::{Contents, Outcome, Record};
-use crate::folder::{create, read_sealed, remove, write_sealed};
+use crate::folder::{create, encoded, read_sealed, remove, write_sealed};
 use crate::plan::ramp::{Seen, Step};
 use crate::store::{Entries, Head};
 use crate::{Experiment, Plan, Study, StudyError};
@@ -27,8 +29,6 @@ struct Walk<'a, 's, E: Experiment> {
     earlier: Vec<(&'a Study<E>, usize)>,
     seen: Vec<Seen>,
     last: Option<Record<E>>,
-    /// True if the next value has a file with its unfinished state.
-    has_partial: bool,
 }
 
 /// Runs the ramps of a block until they are done or the run must stop. Returns false if another process is
@@ -38,10 +38,10 @@ pub(super) fn attempt<E: Experiment>(
     ramps: &Range<usize>,
 ) -> Result<bool, StudyError> {
     let study = session.study;
-    let claim = study.claims.claim(ramps.start)?;
+    let claim = session.claims.claim(ramps.start)?;
     // A single ramp of a larger block can run without a claim: a caller that runs a single ramp assigns each
     // ramp to one process.
-    if claim.is_none() && !(session.ramps.len() == 1 && study.claims.is_shared()) {
+    if claim.is_none() && !(session.ramps.len() == 1 && session.claims.is_shared()) {
         return Ok(false);
     }
     // Other processes may have finished some of the ramps before this process got the claim.
@@ -58,8 +58,7 @@ pub(super) fn attempt<E: Experiment>(
             continue;
         }
         let earlier = session.earlier_ramps(study.plan().ramp_seed(ramp));
-        let (entries, seen, last) = (&entries, Vec::new(), None);
-        let mut walk = Walk { session, ramp, entries, earlier, seen, last, has_partial: false };
+        let mut walk = Walk { session, ramp, entries: &entries, earlier, seen: Vec::new(), last: None };
         while let Some(step) = study.plan().next(&walk.seen) {
             if !walk.take(step)? {
                 break;
@@ -73,7 +72,6 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Runs one value; returns false if it was interrupted.
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
-        self.has_partial = false;
         if value >= study.plan.value_count() {
             self.session.count_more();
         }
@@ -121,7 +119,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
             let record = work.taken_over(record);
-            let warnings: Vec<_> = record.counters().warnings().iter().map(ToString::to_string).collect();
+            let warnings = record.counters().warnings();
             return self.keep(record, &warnings, None);
         }
         let mut active = match self.saved(&work)? {
@@ -130,8 +128,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         };
         self.advance(active.steps());
         let Some(outcome) = self.steps(&mut active)? else { return Ok(false) };
-        let warnings = active.warnings();
-        self.keep(active.record(outcome)?, &warnings, Some(started.elapsed()))
+        let (record, warnings) = active.record(outcome)?;
+        self.keep(record, &warnings, Some(started.elapsed()))
     }
 
     /// Returns an earlier study's record of the next value, or `None` if no earlier study has a suitable one.
@@ -156,12 +154,10 @@ impl<E: Experiment> Walk<'_, '_, E> {
     }
 
     /// Returns the saved data of an unfinished value, or `None` if there are none.
-    fn saved<'v>(&mut self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
+    fn saved<'v>(&self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
         let (study, index) = (self.session.study, self.seen.len());
         let path = study.folder.partial(self.ramp, index);
-        let read = read_sealed::<Partial<E>>(&path);
-        self.has_partial = !matches!(read, Ok(None));
-        let read = read.and_then(|partial| {
+        let read = read_sealed::<Partial<E>>(&path).and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
             study.check_origin(&partial.0.origin, self.ramp, index, &path)?;
             value.go_on(partial, &path).map(Some)
@@ -171,7 +167,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
 
     /// Runs the steps of a value until the value is finished, and saves the value at intervals. Returns
     /// `None` if it was interrupted.
-    fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Option<Outcome>, StudyError> {
+    fn steps(&self, active: &mut Active<'_, E>) -> Result<Option<Outcome>, StudyError> {
         let control = self.session.control;
         let (began, mut saved) = (Instant::now(), Instant::now());
         while !active.is_done() {
@@ -183,7 +179,6 @@ impl<E: Experiment> Walk<'_, '_, E> {
                 self.save(active)?;
                 saved = Instant::now();
             }
-            let rest = self.session.study.plan.protocol().steps() - active.steps();
             let until_save = control.save_interval.saturating_sub(saved.elapsed());
             let ended = match control.most_seconds.filter(|most| began.elapsed().as_secs_f64() > *most) {
                 Some(most) => Err(active.limited(format!("it has taken more than {most} s"))),
@@ -193,7 +188,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
                 Ok(true) => self.advance(1),
                 Ok(false) => {}
                 Err(outcome) => {
-                    self.advance(rest);
+                    self.advance(self.session.study.plan.protocol().steps() - active.steps());
                     return Ok(Some(outcome));
                 }
             }
@@ -201,8 +196,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(Some(Outcome::Completed))
     }
 
-    fn save(&mut self, active: &Active<'_, E>) -> Result<(), StudyError> {
-        self.has_partial = true;
+    fn save(&self, active: &Active<'_, E>) -> Result<(), StudyError> {
         let folder = &self.session.study.folder;
         let path = folder.partial(self.ramp, self.seen.len());
         let partial = active
@@ -217,14 +211,14 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn keep(
         &mut self,
         record: Record<E>,
-        warnings: &[String],
+        warnings: &[Warning],
         time: Option<Duration>,
     ) -> Result<bool, StudyError> {
         let study = self.session.study;
         self.seen.push(study.plan.seen(&record));
         // The tables may lack this value, and later ones of the run.
         if !self.session.is_opened.swap(true, Ordering::Relaxed) {
-            study.folder.mark_incomplete()?;
+            remove(&study.folder.complete())?;
         }
         let marks = [
             (Head::LAST, study.plan.next(&self.seen).is_none()),
@@ -238,7 +232,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
             value: record.value_index(),
             outcome: record.outcome().name(),
             reason: record.outcome().reason(),
-            warnings: &warnings.join("; "),
+            warnings: &warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
             collisions: record.counters().disk_collisions,
             taken_over: time.is_none(),
             seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),
@@ -247,11 +241,10 @@ impl<E: Experiment> Walk<'_, '_, E> {
         // Numbers and texts are always JSON.
         let line = serde_json::to_string(&line).unwrap_or_default();
         let head = Head::new(self.ramp, record.value_index(), marks, seconds);
-        study.store.append::<Contents<E::Sample, E::Observer>>(head, &record.contents)?;
+        let contents = encoded::<Contents<E::Sample, E::Observer>>(study.folder(), &record.contents)?;
+        study.store.push(head, &contents)?;
         study.store.note(&line)?;
-        if self.has_partial {
-            remove(&study.folder.partial(self.ramp, record.value_index()))?;
-        }
+        remove(&study.folder.partial(self.ramp, record.value_index()))?;
         self.last = Some(record);
         Ok(true)
     }

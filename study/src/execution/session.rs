@@ -1,18 +1,27 @@
-//! One run of a study: its blocks of ramps, for all threads, and the data that they share.
+//! One run of a study: its blocks of ramps, for all threads and processes, and the data that they share. The
+//! locks of a limited number of files decide which process runs which blocks.
 
 use std::collections::{BTreeSet, HashMap, VecDeque};
+use std::fs::{File, TryLockError};
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use granular_edmd::file::Locked;
 use serde_json::json;
 
 use super::{Control, Progress, Summary};
+use crate::folder::{files_in, try_lock};
 use crate::parameters::{self, anywhere};
 use crate::store::{Entry, Head};
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
+
+/// Largest number of blocks of ramps, each with its lock file. A process claims whole blocks. With 64
+/// processes, a few percent of the time is lost at the end, when some processes have a block left and the
+/// others none. The folder of a study stays below a thousand files.
+const BLOCKS: usize = 960;
 
 /// Longest time between two checks in which a thread looks for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
@@ -23,6 +32,7 @@ pub(super) struct Session<'a, E: Experiment> {
     pub(super) control: &'a Control<'a>,
     /// Earlier studies, each with the indices of its ramps by seed.
     earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
+    pub(super) claims: Claims,
     blocks: Mutex<Blocks>,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
@@ -44,9 +54,10 @@ impl<'a, E: Experiment> Session<'a, E> {
         control: &'a Control<'a>,
         ramps: Range<usize>,
     ) -> Result<Self, StudyError> {
+        let claims = Claims::new(study.folder(), study.plan.ramp_count());
         let waiting = match ramps.len() {
             1 => VecDeque::from([ramps.clone()]),
-            _ => begun_anywhere(study.claims.blocks().collect()),
+            _ => begun_anywhere(claims.blocks().collect()),
         };
         let open = |folder: &PathBuf| {
             let earlier = Study::open(folder)?;
@@ -61,6 +72,7 @@ impl<'a, E: Experiment> Session<'a, E> {
             study,
             control,
             earlier: control.earlier.iter().map(open).collect::<Result<_, StudyError>>()?,
+            claims,
             blocks: Mutex::new(Blocks { waiting, elsewhere: VecDeque::new() }),
             ramps,
             steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
@@ -193,6 +205,56 @@ fn begun_anywhere(mut blocks: VecDeque<Range<usize>>) -> VecDeque<Range<usize>> 
     blocks
 }
 
+/// The lock files of the blocks.
+#[derive(Debug, Clone)]
+pub(crate) struct Claims {
+    folder: PathBuf,
+    /// Number of all ramps.
+    ramps: usize,
+    /// Number of ramps in a block.
+    size: usize,
+}
+
+impl Claims {
+    pub(crate) fn new(root: &Path, ramps: usize) -> Self {
+        Self { folder: root.join("locks"), ramps, size: ramps.div_ceil(BLOCKS).max(1) }
+    }
+
+    /// Returns the blocks into which the ramps are divided.
+    pub(crate) fn blocks(&self) -> impl Iterator<Item = Range<usize>> {
+        (0..self.ramps.div_ceil(self.size)).map(|block| self.block(block))
+    }
+
+    fn block(&self, block: usize) -> Range<usize> {
+        block * self.size..self.ramps.min((block + 1) * self.size)
+    }
+
+    /// Returns whether a block has several ramps, so that its lock may be held for another ramp.
+    pub(crate) const fn is_shared(&self) -> bool {
+        self.size > 1
+    }
+
+    /// Claims the block of a ramp, or returns `None` if another process has it.
+    pub(crate) fn claim(&self, ramp: usize) -> Result<Option<Locked>, StudyError> {
+        try_lock(&self.folder.join(format!("{:04}", ramp / self.size)))
+    }
+
+    /// Returns the blocks of ramps that processes are running.
+    pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
+        let taken = files_in(&self.folder)?.into_iter().filter(|file| is_taken(&file.path()));
+        let numbers = taken.filter_map(|file| file.file_name().to_str()?.parse().ok());
+        Ok(numbers.filter(|block| *block < BLOCKS).map(|block| self.block(block)).collect())
+    }
+}
+
+/// Returns whether a process holds the lock on a file.
+fn is_taken(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let locked = file.try_lock_shared();
+    let _ = file.unlock();
+    matches!(locked, Err(TryLockError::WouldBlock))
+}
+
 /// Returns the fields in which two plans differ, except for fields that may differ in a larger study.
 fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Difference>, PlanError> {
     const FREE: [&str; 7] =
@@ -215,4 +277,25 @@ fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Differ
         all.push(Difference { field, old: Some(old), new: Some(new) });
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_is_seen_by_others_until_it_ends() {
+        let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
+        let claims = Claims::new(&root, 9_997);
+        let all: Vec<Range<usize>> = claims.blocks().collect();
+        assert_eq!((all.len(), &all[1], all.last()), (909, &(11..22), Some(&(9988..9_997))));
+        let claim = claims.claim(11).unwrap().unwrap();
+        assert!(claims.claim(17).unwrap().is_none());
+        assert!(claims.claim(22).unwrap().is_some());
+        assert_eq!(claims.taken().unwrap(), vec![Range { start: 11, end: 22 }]);
+        drop(claim);
+        assert_eq!(claims.taken().unwrap(), []);
+        assert!(claims.claim(17).unwrap().is_some());
+        std::fs::remove_dir_all(&root).unwrap();
+    }
 }

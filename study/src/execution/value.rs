@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use granular_edmd::Simulation;
-use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
+use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError, Warning};
 
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
@@ -218,11 +218,6 @@ impl<E: Experiment> Study<E> {
 }
 
 impl<E: Experiment> Active<'_, E> {
-    /// Returns the warnings of the simulation.
-    pub(super) fn warnings(&self) -> Vec<String> {
-        self.run.warnings().iter().map(ToString::to_string).collect()
-    }
-
     /// Returns the number of finished steps.
     pub(super) const fn steps(&self) -> u64 {
         self.work.steps
@@ -276,16 +271,20 @@ impl<E: Experiment> Active<'_, E> {
     /// Runs the next step to its end, and takes its sample on the way if the step has one.
     fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
+        let done = self.run.counters().since(&self.work.counters).collisions();
+        let left = protocol.most_collisions.unwrap_or(u64::MAX).saturating_sub(done);
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
-        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end]
-            .map(|cycles| self.limits(self.work.start.time(cycles, cycle), slice));
+        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end].map(|cycles| {
+            let end = self.work.start.time(cycles, cycle);
+            Limits::until(end).with_wall_clock(slice).with_most_collisions(left)
+        });
         let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
             &mut self.work;
-        if protocol.step(*steps).sample.is_none() {
+        let Some(sample) = protocol.step(*steps).sample else {
             return sliced::run(&mut self.run, &to_end, &mut self.riders, &mut (), is_under_way);
-        }
+        };
         // A slice may have ended between the sample and the end of the step.
-        if samples.len() as u64 == protocol.samples_of(*steps) {
+        if samples.len() as u64 == sample {
             let ended = sliced::run(&mut self.run, &to_sample, &mut self.riders, observer, is_under_way)?;
             if ended != RunEnd::Time {
                 return Ok(ended);
@@ -297,22 +296,15 @@ impl<E: Experiment> Active<'_, E> {
         sliced::run(&mut self.run, &to_end, &mut self.riders, observer, is_under_way)
     }
 
-    /// Returns the limits of one part of the value's run.
-    fn limits(&self, end: f64, slice: Duration) -> Limits<'static> {
-        let limits = Limits::until(end).with_wall_clock(slice);
-        let Some(most) = self.value.study.plan.protocol().most_collisions else { return limits };
-        let done = self.run.counters().since(&self.work.counters).collisions();
-        limits.with_most_collisions(most.saturating_sub(done))
-    }
-
     /// Returns the data from which the unfinished value can continue later.
     pub(super) fn partial(&self) -> Result<Saved<&WorkOf<E>>, ExperimentError> {
         Ok((&self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
-    /// Returns the record of the value after its last step. If the value stalled, failed or reached a limit,
-    /// the record holds the state in which the value started, and the next value starts from this state.
-    pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
+    /// Returns the record of the value after its last step, and the warnings of the simulation. If the value
+    /// stalled, failed or reached a limit, the record holds the state in which the value started, and the
+    /// next value starts from this state.
+    pub(super) fn record(self, outcome: Outcome) -> Result<(Record<E>, Vec<Warning>), StudyError> {
         let Self { value, work, run, riders } = self;
         let (start, cycles) = (work.start, value.study.plan.protocol().cycles());
         let (end, state) = match outcome {
@@ -336,7 +328,7 @@ impl<E: Experiment> Active<'_, E> {
             driving: driving.filter(|_| state.is_some()),
             state,
         };
-        Ok(Record { experiment: value.experiment.clone(), contents })
+        Ok((Record { experiment: value.experiment.clone(), contents }, run.warnings()))
     }
 }
 
@@ -344,10 +336,10 @@ impl<S, O> Work<S, O> {
     /// Checks that the work so far fits the protocol.
     fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
         check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
-        let (samples, next) = (protocol.samples_of(self.steps), protocol.samples_of(self.steps + 1));
-        let found = self.measured.samples.len() as u64;
+        let (left, found) = (protocol.steps() - self.steps, self.measured.samples.len() as u64);
+        let samples = protocol.samples().saturating_sub(left);
         // The sample of an unfinished step may have been taken already.
-        let is_taken = found == next && self.steps < protocol.steps();
+        let is_taken = found == samples + 1 && (1..=protocol.samples()).contains(&left);
         check(found == samples || is_taken, "its samples are not as many as its steps")
     }
 }

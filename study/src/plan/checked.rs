@@ -134,7 +134,9 @@ impl<E: Experiment> Plan<E> {
         for (axis, name) in self.parts.sweep.iter_mut().zip(&self.varied) {
             let Some(first) = axis.value(0) else { continue };
             let kind = probe::<E>(&self.tree, axis.parameter(), name, &first)?;
-            axis.set_kind(&kind)?;
+            // Equal plans have equal files. Values that differ may become the same value of this type.
+            axis.values.set_kind(&kind);
+            axis.check()?;
             let _ = parameters::set(&mut self.tree, name, &kind);
         }
         if let (Some(ramp), Some(name)) = (&self.parts.ramp, self.varied.last())
@@ -213,14 +215,14 @@ fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let names = OF_TABLES.iter().map(|(name, _)| *name);
     let of_all: Vec<&str> = names.filter(|name| !OF_SOME.contains(name)).collect();
     let taken = [of_all.as_slice(), varied].concat();
-    let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
-        columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
-    };
-    check_each("column", &of(|column| column.in_samples), &[taken.as_slice(), &["time"]].concat())?;
-    let with_errors = columns.iter().filter(|column| column.in_values && column.has_error());
+    let in_samples = columns.iter().filter(|column| column.in_samples).map(Column::name);
+    check_each("column", &in_samples.collect::<Vec<_>>(), &[taken.as_slice(), &["time"]].concat())?;
+    let in_values = columns.iter().filter(|column| column.in_values);
+    let with_errors = in_values.clone().filter(|column| column.has_error());
     let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
     let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
-    check_each("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
+    let in_values: Vec<&str> = in_values.map(Column::name).collect();
+    check_each("column", &in_values, &[taken.as_slice(), &errors].concat())?;
     let all = [of_all.as_slice(), &["time"], &errors].concat();
     if let Some(name) = varied.iter().find(|name| all.contains(name)) {
         return Err(refused("varied parameter", name, "a column of the tables has it"));

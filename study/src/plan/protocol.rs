@@ -127,11 +127,6 @@ impl Protocol {
         }
     }
 
-    /// Returns the number of samples in `steps` steps.
-    pub(crate) const fn samples_of(&self, steps: u64) -> u64 {
-        steps.saturating_sub(self.settling_steps())
-    }
-
     /// Returns the step that follows this number of finished steps. If the value is finished, returns its
     /// last step.
     pub(crate) fn step(&self, finished: u64) -> Interval {

@@ -142,7 +142,7 @@ impl Ramp {
 
     fn value(&self, index: usize) -> f64 {
         // The values were checked to be numbers when the ramp was made.
-        self.values.at(index).number().unwrap_or(f64::NAN)
+        self.values.at(index).and_then(|value| value.number()).unwrap_or(f64::NAN)
     }
 
     /// Returns the number of values that the ramp comes to.

@@ -49,7 +49,10 @@ pub struct Axis {
 }
 
 from_file! {
-    Axis { parameter: String, values: Values } => Self { parameter, values }.checked(), PlanError
+    Axis { parameter: String, values: Values } => {
+        let axis = Self { parameter, values };
+        axis.check().map(|()| axis)
+    }, PlanError
 }
 
 #[expect(clippy::len_without_is_empty, reason = "an axis has at least one value")]
@@ -62,15 +65,13 @@ impl Axis {
         parameter: impl Into<String>,
         values: impl IntoIterator<Item: Into<Scalar>>,
     ) -> Result<Self, PlanError> {
-        Self { parameter: parameter.into(), values: Values::list(values) }.checked()
+        let axis = Self { parameter: parameter.into(), values: Values::list(values) };
+        axis.check().map(|()| axis)
     }
 
-    fn checked(self) -> Result<Self, PlanError> {
+    /// Checks that there are values, that they are finite, and that they differ.
+    pub(super) fn check(&self) -> Result<(), PlanError> {
         self.values.check(&self.parameter)?;
-        self.check_twice().map(|()| self)
-    }
-
-    fn check_twice(&self) -> Result<(), PlanError> {
         let Some(value) = self.values.twice() else { return Ok(()) };
         let reason =
             format!("takes the value {value} twice; for several runs of each value give the plan repeats");
@@ -89,14 +90,7 @@ impl Axis {
 
     /// Returns the value with this index, or `None` beyond the last value.
     pub fn value(&self, index: usize) -> Option<Scalar> {
-        (index < self.len()).then(|| self.values.at(index))
-    }
-
-    /// Converts the values of a list to the type of the parameter, so that equal plans have equal files.
-    /// Values that differ may become the same value of this type, which is an error.
-    pub(super) fn set_kind(&mut self, kind: &Scalar) -> Result<(), PlanError> {
-        self.values.set_kind(kind);
-        self.check_twice()
+        self.values.at(index)
     }
 }
 
@@ -150,11 +144,11 @@ impl Values {
         }
     }
 
-    /// Returns the value of an index below the number of values.
-    pub(super) fn at(&self, index: usize) -> Scalar {
+    /// Returns the value with this index, or `None` beyond the last value.
+    pub(super) fn at(&self, index: usize) -> Option<Scalar> {
         match self {
-            Self::List(list) => list[index].clone(),
-            Self::Rule(steps) => steps.value(index).into(),
+            Self::List(list) => list.get(index).cloned(),
+            Self::Rule(steps) => (index < steps.count).then(|| steps.value(index).into()),
         }
     }
 
@@ -170,7 +164,7 @@ impl Values {
     /// Returns the indices of the values that are checked. They include the smallest and the largest value,
     /// wherever these are in a list, since an experiment usually accepts a range.
     pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
-        let number = |index: &usize| self.at(*index).number().unwrap_or(0.0);
+        let number = |index: &usize| self.at(*index).and_then(|value| value.number()).unwrap_or(0.0);
         let order = |one: &usize, other: &usize| number(one).total_cmp(&number(other));
         let all = if matches!(self, Self::List(_)) { 0..self.len() } else { 0..0 };
         let extremes = [all.clone().min_by(order), all.max_by(order)];

@@ -1,4 +1,4 @@
-//! Measurements of the box, and the columns of its tables.
+//! Measurements of the box.
 
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, Collision, ConvectionOrder, DenseLayer, Energies, EnergyChange, HeightProfile,
@@ -7,9 +7,9 @@ use granular_edmd::observable::{
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
 use super::VibratedBox;
-use crate::analysis::{StateCriteria, thermal_noise};
+use crate::Record;
+use crate::analysis::thermal_noise;
 use crate::experiment::record;
-use crate::{Column, Record, Table};
 
 /// Largest number of bins of a profile. A bin is one diameter high.
 const MOST_BINS: usize = 65_536;
@@ -42,7 +42,7 @@ pub struct Sample {
 
 impl Sample {
     /// Returns the mean energy change, NaN without collisions.
-    const fn known_change(&self) -> f64 {
+    pub(super) const fn known_change(&self) -> f64 {
         if self.collisions == 0 { f64::NAN } else { self.energy_change }
     }
 }
@@ -174,51 +174,4 @@ impl Record<VibratedBox> {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean();
         thermal_noise(temperature, 1.0, self.experiment().disks).unwrap_or(f64::NAN)
     }
-}
-
-/// Returns the name of the convective regime; `None` without samples.
-pub(super) fn regime(record: &Record<VibratedBox>) -> Option<String> {
-    let (noise, layer) = (record.thermal_noise(), record.densest_layer());
-    let criteria = StateCriteria::default().with_base_speed(record.experiment().base.speed());
-    let found = criteria.and_then(|criteria| criteria.classify(&record.order(), noise, layer));
-    found.ok().map(|found| found.regime().to_string())
-}
-
-/// Returns the columns of the tables of values and samples. No column has the name of a parameter, since the
-/// parameter could then not vary.
-pub(super) fn columns() -> Vec<Column<VibratedBox>> {
-    vec![
-        Column::of_record("state", "", |record| regime(record).unwrap_or_default()),
-        Column::sampled("one_roll", "velocity", |s: &Sample| s.one_roll),
-        Column::averaged("one_roll_magnitude", "velocity", |s: &Sample| s.one_roll.abs()),
-        Column::sampled("two_rolls", "velocity", |s: &Sample| s.two_rolls),
-        Column::sampled("center_of_mass_height", "diameter", |s: &Sample| s.height),
-        Column::sampled("translational_energy", "energy", |s: &Sample| s.translational_energy),
-        Column::sampled("rotational_energy", "energy", |s: &Sample| s.rotational_energy),
-        Column::sampled("vertical_temperature", "energy", |s: &Sample| s.vertical_temperature),
-        Column::of_sample("collisions", "1", |s: &Sample| s.collisions),
-        Column::of_sample("energy_change", "energy", Sample::known_change),
-        Column::estimated("energy_change", "energy", Record::energy_change),
-        Column::of_record("thermal_noise", "velocity", Record::thermal_noise),
-        Column::of_record("densest_packing", "1", |record| {
-            record.densest_layer().map_or(f64::NAN, |layer| layer.packing_fraction)
-        }),
-        Column::of_record("densest_height", "diameter", |record| {
-            record.densest_layer().map_or(f64::NAN, |layer| layer.height)
-        }),
-        Column::of_record("collisions", "1", |record| record.counters().disk_collisions),
-        Column::of_record("wall_collisions", "1", |record| record.counters().wall_collisions),
-        Column::of_record("contact_duration_collisions", "1", |record| {
-            record.counters().contact_duration_collisions
-        }),
-        Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap),
-        Column::of_record("warnings", "1", |record| record.counters().warnings().len() as f64),
-    ]
-}
-
-/// Returns the table of profiles.
-pub(super) fn tables() -> Vec<Table<VibratedBox>> {
-    vec![Table::new("profiles", [("layer_height", "diameter"), ("packing_fraction", "1")], |record| {
-        record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
-    })]
 }

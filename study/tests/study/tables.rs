@@ -102,7 +102,7 @@ fn repeats_have_seeds_of_their_own_and_are_told_together() -> Result<(), AnyErro
 /// Samples and repeats without collisions have no energy change, and one alone has no error.
 #[test]
 fn an_energy_change_comes_from_collisions() -> Result<(), AnyError> {
-    let base = Base::Thermal { temperature: 2.0 };
+    let base = Base::Thermal { temperature: 2.0, slip: false };
     let experiment =
         VibratedBox::new(2, 8.0, base).with_height(9.0).with_gravity(0.05).with_inelasticity(0.1);
     let plan = Plan::new(experiment, Protocol::new(0, 3, 3)?, 9)?.with_repeats(6)?;
