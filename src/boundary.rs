@@ -254,8 +254,8 @@ pub trait Boundary {
         Cow::Owned(format!("wall {wall}"))
     }
 
-    /// Returns a point that moves with a wall, at its position at `time`, or `None` if the boundary knows no
-    /// such point.
+    /// Returns a point of a wall, at its position at `time`, or `None` if the boundary knows no such point.
+    /// It moves with the wall; a circle that turns about its center does not move.
     ///
     /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
     /// The default is `None`.

@@ -17,8 +17,8 @@ use crate::{Fingerprint, ParameterError};
 /// the more often disks collide. [`LeastRebound`](super::LeastRebound) bounds the number of collisions. The
 /// page `docs/rest.md` of the repository compares the remedies.
 ///
-/// Collisions with $`v_c \le v_n < v_c/r_n`$ lose less, too, but keep the regime of the inner rule. In a gas of
-/// temperature $`T`$, with a constant $`r_n`$ and $`x = m v_c^2/4T`$, the remedy removes this share of the
+/// Collisions with $`v_c \le v_n < v_c/r_n`$ lose less, too, but keep the regime of the inner rule. In a gas
+/// of temperature $`T`$, with a constant $`r_n`$ and $`x = m v_c^2/4T`$, the remedy removes this share of the
 /// normal dissipation:
 ///
 /// ```math

@@ -13,8 +13,8 @@ pub enum TangentialResponse {
     /// No tangential impulse: the contact is elastic and frictionless.
     #[default]
     Frictionless,
-    /// The tangential impulse of the rule: only the normal direction becomes elastic. Friction then keeps
-    /// cooling matter at rest, so runs still stall.
+    /// The tangential impulse and the couple of the rule: only the normal direction becomes elastic. Friction
+    /// then keeps cooling matter at rest, so runs still stall.
     Unchanged,
     /// The slip reverses without loss, as between perfectly rough surfaces. The slip is then zero on average,
     /// so surfaces at rest hold each other, however weak the friction of the rule is.
@@ -24,12 +24,13 @@ pub enum TangentialResponse {
 impl TangentialResponse {
     /// Returns the impulse of an elastic contact, in place of the impulse of `rule`.
     pub(super) fn elastic<R: CollisionRule>(self, rule: &R, contact: &Contact, regime: Regime) -> Impulse {
-        let tangential = match self {
-            Self::Frictionless => 0.0,
-            Self::Unchanged => rule.impulse(contact).tangential(),
-            Self::Reversing => 2.0 * contact.tangential_mass() * contact.slip_speed(),
+        let normal = Elastic.impulse(contact).normal();
+        let impulse = match self {
+            Self::Frictionless => Impulse::new(normal, 0.0),
+            Self::Unchanged => rule.impulse(contact).with_normal(normal),
+            Self::Reversing => Impulse::new(normal, 2.0 * contact.tangential_mass() * contact.slip_speed()),
         };
-        Impulse::new(Elastic.impulse(contact).normal(), tangential).with_regime(regime)
+        impulse.with_regime(regime)
     }
 
     /// Returns the word that stands for the response in fingerprints.

@@ -139,7 +139,8 @@ impl<'a> Snapshot<'a> {
         self.walls.map_or_else(Vec::new, name)
     }
 
-    /// Returns a point that moves with a wall, or `None` if the boundary knows no such point.
+    /// Returns a point of a wall, which moves with the wall, or `None` if the boundary knows no such point. A
+    /// circle that turns about its center does not move.
     ///
     /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the
     /// position of the wall.

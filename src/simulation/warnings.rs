@@ -93,8 +93,8 @@ pub enum Warning {
     },
     /// The disks have gained energy since the run was built, or since disks, walls or gravity were last
     /// changed between two runs or by the kick of a driving, though no wall moves or is warm, no disk came in
-    /// or left, and no remedy [`LeastRebound`](crate::collision::LeastRebound) added any: a rule gains energy.
-    /// [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
+    /// or left, and no remedy [`LeastRebound`](crate::collision::LeastRebound) added any: a rule gains
+    /// energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
     EnergyGained {
         /// Energy at that time.
         before: f64,
@@ -287,30 +287,40 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Counts the walls that have another position in another boundary at the present time. Walls with the
-    /// same name count as the same wall.
+    /// same name count as one wall. A wall has not jumped if any wall was at its place, whatever its name.
     pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
+        let far = JUMP * self.bodies.typical_diameter;
         let before = places(&self.boundary, self.clock.now);
-        for (name, (wall, here)) in places(other, self.clock.now) {
-            let by = before.get(&name).map_or(0.0, |(_, there)| there.distance(here));
-            if by > JUMP * self.bodies.typical_diameter {
-                self.counters.wall_jumps += 1;
-                if by > self.counters.farthest_jump {
-                    (self.counters.farthest_jump, self.counters.jumped_wall) = (by, wall as u16);
-                }
+        for (name, walls) in places(other, self.clock.now) {
+            let Some(known) = before.get(&name) else { continue };
+            let ways = walls.iter().map(|&(wall, place)| (wall, place, nearest(known, place)));
+            let is_new = |place| before.values().all(|walls| nearest(walls, place) > far);
+            let jumps = ways.filter(|&(_, place, by)| by > far && is_new(place));
+            let Some((wall, _, by)) = jumps.max_by(|one, other| one.2.total_cmp(&other.2)) else { continue };
+            self.counters.wall_jumps += 1;
+            if by > self.counters.farthest_jump {
+                (self.counters.farthest_jump, self.counters.jumped_wall) = (by, wall as u16);
             }
         }
     }
 }
 
-/// Returns the walls of a boundary by name, each with its index and its position. If several walls have the
-/// same name, such as the parts of a gate, only the first is listed. The map is sorted, so that the count is
-/// the same on every run.
-fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, (usize, DVec2)> {
-    let mut places = BTreeMap::new();
+/// Walls, each with its index and its position.
+type Places = Vec<(usize, DVec2)>;
+
+/// Returns the walls of a boundary by name. Several walls may have the same name, such as a brick and the
+/// corners at its ends. The map is sorted, so that the count is the same on every run.
+fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, Places> {
+    let mut places: BTreeMap<String, Places> = BTreeMap::new();
     for wall in 0..boundary.wall_count() {
         if let Some(place) = boundary.wall_point(wall, time) {
-            places.entry(boundary.wall_name(wall).into_owned()).or_insert((wall, place));
+            places.entry(boundary.wall_name(wall).into_owned()).or_default().push((wall, place));
         }
     }
     places
+}
+
+/// Returns the distance of the nearest of these walls.
+fn nearest(walls: &Places, place: DVec2) -> f64 {
+    walls.iter().map(|(_, there)| there.distance(place)).fold(f64::INFINITY, f64::min)
 }

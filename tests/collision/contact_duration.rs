@@ -1,7 +1,8 @@
 //! The contact-duration model: elastic below its time, the rule at it and above.
 
 use granular_edmd::collision::{
-    CollisionRule, ContactDuration, Elastic, Regime, TangentialResponse, collide, collide_with_wall, laws,
+    CollisionRule, ContactDuration, Elastic, ElasticBelow, Regime, RollingFriction, TangentialResponse,
+    collide, collide_with_wall, laws,
 };
 use granular_edmd::strategies::{contact, decades, disk_closing_on_wall, touching_pair};
 use proptest::prelude::*;
@@ -46,6 +47,19 @@ proptest! {
         prop_assert!(impulse.tangential().abs() <= cone);
         prop_assert!(impulse.energy_change(&contact) <= 4.0 * EPSILON * contact.available_energy());
         prop_assert_eq!(laws::check_impulse(&contact, impulse), Ok(()));
+    }
+
+    /// The couple of rolling friction stays with the tangential impulse.
+    #[test]
+    fn the_couple_can_stay(law in law(), contact in contact(), share in 0.0..0.9) {
+        let contact = contact.with_time_since_last_collision(share);
+        let rolling = RollingFriction::new(law.rule(), 0.3).unwrap();
+        let own = rolling.impulse(&contact).couple();
+        let response = TangentialResponse::Unchanged;
+        let model = ContactDuration::new(&rolling, 1.0).unwrap().with_tangential_response(response);
+        prop_assert_eq!(model.impulse(&contact).couple(), own);
+        let model = ElasticBelow::new(&rolling, 1e99).unwrap().with_tangential_response(response);
+        prop_assert_eq!(model.impulse(&contact).couple(), own);
     }
 
     #[test]

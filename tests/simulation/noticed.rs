@@ -293,7 +293,8 @@ fn a_part_that_jumps_is_named() {
     assert!(said.contains("gate") && said.contains("1.81859"), "{said}");
 }
 
-/// A drum with a slit turns about its center, which stays where it is; a whole drum looks the same from any side.
+/// A drum with a slit turns about its center, which stays where it is; a whole drum looks the same from any
+/// side.
 #[test]
 fn an_arc_that_jumps_about_its_center_is_a_warning() {
     let center = DVec2::new(6.0, 5.0);
@@ -320,6 +321,33 @@ fn an_arc_that_jumps_about_its_center_is_a_warning() {
     assert_eq!(jump(circle(3.0), circle(3.0)), []);
     let grown = jump(circle(3.0), circle(4.0));
     assert!(matches!(grown[..], [Warning::WallJumped { by, .. }] if (by - 1.0).abs() < 1e-12), "{grown:?}");
+}
+
+/// A flap turns about one of its ends. The same walls in another order have not moved.
+#[test]
+fn a_flap_that_jumps_is_a_warning_and_another_order_is_none() {
+    let corners = [(4.0, 3.0), (8.0, 3.0), (8.0, 6.0), (4.0, 6.0)].map(DVec2::from);
+    let disks = [Disk::new(DVec2::new(1.0, 1.0), 0.5).unwrap()];
+    let jumps = |part: &dyn Fn(f64) -> Part| {
+        let vessel = |rate: f64| Vessel::new(walls()).with("flap", part(rate)).unwrap();
+        let mut run = Simulation::builder(Elastic, vessel(0.5)).disks(disks).build().unwrap();
+        run.run_until(1.0, &mut ()).unwrap();
+        run.set_boundary(vessel(0.9)).unwrap();
+        run.warnings()
+    };
+    let flap =
+        |rate: f64| Part::polyline(corners[..2].iter().copied()).unwrap().with_rotation(corners[0], rate);
+    let turned = jumps(&|rate| flap(rate).unwrap());
+    let chord = 8.0 * 0.2_f64.sin();
+    assert!(
+        matches!(turned[..], [Warning::WallJumped { by, .. }] if (by - chord).abs() < 1e-12),
+        "{turned:?}"
+    );
+    let block = |rate: f64| {
+        let first = usize::from(rate > 0.6);
+        Part::block((0..4).map(|corner| corners[(first + corner) % 4])).unwrap()
+    };
+    assert_eq!(jumps(&block), []);
 }
 
 #[test]
