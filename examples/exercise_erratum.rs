@@ -16,7 +16,7 @@ use granular_edmd::kinetic::{Maxwellian, friction_of_largest_loss, mean_energy_c
 
 const QUESTIONS: [&str; 4] = [
     "the factor of q_t (1 - q_t) m v_t²",
-    "the jump of the printed dE from sticking to sliding, in κ² q_t (1 - q_n)² / (1 - q_t) m v_n²",
+    "the jump j > 0 of the printed dE from sticking to sliding, in κ² q_t (1 - q_n)² / (1 - q_t) m v_n²",
     "the friction of the largest loss at q = 0.1",
     "the inelasticity above which the printed form has no local maximum",
 ];
