@@ -6,8 +6,9 @@
 //! cargo run --release -p granular-edmd --example exercise_erratum -- FACTOR JUMP FRICTION INELASTICITY
 //! ```
 //!
-//! The first command writes the curves of the exercise's figure. An answer is a number such as 0.25, or a fraction such as 1/4. The program computes the right answers from
-//! the collision rule and from the mean energy change.
+//! The first command writes the curves of the exercise's figure. An answer is a number such as 0.25, or a
+//! fraction such as 1/4. The program computes the right answers from the collision rule and from the mean
+//! energy change.
 
 use std::process::ExitCode;
 

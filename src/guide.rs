@@ -1,5 +1,5 @@
-// On code hosts, the links of the pages lead to files. The first definition of a link wins, so the definitions
-// here lead to modules instead.
+// On code hosts, the links of the pages lead to files. The first definition of a link wins, so the
+// definitions here lead to modules instead.
 
 //! [`choose_a_rule`]: self::choose_a_rule
 //! [`shake_it`]: self::shake_it
