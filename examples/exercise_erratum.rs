@@ -1,13 +1,14 @@
 //! Checks the answers to the exercise on the erratum of Eq. (6), `docs/guide/exercise_erratum.md`.
 //!
 //! ```text
-//! cargo run --release -p granular-edmd --example exercise_erratum > erratum.csv              the curves of
-//! its figure cargo run --release -p granular-edmd --example exercise_erratum -- FACTOR JUMP FRICTION
-//! INELASTICITY
+//! cargo run --release -p granular-edmd --example exercise_erratum > erratum.csv
+//!
+//! cargo run --release -p granular-edmd --example exercise_erratum -- FACTOR JUMP FRICTION INELASTICITY
 //! ```
 //!
-//! An answer is a number such as 0.25, or a fraction such as 1/4. The program computes the right answers from
-//! the collision rule and from the mean energy change.
+//! The first command writes the curves of the exercise's figure. An answer is a number such as 0.25, or a
+//! fraction such as 1/4. The program computes the right answers from the collision rule and from the mean
+//! energy change.
 
 use std::process::ExitCode;
 
@@ -16,9 +17,9 @@ use granular_edmd::kinetic::{Maxwellian, friction_of_largest_loss, mean_energy_c
 
 const QUESTIONS: [&str; 4] = [
     "the factor of q_t (1 - q_t) m v_t²",
-    "the jump of the printed form, in κ² q_t (1 - q_n)² / (1 - q_t) m v_n²",
+    "the jump j > 0 of the printed dE from sticking to sliding, in κ² q_t (1 - q_n)² / (1 - q_t) m v_n²",
     "the friction of the largest loss at q = 0.1",
-    "the inelasticity above which the printed form has no largest loss",
+    "the inelasticity above which the printed form has no local maximum",
 ];
 
 fn main() -> anyhow::Result<ExitCode> {

@@ -12,6 +12,7 @@ import MarkdownIt from 'markdown-it';
 const [out, documentation, page] = process.argv.slice(2);
 const COPIED = new Set(['.png', '.svg', '.csv', '.txt', '.json', '.xz', '.ipynb', '.html', '.css']);
 const API = 'api/granular_edmd', GUIDE = /^(study\/)?docs\/guide\/(\w+)\.md$/;
+const DOCS_RS = /href="https:\/\/docs\.rs\/granular-edmd(?:-study)?\/latest\/([^"]*)"/g;
 const CRATE_DOC = /^(granular_edmd(_study)?|src|static\.files|search\.(index|desc)|(trait|type)\.impl)$|\.(html|js)$/;
 const DOCS = {
   physics: 'Every equation, its source, and the notation.', 'physics-kinetic': 'The closed form of the mean energy loss ⟨dE⟩.',
@@ -98,10 +99,13 @@ function placeOf(path) {
   return COPIED.has(extname(path)) ? path : `${path}.html`;
 }
 
+// The documentation is on the site, too.
+const here = (html, file) => html.replace(DOCS_RS, (_, path) => `href="${posix.relative(posix.dirname(file), posix.join('api', path))}"`);
+
 // Links of a page of the repository become those of the site.
 function linked(html, from) {
   return html.replace(/(\s(?:href|src)=")([^"]*)"/g, (whole, attribute, link) => {
-    if (/^([a-z]+:|\/\/|#)/.test(link)) return whole;
+    if (/^([a-z]+:|\/\/|#)/.test(link)) return here(whole, placeOf(from));
     const [path, anchor] = unescape(link).split('#'), target = posix.normalize(posix.join(posix.dirname(from), decodeURIComponent(path))).replace(/\/$/, '');
     if (!existsSync(target)) { faults.push(`${from} links to ${link}, which is not there`); return whole; }
     return `${attribute}${escape(posix.relative(posix.dirname(placeOf(from)), placed(target)))}${anchor ? `#${anchor}` : ''}"`;
@@ -148,7 +152,7 @@ function document() {
   const shown = (file) => (_, path) => `src="${posix.relative(posix.dirname(posix.join('api', file)), placed(path))}"`;
   for (const file of readdirSync(join(out, 'api'), { recursive: true }).filter((name) => name.endsWith('.html'))) {
     const path = join(out, 'api', file), text = readFileSync(path, 'utf8');
-    const drawn = text
+    const drawn = here(text, posix.join('api', file))
       .replace(/<div class="example-wrap"><pre class="language-math"><code>([^]*?)<\/code><\/pre><\/div>/g, (_, source) => { count += 1; return formula(unescape(source), true); })
       .replace(/\$<code>([^<]*)<\/code>\$/g, (_, source) => { count += 1; return formula(unescape(source), false); })
       .replace(/<section id="main-content"[^>]*>/, (whole) => `${whole}<a href="${posix.relative(posix.dirname(posix.join('api', file)), 'index.html')}">← site</a>`)

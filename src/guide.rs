@@ -1,3 +1,30 @@
+// On code hosts, the links of the pages lead to files. The first definition of a link wins, so the
+// definitions here lead to modules instead.
+
+//! [`choose_a_rule`]: self::choose_a_rule
+//! [`shake_it`]: self::shake_it
+//! [`gases`]: self::gases
+//! [`fill_it`]: self::fill_it
+//! [`watch_it`]: self::watch_it
+//! [`believe_it`]: self::believe_it
+//! [`draw_it`]: self::draw_it
+//! [`write_files`]: self::write_files
+//! [`recipes`]: self::recipes
+//! [`bring_your_own`]: self::bring_your_own
+//! [`when_it_stalls`]: self::when_it_stalls
+//! [`when_it_is_slow`]: self::when_it_is_slow
+//! [`exercise_erratum`]: self::exercise_erratum
+//! [`glossary`]: self::glossary
+//! [`physics`]: self::physics
+//! [`physics_kinetic`]: self::physics_kinetic
+//! [`rest`]: self::rest
+//! [`validation`]: self::validation
+//! [`performance`]: self::performance
+//! [`architecture`]: self::architecture
+//! [`stability`]: self::stability
+#![doc = "[`sweep_it`]: https://docs.rs/granular-edmd-study/latest/granular_edmd_study/guide/sweep_it/index.html"]
+#![doc = "[`exercise_rolls`]: https://docs.rs/granular-edmd-study/latest/granular_edmd_study/guide/exercise_rolls/index.html"]
+//! [`replay`]: crate::replay
 #![doc(alias("event-driven", "hard-sphere", "tutorial", "timestep"))]
 #![cfg_attr(feature = "serde", doc = "[`Checkpoint`]: crate::simulation::Checkpoint")]
 #![cfg_attr(not(feature = "serde"), doc = "[`Checkpoint`]: crate#features")]
@@ -62,9 +89,8 @@ pub mod exercise_erratum {}
 #[doc = include_str!("../docs/guide/glossary.md")]
 pub mod glossary {}
 
-// Pages of the repository. On code hosts, their links lead to files. The first definition of a link wins, so
-// the definitions here lead to modules instead. A definition for a picture leads nowhere, so that its
-// description is shown; `site/build` shows the file after the `#`.
+// Pages of the repository. A definition for a picture leads nowhere, so that its description is shown;
+// `site/build` shows the file after the `#`.
 
 #[doc(alias("equations", "notation", "thermal wall"))]
 #[doc = "[physics-kinetic.md]: crate::guide::physics_kinetic"]

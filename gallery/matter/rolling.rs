@@ -137,7 +137,7 @@ fn write(arguments: &Arguments, all: &[Rolled]) -> Result<(), Box<dyn Error>> {
 }
 
 const MARGINS: Margins = [62.0, 16.0, 28.0, 58.0];
-const HEADER: f64 = 88.0;
+const HEADER: f64 = 100.0;
 const HEIGHT: f64 = 330.0;
 const COLUMN: f64 = 480.0;
 
@@ -145,7 +145,7 @@ const COLUMN: f64 = 480.0;
 /// coefficient.
 fn draw(all: &[Rolled]) -> Result<Sheet, Box<dyn Error>> {
     let mut sheet = Sheet::new(2.0 * COLUMN, HEADER + 2.0 * HEIGHT);
-    let about = "Grains of diameters from 0.8 d to d: r = 0.7, κ = 0.5, rolling friction μ; above, a disk on a floor; below, 140 on a rough slope of 20°, blue if slower than 0.5 √(gd), red if faster than 1.5";
+    let about = "Grains of diameters from 0.8 d to d: r = 0.7, κ = 0.5, rolling friction μ; above, a disk on a floor; below, 140 on a rough slope of 20°, dark blue if slower than 0.5 √(gd), orange if faster than 1.5, light blue between";
     sheet.header(MARGINS[0], "Rolling friction", &[about]);
     let place = Place { x: 0.0, y: HEADER, width: COLUMN, height: HEIGHT };
     let layout = panel::axes((0.0, LONG), (0.0, 1.1 * SPEED)).with_x_label("time, in √(d/g)");

@@ -218,7 +218,7 @@ fn draw(flows: &[Flow], law: Option<Law>) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
     let mut sheet = Sheet::new(frame + 560.0, HEADER + HEIGHT);
-    let about = "600 grains of diameter d, q = 0.1, κ = 0.4; orange: came in again on top";
+    let about = "600 grains of diameter d, q = 0.1, κ = 0.4; orange: has left, and entered again on top";
     sheet.header(MARGINS[0], "Flow out of a silo", &[about]);
     let Some(shown) = flows.last() else { return Err("no outlet to draw".into()) };
     let place = Place { x: 0.0, y: HEADER, width: frame, height: HEIGHT };

@@ -17,7 +17,7 @@ use granular_edmd_study::analysis::{ConvectiveRegime, StateCriteria, thermal_noi
 const OSCILLATIONS: u32 = 5000;
 
 fn main() -> anyhow::Result<ExitCode> {
-    let answers: Vec<f64> = std::env::args().skip(1).map(|text| text.parse()).collect::<Result<_, _>>()?;
+    let answers: Vec<f64> = std::env::args().skip(1).map(|text| friction(&text)).collect::<Result<_, _>>()?;
     let [one_roll, two_rolls] = answers[..] else {
         anyhow::bail!("two frictions are asked for: where one roll begins, and where two begin");
     };
@@ -39,6 +39,11 @@ fn main() -> anyhow::Result<ExitCode> {
         all &= right;
     }
     Ok(if all { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Reads a coefficient of friction.
+fn friction(text: &str) -> anyhow::Result<f64> {
+    text.parse().map_err(|_| anyhow::anyhow!("{text}: expected a number, such as 0.02"))
 }
 
 /// Returns the state of the paper's box at g = 0.015625 and q = 0.

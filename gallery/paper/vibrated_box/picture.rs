@@ -43,11 +43,9 @@ pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Sheet {
     sheet.header(left, &title, &[&arguments.to_string(), colors]);
     let arrows = Arrows::of(&outcome.fields, 0.1, 1.1);
     if let Some((speed, length)) = arrows.scale() {
-        sheet.arrow(
-            (left, HEADER - 16.0),
-            unit * length,
-            &format!("mean velocity {speed}, in the second half"),
-        );
+        let units = "units: diameter and mass of a disk, and time as in ω";
+        let words = format!("mean velocity {speed}, in the second half; {units}");
+        sheet.arrow((left, HEADER - 16.0), unit * length, &words);
     }
     let place = Place { x: 0.0, y: HEADER + HEIGHT - height, width, height };
     let [rims, faces] = rims_and_faces(&disks, unit, seen.1);
