@@ -205,8 +205,8 @@ fn equal_ratios_are_the_numbers_that_one_expects() -> Result<(), AnyError> {
     let sixths = frictions("from = 1e-3, to = 1.0, log = 7")?;
     assert_eq!((sixths[2], sixths[4]), (0.01, 0.1));
     assert!((sixths[1] - 0.001 * 10_f64.sqrt()).abs() < 1e-15, "{sixths:?}");
-    let close = frictions("from = 0.1, to = 0.10000000000000002, log = 2")?;
-    assert_eq!(close, [0.1, 0.100_000_000_000_000_02]);
+    let close = frictions("from = 0.1, to = 0.1000000000001, log = 500")?;
+    assert!(close.windows(2).all(|pair| pair[0] < pair[1]), "{close:?}");
     let many = plan("disks", "from = 1, to = 16, log = 5")?;
     let counts: Vec<_> =
         (0..5).map(|ramp| many.experiment(ramp, 0).map(|it| it.disks)).collect::<Result<_, _>>()?;
