@@ -61,7 +61,7 @@ pub struct Counters {
     /// Collisions whose surfaces parted at the least speed of
     /// [`LeastRebound`](crate::collision::LeastRebound).
     pub least_rebound_collisions: u64,
-    /// Energy added in these collisions; losses are not subtracted.
+    /// Sum of the energies gained in those of these collisions that gained energy, friction included.
     pub energy_of_rebounds: f64,
     /// Passages of disks from one neighbor cell to another.
     pub cell_crossings: u64,

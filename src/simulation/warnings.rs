@@ -43,7 +43,8 @@ const JUMP: f64 = 1e-6;
 #[non_exhaustive]
 pub enum Warning {
     /// A wall jumped when the boundary was set between two runs, and hit no disk. A motion that begins at
-    /// another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt).
+    /// another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt). The
+    /// [points](crate::boundary::Boundary::wall_point) of the walls before and after are compared.
     WallJumped {
         /// The wall that jumped farthest.
         wall: usize,
@@ -287,10 +288,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Counts the walls that have another position in another boundary at the present time. Walls with the
-    /// same name count as one wall. A wall has not jumped if any wall was at its place, whatever its name.
+    /// same name count as one wall. A wall has not jumped if any wall was at its place, or at an image of it,
+    /// whatever its name.
     pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
         let far = JUMP * self.bodies.typical_diameter;
-        let before = places(&self.boundary, self.clock.now);
+        let (before, domain) = (places(&self.boundary, self.clock.now), other.domain());
+        let nearest = |walls: &Places, place: DVec2| {
+            let ways = walls.iter().map(|&(_, there)| domain.separation(there, place).length());
+            ways.fold(f64::INFINITY, f64::min)
+        };
         for (name, walls) in places(other, self.clock.now) {
             let Some(known) = before.get(&name) else { continue };
             let ways = walls.iter().map(|&(wall, place)| (wall, place, nearest(known, place)));
@@ -318,9 +324,4 @@ fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, Places> {
         }
     }
     places
-}
-
-/// Returns the distance of the nearest of these walls.
-fn nearest(walls: &Places, place: DVec2) -> f64 {
-    walls.iter().map(|(_, there)| there.distance(place)).fold(f64::INFINITY, f64::min)
 }

@@ -121,6 +121,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         if by > 0.0 {
             run.shift_epoch(by);
         }
+        run.balance_anew(&run.boundary.domain());
         run.predict_all();
         Ok(run)
     }
