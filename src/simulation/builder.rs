@@ -134,7 +134,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         if !self.disks.is_empty() {
             check_epoch(&clock, 0.0)?;
         }
-        let energy = bodies.energies(0.0, &boundary.domain()).iter().sum();
+        let energy = bodies.energy(0.0, &boundary.domain())[0];
         let ledger = Ledger::new(self.start_time, energy);
         let mut simulation = Simulation {
             rule: self.rule,

@@ -103,7 +103,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Begins a new balance of the energy, after a change that is not part of a run.
     pub(super) fn balance_anew(&mut self, domain: &Domain) {
-        let energies = self.bodies.energies(self.clock.now, domain);
-        self.ledger.balance_anew(energies.iter().sum());
+        let [energy, _] = self.bodies.energy(self.clock.now, domain);
+        self.ledger.balance_anew(energy);
     }
 }

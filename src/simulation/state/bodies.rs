@@ -277,14 +277,16 @@ impl Bodies {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }
 
-    /// Returns the kinetic and the potential energy of all disks. Positions are unwrapped, so a disk that
-    /// falls across a periodic edge keeps its energy.
-    pub(in crate::simulation) fn energies(&self, offset: f64, domain: &Domain) -> [f64; 2] {
+    /// Returns the kinetic and potential energy of all disks, and the sum of the magnitudes of its terms, which
+    /// bounds its rounding. Positions are unwrapped, so a disk that falls across a periodic edge keeps its
+    /// energy.
+    pub(in crate::simulation) fn energy(&self, offset: f64, domain: &Domain) -> [f64; 2] {
         let pull = self.gravity.acceleration();
         let disks = (0..self.len()).map(|disk| self.disk(disk, offset));
-        disks.fold([0.0; 2], |[kinetic, potential], disk| {
-            let moving = disk.translational_energy() + disk.rotational_energy();
-            [kinetic + moving, potential - disk.mass() * pull.dot(domain.unwrapped(&disk))]
+        disks.fold([0.0; 2], |[energy, size], disk| {
+            let kinetic = disk.translational_energy() + disk.rotational_energy();
+            let released = disk.mass() * pull.dot(domain.unwrapped(&disk));
+            [energy + (kinetic - released), size + (kinetic + released.abs())]
         })
     }
 
