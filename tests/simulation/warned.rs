@@ -127,8 +127,8 @@ fn energy_without_a_source_is_a_warning_after_a_resumption_with_other_walls() ->
         let rule = from_fn(move |contact: &Contact| Impulse::new(contact.normal_impulse(1.0 + gain), 0.0));
         let mut run = Simulation::builder(rule, shaken.clone()).disks(gas(&shaken)?).build()?;
         run.run_until(TAU, &mut ())?;
-        let taller = Container::closed(20.0, 21.0)?;
-        let resumed = Simulation::resume(&run.checkpoint(), rule, taller).with_another_boundary();
+        let (saved, taller) = (run.checkpoint(), Container::closed(20.0, 21.0)?);
+        let resumed = Simulation::resume(&saved, rule, taller).with_another_boundary();
         let mut run = resumed.with_another_rule().build()?;
         run.run_until(TAU + 30.0, &mut ())?;
         let warned = matches!(run.warnings()[..], [Warning::EnergyGained { .. }]);
