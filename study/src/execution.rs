@@ -242,8 +242,7 @@ impl<E: Experiment> Study<E> {
         if is_there() {
             return Ok(());
         }
-        self.tables(self.folder())?;
-        self.folder.mark_complete()
+        self.write_locked().map(drop)
     }
 }
 

@@ -110,7 +110,7 @@ impl<E: Experiment> Study<E> {
     pub fn seconds(&self) -> Result<(f64, f64), StudyError> {
         let entries = self.store.refreshed()?;
         let timed = || entries.heads().map(|head| f64::from(head.seconds)).filter(|time| !time.is_nan());
-        let seconds: f64 = timed().sum();
+        let seconds = timed().fold(0.0, |sum, time| sum + time);
         let all = (self.plan.ramp_count() * self.plan.value_count()) as f64;
         let left = f64::max(all - entries.heads().count() as f64, 0.0);
         Ok((seconds, left * seconds / timed().count() as f64))

@@ -333,7 +333,11 @@ impl Head {
 /// Returns the logs in a folder.
 fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     let mut found: Vec<PathBuf> = files_in(folder)?.iter().map(DirEntry::path).collect();
-    found.retain(|path| path.extension().is_some_and(|ending| ending == "records"));
+    // A copy of a log under another name is not a log.
+    let is_numbered = |path: &Path| {
+        path.file_stem().is_some_and(|stem| stem.as_encoded_bytes().iter().all(u8::is_ascii_digit))
+    };
+    found.retain(|path| path.extension().is_some_and(|ending| ending == "records") && is_numbered(path));
     Ok(found)
 }
 

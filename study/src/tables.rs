@@ -31,8 +31,18 @@ impl<E: Experiment> Study<E> {
     /// If a record is damaged or missing, or a file cannot be read or written.
     pub fn write_tables(&self) -> Result<usize, StudyError> {
         let _lock = self.folder.lock()?;
+        self.write_locked()
+    }
+
+    /// Writes the tables into the folder of the study, whose lock the caller holds, and notes if they have
+    /// all values.
+    pub(super) fn write_locked(&self) -> Result<usize, StudyError> {
         self.folder.put(&self.provenance().text())?;
-        self.tables(self.folder())
+        let (finished, are_all) = self.tables(self.folder())?;
+        if are_all {
+            self.folder.mark_complete()?;
+        }
+        Ok(finished)
     }
 
     /// Writes the tables of all finished records into another folder, and returns the number of records.
@@ -45,14 +55,14 @@ impl<E: Experiment> Study<E> {
         if let Some(path) = files(&self.plan, folder).find(|path| path.exists()) {
             return Err(StudyError::refused(&path, "exists already; choose another folder for tables"));
         }
-        self.tables(folder)
+        self.tables(folder).map(|(finished, _)| finished)
     }
 
-    /// Writes tables, and returns the number of records in them.
-    pub(super) fn tables(&self, folder: &Path) -> Result<usize, StudyError> {
+    /// Writes tables. Returns the number of records in them, and whether these are all records of the plan.
+    fn tables(&self, folder: &Path) -> Result<(usize, bool), StudyError> {
         let entries = self.store.refreshed()?;
         let mut tables = Tables::new(&self.plan, folder)?;
-        let mut finished = 0;
+        let (mut finished, mut are_all) = (0, true);
         // Only a selection of the records is compared with the present rule and walls, since making walls
         // takes longer than reading a small record.
         let stride = 1 + entries.heads().count() / MOST_TRIED;
@@ -67,7 +77,9 @@ impl<E: Experiment> Study<E> {
             }
             // In a complete or damaged study, a missing record is an error: a table that lacks a row must not
             // look complete.
-            if !entries.is_done(ramp) && (self.folder.complete().exists() || self.store.damage().is_some()) {
+            let is_done = entries.is_done(ramp);
+            are_all &= is_done;
+            if !is_done && (self.folder.complete().exists() || self.store.damage().is_some()) {
                 let missing =
                     || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
                 return Err(self.store.damage().unwrap_or_else(missing));
@@ -75,7 +87,7 @@ impl<E: Experiment> Study<E> {
             tables.end_ramp(ramp, &self.plan.brackets(&seen))?;
         }
         tables.finish()?;
-        Ok(finished)
+        Ok((finished, are_all))
     }
 }
 

@@ -166,6 +166,15 @@ fn ramps_in_many_processes_are_a_study() {
     assert!(scratch.0.join("many/values.csv").exists());
     assert!(start("3").wait().unwrap().success());
     assert_eq!(code(&scratch.runs(&["status", "many"])), Some(0));
+    // The command that writes the tables notes it, too. A copy of a log is the user's.
+    let [log, copy] = ["0000.records", "copy.records"].map(|name| scratch.0.join("many/logs").join(name));
+    fs::copy(log, &copy).unwrap();
+    let kept = fs::read(&copy).unwrap();
+    fs::remove_file(scratch.0.join("many/complete")).unwrap();
+    for (command, expected) in [("status", 4), ("tables", 0), ("status", 0)] {
+        assert_eq!(code(&scratch.runs(&[command, "many"])), Some(expected), "{command}");
+    }
+    assert!(start("0").wait().unwrap().success() && fs::read(&copy).unwrap() == kept);
     for file in ["values.csv", "points.csv", "profiles.csv", "columns.csv", "plan.toml"] {
         let [one, many] = ["one", "many"].map(|study| fs::read(scratch.0.join(study).join(file)).unwrap());
         assert!(one == many, "{file}");

@@ -277,9 +277,9 @@ impl Bodies {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }
 
-    /// Returns the kinetic and potential energy of all disks, and the sum of the magnitudes of its terms, which
-    /// bounds its rounding. Positions are unwrapped, so a disk that falls across a periodic edge keeps its
-    /// energy.
+    /// Returns the kinetic and potential energy of all disks, and the sum of the magnitudes of its terms,
+    /// which bounds its rounding. Positions are unwrapped, so a disk that falls across a periodic edge keeps
+    /// its energy.
     pub(in crate::simulation) fn energy(&self, offset: f64, domain: &Domain) -> [f64; 2] {
         let pull = self.gravity.acceleration();
         let disks = (0..self.len()).map(|disk| self.disk(disk, offset));
