@@ -179,7 +179,9 @@ fn velocity_after(surface: &Surface<'_>, impulse: &Impulse) -> DVec2 {
     if surface.mass == f64::INFINITY && surface.tangential_mass == f64::INFINITY {
         return surface.velocity;
     }
-    let along = surface.normal.perp() * (impulse.tangential() / surface.tangential_mass);
+    // A couple on a wall of this radius acts like an impulse along the surface.
+    let along = impulse.tangential() - impulse.couple() / surface.radius;
+    let along = surface.normal.perp() * (along / surface.tangential_mass);
     surface.velocity - surface.normal * (impulse.normal() / surface.mass) - along
 }
 

@@ -109,6 +109,7 @@ fn rolling_friction_slows_disks_and_drum() -> Result<(), Box<dyn std::error::Err
     let [momentum, mut energy] = balance(&run);
     let mut spins = 0.0_f64;
     for _ in 0..5000 {
+        let mut told = None;
         let mut seen = on_collision(|collision: &Collision| {
             let contact = collision.contact;
             if contact.kinds()[1] == Kind::WALL {
@@ -117,9 +118,13 @@ fn rolling_friction_slows_disks_and_drum() -> Result<(), Box<dyn std::error::Err
                 assert!((contact.spin_inertia() - 1.0 / (1.0 / 0.125 + 1.0 / INERTIA)).abs() < 1e-12);
                 assert!((contact.spin_response() - (4.0 + RADIUS / INERTIA)).abs() < 1e-12);
                 spins = spins.max(drum.abs());
+                told = Some(drum);
             }
         });
         run.run(&Limits::until(f64::MAX).with_most_collisions(1), &mut seen)?;
+        // The couple has turned the drum, too.
+        let spin = run.boundary().spin;
+        assert!(told.is_none_or(|drum| (drum - spin).abs() < 1e-13), "{told:?} {spin}");
         let [now, left] = balance(&run);
         assert!((now / momentum - 1.0).abs() < 1e-11, "{now} was {momentum}");
         assert!(left <= energy * (1.0 + 1e-14), "{left} was {energy}");
