@@ -164,14 +164,14 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests promises 1 to 12, except for points of walls, and [`laws::check_fingerprints`] tests
-/// 13; `docs/validation.md` says which planted faults they find. The engine notices many faults, too. At each
-/// collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than 1e-6 of
-/// its radius. Three things therefore end a run with an error: an early or late touch, a disk that has left
-/// the domain, and a disk that overlaps a wall at the end of a search that found no touch. A missed touch
-/// with a thin wall that disks meet from both sides goes unnoticed. A touch with a wall that the disk is
-/// leaving comes again immediately, until the run fails for lack of progress. A velocity or a normal that is
-/// not finite is an error of the run.
+/// [`laws::check`] tests promises 1 to 12, except that points lie on walls, and [`laws::check_fingerprints`]
+/// tests 13; `docs/validation.md` says which planted faults they find. The engine notices many faults, too.
+/// At each collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than
+/// 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a disk that
+/// has left the domain by more than its radius (noticed within some collisions of each disk), and a disk that
+/// overlaps a wall at the end of a search that found no touch. A missed touch with a thin wall that disks
+/// meet from both sides goes unnoticed. A touch with a wall that the disk is leaving comes again immediately,
+/// until the run fails for lack of progress. A velocity or a normal that is not finite is an error.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -255,7 +255,7 @@ pub trait Boundary {
     }
 
     /// Returns a point of a wall, at its position at `time`, or `None` if the boundary knows no such point.
-    /// It moves with the wall; a circle that turns about its center does not move.
+    /// The point is no hinge: it moves whenever the wall moves so that the free [`area`](Self::area) changes.
     ///
     /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
     /// The default is `None`.

@@ -59,6 +59,23 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
             "the area for centers of disks of radius {radius:?} in the domain at {time:?} is {inside:?}, but with \
              a strip beyond the walls {all:?}");
     }
+    check_points(trial, time, time + random.between(0.1, 1.0) * trial.length() / trial.speed)
+}
+
+/// Checks that the area of the domain changes only if a point of a wall moves: measures keep areas that long.
+fn check_points(trial: &Trial<'_>, time: f64, later: f64) -> Result<(), Violation> {
+    let boundary = &trial.boundary;
+    let walls = || 0..boundary.wall_count();
+    let stays = |wall| {
+        let place = boundary.wall_point(wall, time);
+        place.is_some() && place == boundary.wall_point(wall, later)
+    };
+    let (low, high) = trial.rectangle();
+    let [now, then] = [time, later].map(|time| boundary.area(&Region::new(low, high), 0.0, time));
+    let (Some(now), Some(then)) = (now, then) else { return Ok(()) };
+    let has_changed = (now - then).abs() > SLACK * Region::new(low, high).area();
+    require!(PART, "wall_point", !(has_changed && walls().all(stays));
+        "the free area is {now:?} at {time:?} and {then:?} at {later:?}, but no point of a wall moves");
     Ok(())
 }
 

@@ -23,9 +23,9 @@ const AGAIN: usize = 200;
 /// Allowed rounding of a momentum, relative to the sum of all magnitudes.
 const ROUNDING: f64 = 1e-13;
 
-/// Smallest and largest mean square of the kicks at a position in the list, relative to the mean of all
-/// positions. If each kick changes one disk at random, the mean squares scatter by a tenth.
-const FAIR: [f64; 2] = [0.5, 1.6];
+/// Largest deviation of the mean square of the kicks at a position in the list from the mean of all
+/// positions, in standard errors. The disks come to the positions at random, so the errors are independent.
+const FAIR: f64 = 7.0;
 
 /// Largest correlation of two kicks in a row at a position in the list, beyond the correlation between any
 /// two different positions. Random kicks have a correlation of a hundredth.
@@ -161,6 +161,8 @@ struct Sums {
     /// Number of kicks that are not zero.
     counted: usize,
     squares: [f64; DISKS],
+    /// Sums of the squares of the squares.
+    fourths: [f64; DISKS],
     /// Sums of the products of two kicks in a row, by the distance between their positions.
     products: [f64; DISKS],
 }
@@ -175,7 +177,11 @@ impl Sums {
         let latest = std::mem::replace(&mut self.latest, kicks);
         let Some(kicks) = kicks else { return };
         self.counted += 1;
-        self.squares.iter_mut().zip(kicks).for_each(|(square, kick)| *square += kick.length_squared());
+        for (place, kick) in kicks.iter().enumerate() {
+            let square = kick.length_squared();
+            self.squares[place] += square;
+            self.fourths[place] += square * square;
+        }
         let Some(latest) = latest else { return };
         for (distance, product) in self.products.iter_mut().enumerate() {
             let shifted = kicks.iter().cycle().skip(distance);
@@ -183,15 +189,17 @@ impl Sums {
         }
     }
 
-    /// Checks that no position in the list receives much stronger or weaker kicks than others, or kicks that
-    /// resemble the previous ones at this position.
+    /// Checks that no position in the list receives stronger or weaker kicks than others, beyond chance, or
+    /// kicks that resemble the previous ones at this position.
     fn check(&self) -> Result<(), Violation> {
         if self.counted < KICKS / 2 {
             return Ok(());
         }
+        let [disks, kicks] = [DISKS, self.counted].map(|count| count as f64);
         for (place, square) in self.squares.iter().enumerate() {
-            let share = square * DISKS as f64 / self.counted as f64;
-            let is_fair = (FAIR[0]..=FAIR[1]).contains(&share);
+            let (mean, fourth) = (square / kicks, self.fourths[place] / kicks);
+            let error = (f64::max(fourth - mean * mean, 0.0) / kicks).sqrt();
+            let (share, is_fair) = (mean * disks, (mean - 1.0 / disks).abs() <= FAIR * error + ROUNDING);
             require!(PART, "alike", is_fair;
                 "disks at place {place} of the list get {share:?} of the mean square kick");
         }

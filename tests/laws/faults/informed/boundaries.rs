@@ -290,6 +290,8 @@ fn areas(boundaries: &mut Boundaries) {
         });
         boundaries.part(family, name, Altered { area, ..measured() });
     }
+    let hinged = Altered { are_points_fixed: true, ..lidded() };
+    boundaries.part("hinge", "the points of the walls stay while the lid moves", hinged);
 }
 
 fn regions(boundaries: &mut Boundaries) {

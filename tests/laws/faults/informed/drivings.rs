@@ -95,12 +95,25 @@ fn shares(drivings: &mut Drivings) {
         }
         Ok(())
     });
-    drivings.kick("odd places", "disks at odd places get half a kick", false, |before, disks, _| {
-        disks.iter_mut().zip(before).skip(1).step_by(2).try_for_each(|(new, old)| {
-            let velocity = 0.5 * (new.velocity() + old.velocity());
-            new.with_velocity(velocity).map(|halved| *new = halved)
-        })
-    });
+    for share in [0.5, 0.8] {
+        let name = format!("disks at odd places get {share} of the kick");
+        drivings.kick("odd places", name, false, move |before, disks, _| {
+            disks.iter_mut().zip(before).skip(1).step_by(2).try_for_each(|(new, old)| {
+                let velocity = old.velocity() + share * (new.velocity() - old.velocity());
+                new.with_velocity(velocity).map(|less| *new = less)
+            })
+        });
+    }
+    drivings.kick(
+        "first place",
+        "the first disk gets 1.3 times the kick along x",
+        false,
+        |before, disks, _| {
+            let (Some(old), Some(new)) = (before.first(), disks.first_mut()) else { return Ok(()) };
+            let kick = new.velocity() - old.velocity();
+            new.with_velocity(new.velocity() + 0.3 * kick * DVec2::X).map(|more| *new = more)
+        },
+    );
 }
 
 fn clocks(drivings: &mut Drivings) {

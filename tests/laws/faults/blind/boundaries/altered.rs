@@ -32,6 +32,8 @@ pub(in crate::faults) struct Altered {
     pub(in crate::faults) state: Box<dyn Fn(Vec<f64>) -> Vec<f64>>,
     pub(in crate::faults) restored: Box<dyn Fn(&[f64]) -> Option<Vec<f64>>>,
     pub(in crate::faults) mark: Option<Fingerprint>,
+    /// True if the points of the walls stay where they are at the origin.
+    pub(in crate::faults) are_points_fixed: bool,
 }
 
 impl Altered {
@@ -53,6 +55,7 @@ impl Altered {
             state: Box::new(|state| state),
             restored: Box::new(|state| Some(state.to_vec())),
             mark: None,
+            are_points_fixed: false,
         }
     }
 }
@@ -75,7 +78,7 @@ impl Boundary for Altered {
     }
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.honest.wall_point(wall, time)
+        self.honest.wall_point(wall, if self.are_points_fixed { 0.0 } else { time })
     }
 
     fn set_time_origin(&mut self, origin: f64) {
