@@ -52,7 +52,7 @@ impl<R> RollingFriction<R> {
         Ok(Self { rule, coefficient: non_negative("coefficient of rolling friction", coefficient)? })
     }
 
-    /// Returns the inner rule, which decides everything but the couple.
+    /// Returns the inner rule, which decides everything else. A couple of its own is added.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
