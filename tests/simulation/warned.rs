@@ -126,7 +126,7 @@ fn energy_without_a_source_is_a_warning_after_a_resumption_with_other_walls() ->
     for gain in [0.0, 1e-3] {
         let rule = from_fn(move |contact: &Contact| Impulse::new(contact.normal_impulse(1.0 + gain), 0.0));
         let mut run = Simulation::builder(rule, shaken.clone()).disks(gas(&shaken)?).build()?;
-        run.run_until(6.0, &mut ())?;
+        run.run_until(std::f64::consts::TAU, &mut ())?;
         let (saved, taller) = (run.checkpoint(), Container::closed(20.0, 21.0)?);
         let resumed = Simulation::resume(&saved, rule, taller).with_another_boundary();
         let mut run = resumed.with_another_rule().build()?;
