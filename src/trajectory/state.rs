@@ -48,7 +48,9 @@ impl State {
 
     /// Returns a snapshot of the state, for a [`Format`](super::Format).
     ///
-    /// A file without a box, time or gravity gives the rectangle around the disks, time 0 and no gravity.
+    /// A file without a box, time or gravity gives the rectangle around the disks, time 0 and no gravity. The
+    /// snapshot has no walls, so profiles and fields divide by areas as if the whole box were free. For disks
+    /// in another vessel, or under walls that move, add them by [`Snapshot::with_walls`].
     pub fn snapshot(&self) -> Snapshot<'_> {
         let domain = self.domain.unwrap_or_else(|| around(&self.disks));
         Snapshot::new(self.time.unwrap_or_default(), &self.disks, domain, self.gravity.unwrap_or_default())
