@@ -111,6 +111,9 @@ impl Crossings {
 
     /// Returns the mean number of forward minus backward crossings per unit of time, with its error.
     ///
+    /// In a closed system, whatever has crossed comes back, so short intervals are anticorrelated, and the
+    /// error may be ten times too large.
+    ///
     /// # Errors
     /// If no interval is complete yet.
     pub fn flux(&self) -> Result<Estimate, ParameterError> {

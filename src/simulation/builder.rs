@@ -87,9 +87,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         self
     }
 
-    /// Sets the seed of the stochastic walls; 0 unless given.
+    /// Sets the seed of the stochastic walls, such as thermal walls; 0 unless given.
     ///
-    /// The seed has no effect without stochastic walls.
+    /// Repeats of a run need different seeds, like their initial states: with the same random numbers at the
+    /// walls, they are not independent.
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self

@@ -13,6 +13,9 @@ const DIFFERENT: f64 = 4.0;
 impl Estimate {
     /// Combines the estimates of several independent runs into one, as if all samples were of one run.
     ///
+    /// Runs are independent if their seeds differ: of the initial states, of drivings, and of the
+    /// [stochastic walls](crate::simulation::SimulationBuilder::seed).
+    ///
     /// Each run is weighted by the number of its samples. The error is the larger of two errors. One follows
     /// from the errors of the runs, and the other from the scatter of their means,
     ///

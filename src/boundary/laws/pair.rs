@@ -8,6 +8,7 @@ use super::trial::{PART, Trial, in_words};
 use super::{KINDS, Random};
 use crate::boundary::{Boundary, FirstTouch, Region};
 use crate::fingerprint::check_pair;
+use crate::violation::require;
 use crate::{Flight, Kind, Violation};
 
 /// Number of flights on which two boundaries are compared.
@@ -25,7 +26,8 @@ const CONTACTS: usize = 300;
 /// the check refuses different fingerprints. Boundaries of two types may act alike and have different
 /// fingerprints.
 ///
-/// The check sets the time origins of both boundaries, and gives the second the state of the first.
+/// The check sets the time origins of both boundaries, which must not change their fingerprints, and gives
+/// the second the state of the first.
 ///
 /// # Errors
 /// If the fingerprints contradict the results.
@@ -66,6 +68,9 @@ where
         // same one.
         one.begin(origin)?;
         other.set_origin(origin);
+        let kept = [one.boundary.fingerprint(), other.boundary.fingerprint()];
+        require!(PART, "fingerprint", kept == fingerprints;
+            "with the time origin {origin:?}, the fingerprints are {kept:?}, and were {fingerprints:?}");
         if other.take_state(&one.state).is_err() {
             return judge(Some("in their states".to_owned()));
         }

@@ -7,6 +7,7 @@ use granular_edmd::collision::{
 use granular_edmd::wall::{Delayed, Sinusoidal, Tabulated, WallMotion};
 use granular_edmd::{Fingerprint, Kind};
 
+use crate::faults::blind::boundaries::altered::Altered;
 use crate::faults::blind::boundaries::marked;
 use crate::faults::blind::fingerprints::{Marked, Pair, Parts};
 use crate::faults::blind::motions::Motion;
@@ -130,6 +131,11 @@ pub(crate) fn catalogue() -> Vec<Planted<Pair>> {
         false,
         Parts::Boundaries([0.1, 0.2].map(sliding)),
     );
+    let anew = |_| -> Box<dyn Boundary> {
+        let honest = Altered::new(Container::closed(10.0, 12.0).expect("a size"));
+        Box::new(Altered { mark: Some(NAME), is_marked_anew: true, ..honest })
+    };
+    add("origin", "the time origin is in the fingerprint", true, Parts::Boundaries([0, 1].map(anew)));
     let kinds = |kind| -> Box<dyn Boundary> {
         let rule = Marked(Soft(Kind::new(kind)), NAME);
         marked(

@@ -34,6 +34,8 @@ pub(in crate::faults) struct Altered {
     pub(in crate::faults) mark: Option<Fingerprint>,
     /// True if the points of the walls stay where they are at the origin.
     pub(in crate::faults) are_points_fixed: bool,
+    /// True if the mark depends on the origin.
+    pub(in crate::faults) is_marked_anew: bool,
 }
 
 impl Altered {
@@ -56,6 +58,7 @@ impl Altered {
             restored: Box::new(|state| Some(state.to_vec())),
             mark: None,
             are_points_fixed: false,
+            is_marked_anew: false,
         }
     }
 }
@@ -134,6 +137,6 @@ impl Boundary for Altered {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        self.mark
+        self.mark.map(|mark| if self.is_marked_anew { mark.number(self.since) } else { mark })
     }
 }
