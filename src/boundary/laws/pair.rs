@@ -70,7 +70,8 @@ where
         other.set_origin(origin);
         let kept = [one.boundary.fingerprint(), other.boundary.fingerprint()];
         require!(PART, "fingerprint", kept == fingerprints;
-            "with the time origin {origin:?}, the fingerprints are {kept:?}, and were {fingerprints:?}");
+            "with the time origin {origin:?}, the walls are alike, but the fingerprints are {kept:?}, and were \
+             {fingerprints:?}");
         if other.take_state(&one.state).is_err() {
             return judge(Some("in their states".to_owned()));
         }
