@@ -337,8 +337,7 @@ pub trait Boundary {
     /// With a radius of 0, the result is the area that matter can fill. Stresses, densities and profiles
     /// divide by this area. Where walls occupy part of the domain, these observables refuse to measure if the
     /// area is unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay
-    /// where they are. The default is `None`. A boundary in which the free area depends on the kind of the
-    /// matter returns `None`, too.
+    /// where they are. The default is `None`; so is a free area that depends on the kind of the matter.
     ///
     /// Containers, vessels and obstacles know the area to 1e-10, even if walls overlap, unless a part with an
     /// inside is [for some kinds only](Part::only_for). The exceptions are obstacles that lie in a curved

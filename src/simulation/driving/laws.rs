@@ -23,9 +23,13 @@ const AGAIN: usize = 200;
 /// Allowed rounding of a momentum, relative to the sum of all magnitudes.
 const ROUNDING: f64 = 1e-13;
 
-/// Largest deviation of the mean square of the kicks at a position in the list from the mean of all
-/// positions, in standard errors. The disks come to the positions at random, so the errors are independent.
-const FAIR: f64 = 7.0;
+/// Smallest and largest mean square of the kicks at a position in the list, relative to the mean of all
+/// positions. If each kick changes one disk at random, the mean squares scatter by a tenth.
+const FAIR: [f64; 2] = [0.5, 1.6];
+
+/// Largest deviation of such a mean square from the mean of all positions, in standard errors. The disks come
+/// to the positions at random, so the errors are independent.
+const ERRORS: f64 = 7.0;
 
 /// Largest correlation of two kicks in a row at a position in the list, beyond the correlation between any
 /// two different positions. Random kicks have a correlation of a hundredth.
@@ -199,8 +203,8 @@ impl Sums {
         for (place, square) in self.squares.iter().enumerate() {
             let (mean, fourth) = (square / kicks, self.fourths[place] / kicks);
             let error = (f64::max(fourth - mean * mean, 0.0) / kicks).sqrt();
-            let (share, is_fair) = (mean * disks, (mean - 1.0 / disks).abs() <= FAIR * error + ROUNDING);
-            require!(PART, "alike", is_fair;
+            let (share, is_chance) = (mean * disks, (mean - 1.0 / disks).abs() <= ERRORS * error + ROUNDING);
+            require!(PART, "alike", is_chance && (FAIR[0]..=FAIR[1]).contains(&share);
                 "disks at place {place} of the list get {share:?} of the mean square kick");
         }
         let [here, elsewhere @ ..] = self.products.map(|product| product / KICKS as f64);

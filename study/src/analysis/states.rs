@@ -185,7 +185,7 @@ struct Seen {
 /// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
 /// the first value where a run shows two rolls, or both numbers of rolls alternately, and ends (b) at the
 /// last value where a run shows anything but two rolls. The other two lines have no hysteresis in the paper.
-/// Where runs disagree about such a line, the transition lies somewhere between the values at which the runs
+/// If runs disagree about such a line, the transition lies somewhere between the values at which the runs
 /// agree, and the error of the transition covers this range. The observations of a single ramp give the
 /// transitions of this ramp.
 ///

@@ -198,7 +198,7 @@ pub(super) struct Replay {
     /// Id of a disk: only collisions of this disk are written.
     #[arg(long)]
     pub(super) disk: Option<u64>,
-    /// How many of the last collisions to write; 10 if there is no `--from`.
+    /// Number of collisions to write, the last ones; 10 if there is no `--from`.
     #[arg(long)]
     pub(super) last: Option<usize>,
     /// Number of a collision: the state before it is written instead, as disks if the file ends in .xyz,

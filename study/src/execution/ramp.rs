@@ -29,6 +29,9 @@ struct Walk<'a, 's, E: Experiment> {
     earlier: Vec<(&'a Study<E>, usize)>,
     seen: Vec<Seen>,
     last: Option<Record<E>>,
+    /// True if the next value has a file with its unfinished state. An attempt to remove a file that is not
+    /// there would cost each value a call of the system.
+    has_partial: bool,
 }
 
 /// Runs the ramps of a block until they are done or the run must stop. Returns false if another process is
@@ -58,7 +61,8 @@ pub(super) fn attempt<E: Experiment>(
             continue;
         }
         let earlier = session.earlier_ramps(study.plan().ramp_seed(ramp));
-        let mut walk = Walk { session, ramp, entries: &entries, earlier, seen: Vec::new(), last: None };
+        let (entries, seen, last) = (&entries, Vec::new(), None);
+        let mut walk = Walk { session, ramp, entries, earlier, seen, last, has_partial: false };
         while let Some(step) = study.plan().next(&walk.seen) {
             if !walk.take(step)? {
                 break;
@@ -72,6 +76,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Runs one value; returns false if it was interrupted.
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
         let (study, value) = (self.session.study, self.seen.len());
+        self.has_partial = false;
         if value >= study.plan.value_count() {
             self.session.count_more();
         }
@@ -154,10 +159,12 @@ impl<E: Experiment> Walk<'_, '_, E> {
     }
 
     /// Returns the saved data of an unfinished value, or `None` if there are none.
-    fn saved<'v>(&self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
+    fn saved<'v>(&mut self, value: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
         let (study, index) = (self.session.study, self.seen.len());
         let path = study.folder.partial(self.ramp, index);
-        let read = read_sealed::<Partial<E>>(&path).and_then(|partial| {
+        let read = read_sealed::<Partial<E>>(&path);
+        self.has_partial = !matches!(read, Ok(None));
+        let read = read.and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
             study.check_origin(&partial.0.origin, self.ramp, index, &path)?;
             value.go_on(partial, &path).map(Some)
@@ -167,7 +174,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
 
     /// Runs the steps of a value until the value is finished, and saves the value at intervals. Returns
     /// `None` if it was interrupted.
-    fn steps(&self, active: &mut Active<'_, E>) -> Result<Option<Outcome>, StudyError> {
+    fn steps(&mut self, active: &mut Active<'_, E>) -> Result<Option<Outcome>, StudyError> {
         let control = self.session.control;
         let (began, mut saved) = (Instant::now(), Instant::now());
         while !active.is_done() {
@@ -196,7 +203,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(Some(Outcome::Completed))
     }
 
-    fn save(&self, active: &Active<'_, E>) -> Result<(), StudyError> {
+    fn save(&mut self, active: &Active<'_, E>) -> Result<(), StudyError> {
+        self.has_partial = true;
         let folder = &self.session.study.folder;
         let path = folder.partial(self.ramp, self.seen.len());
         let partial = active
@@ -244,7 +252,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let contents = encoded::<Contents<E::Sample, E::Observer>>(study.folder(), &record.contents)?;
         study.store.push(head, &contents)?;
         study.store.note(&line)?;
-        remove(&study.folder.partial(self.ramp, record.value_index()))?;
+        if self.has_partial {
+            remove(&study.folder.partial(self.ramp, record.value_index()))?;
+        }
         self.last = Some(record);
         Ok(true)
     }
