@@ -23,6 +23,10 @@ use segment::Segment;
 /// rounding could leave a hole between two bricks that meet.
 const MARGIN: f64 = 1e-12;
 
+/// Direction from the center of a circle to the point that shows its position. The outermost points are
+/// less suitable: circles of other sizes often have one of them in common.
+pub(super) const ASLANT: DVec2 = DVec2::new(0.6, 0.8);
+
 /// A piece of a wall: a segment, an arc, a circle or a point.
 ///
 /// A brick has a direction. Disks are free on its left side; the wall is on the other side. A segment leads
@@ -189,7 +193,7 @@ impl Brick {
             Shape::Segment(segment) => (segment.from, DVec2::ZERO),
             Shape::Arc(arc) => match arc.ends() {
                 Some([(start, _), _]) => (start, DVec2::ZERO),
-                None => (arc.center, arc.radius * DVec2::X),
+                None => (arc.center, arc.radius * ASLANT),
             },
         }
     }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::area::{Curve, Field, LOOKS, meet};
-use super::brick::Brick;
+use super::brick::{ASLANT, Brick};
 use super::part::enclosing;
 use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
 use crate::{Disk, Fingerprint, Flight, ParameterError};
@@ -139,7 +139,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         match wall.checked_sub(self.boundary.wall_count()) {
-            Some(index) => self.obstacles.get(index).map(|disk| disk.position() + disk.radius() * DVec2::X),
+            Some(index) => self.obstacles.get(index).map(|disk| disk.position() + disk.radius() * ASLANT),
             None => self.boundary.wall_point(wall, time),
         }
     }

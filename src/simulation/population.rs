@@ -104,6 +104,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Begins a new balance of the energy, after a change that is not part of a run.
     pub(super) fn balance_anew(&mut self, domain: &Domain) {
         let [energy, _] = self.bodies.energy(self.clock.now, domain);
-        self.ledger.balance_anew(energy);
+        self.ledger.balance_anew(energy - self.counters.energy_of_rebounds);
     }
 }

@@ -93,11 +93,11 @@ pub enum Warning {
         upwards: f64,
     },
     /// The disks have gained energy since the run was built, or since disks, walls or gravity were last
-    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, no disk came in
-    /// or left, and no remedy [`LeastRebound`](crate::collision::LeastRebound) added any: a rule gains
-    /// energy. [`collision::laws::check`](crate::collision::laws::check) finds such a rule.
+    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, and no disk came
+    /// in or left: a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds such a
+    /// rule.
     EnergyGained {
-        /// Energy at that time.
+        /// Energy at that time, and what [`LeastRebound`](crate::collision::LeastRebound) has added since.
         before: f64,
         /// Energy now.
         now: f64,
@@ -279,12 +279,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     fn energy_gained(&self) -> Option<Warning> {
-        let has_source = self.ledger.has_source || self.counters.least_rebound_collisions > 0;
         let [now, size] = self.bodies.energy(self.clock.now, &self.boundary.domain());
-        let before = self.ledger.energy;
+        let rebounds = self.counters.energy_of_rebounds;
+        let before = self.ledger.energy + rebounds;
         // Disks that fall forever have large energies of both kinds, whose rounding may exceed their sum.
-        let is_more = now - before > GAIN * (size + before.abs());
-        (!has_source && is_more).then_some(Warning::EnergyGained { before, now })
+        let is_more = now - before > GAIN * (size + before.abs() + rebounds);
+        (!self.ledger.has_source && is_more).then_some(Warning::EnergyGained { before, now })
     }
 
     /// Counts the walls that have another position in another boundary at the present time. Walls with the

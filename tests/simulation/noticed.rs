@@ -2,8 +2,8 @@
 //! that is wrong does not end as if it were right.
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Vessel,
-    Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Obstacles, Overlap, Part, Probe, Region, Surface, Touch,
+    Vessel, Wall,
 };
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
@@ -321,6 +321,13 @@ fn an_arc_that_jumps_about_its_center_is_a_warning() {
     assert_eq!(jump(circle(3.0), circle(3.0)), []);
     let grown = jump(circle(3.0), circle(4.0));
     assert!(matches!(grown[..], [Warning::WallJumped { by, .. }] if (by - 1.0).abs() < 1e-12), "{grown:?}");
+    // A peg that grows on all sides but one.
+    let peg = |radius: f64| Disk::new(center + DVec2::X * (2.0 - radius), radius).unwrap();
+    let pegs = |radius: f64| Obstacles::new(walls(), [peg(radius)]);
+    let disks = [Disk::new(DVec2::new(1.0, 1.0), 0.5).unwrap()];
+    let mut run = Simulation::builder(Elastic, pegs(1.0)).disks(disks).build().unwrap();
+    run.set_boundary(pegs(1.5)).unwrap();
+    assert!(matches!(run.warnings()[..], [Warning::WallJumped { .. }]), "{:?}", run.warnings());
 }
 
 /// A flap turns about one of its ends. The same walls in another order have not moved.

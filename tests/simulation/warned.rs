@@ -118,6 +118,23 @@ fn energy_without_a_source_is_a_warning() -> Outcome {
     Ok(())
 }
 
+/// A remedy may add energy, but the rule under it may not, also if the remedy has decided a collision.
+#[test]
+fn a_gain_under_a_remedy_is_a_warning() -> Outcome {
+    for gain in [-0.01, 0.0, 0.01] {
+        let rule = from_fn(move |contact: &Contact| Impulse::new(contact.normal_impulse(1.0 + gain), 0.0));
+        let rule = LeastRebound::new(rule, 0.02)?;
+        let mut run = Simulation::builder(rule, walls()?).disks(gas(&walls()?)?).gravity(0.1).build()?;
+        run.run_until(30.0, &mut ())?;
+        run.set_gravity(0.2)?;
+        run.run_until(60.0, &mut ())?;
+        assert!(run.counters().energy_of_rebounds > 0.0);
+        let warned = matches!(run.warnings()[..], [Warning::EnergyGained { .. }]);
+        assert_eq!(warned, gain > 0.0, "{gain}: {:?}", run.warnings());
+    }
+    Ok(())
+}
+
 /// A run that goes on from a checkpoint with other walls begins a new balance.
 #[cfg(feature = "serde")]
 #[test]

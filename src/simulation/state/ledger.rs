@@ -9,7 +9,7 @@ pub(in crate::simulation) struct Ledger {
     /// Sum of the times that all disks had spent in the run before that time.
     disk_time: f64,
     /// Kinetic and potential energy when the run was built, or when disks, walls or gravity last changed
-    /// between two runs.
+    /// between two runs, less what the remedy `LeastRebound` had added by then.
     pub(in crate::simulation) energy: f64,
     /// True once a disk has hit a moving or thermal wall, has come in or has left since then.
     pub(in crate::simulation) has_source: bool,
