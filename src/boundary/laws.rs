@@ -59,9 +59,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface
 ///   with the same response.
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it. An
-///   impact on a wall whose normal and tangential masses are infinite changes no gap, now or later; a surface
-///   that only begins to slide or to turn is not noticed. Other walls may move with the one that is hit, as
-///   parts of one body do.
+///   impact on a wall whose normal and tangential masses are infinite changes neither the motion of its
+///   surface nor a gap, now or later. Other walls may move with the one that is hit, as parts of one body do.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
 ///   a periodic seam, a disk overlaps the same wall.
 ///

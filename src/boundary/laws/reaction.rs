@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::trial::{PART, Trial};
 use crate::Violation;
-use crate::boundary::{Boundary, Impact, Reaction, Touch};
+use crate::boundary::{Boundary, Impact, Reaction, Surface, Touch};
 use crate::violation::require;
 
 /// Speeds that the tested impacts give to a wall, in units of the typical speed.
@@ -38,18 +38,32 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
     Ok(())
 }
 
-/// Checks that a blow on a wall that does not react moves no wall.
+/// Checks that a blow on a wall that does not react changes the motion of no wall.
 fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
-    let state = trial.boundary.state();
-    if state.is_empty() {
+    let (state, before) = (trial.boundary.state(), answers(trial, touch, place));
+    let has_others = !state.is_empty();
+    let gaps_before = if has_others { gaps(trial, time) } else { Vec::new() };
+    let impulse = trial.speed * (trial.length() * normal.perp() - trial.length() * normal);
+    let blow = Impact::new(wall, impulse, place - trial.radius * normal, time);
+    trial.boundary.react(&blow.with_couple(trial.speed * trial.length()));
+    let found = answers(trial, touch, place);
+    let scale = trial.speed * (1.0 + 1.0 / trial.radius);
+    let is_same = before
+        .iter()
+        .zip(found)
+        .all(|(before, now)| (now - before).abs() <= ROUNDING * (before.abs() + scale) + trial.rounding());
+    require!(PART, "reaction", is_same;
+        "a blow on wall {wall} at {time:?}, whose masses are infinite, changes its velocity, angular velocity and depths \
+         from {before:?} to {found:?}");
+    if !has_others {
         return Ok(());
     }
-    let before = gaps(trial, time);
-    let impulse = trial.speed * (trial.length() * normal.perp() - trial.length() * normal);
-    trial.boundary.react(&Impact::new(wall, impulse, place - trial.radius * normal, time));
-    let moved =
-        gaps(trial, time).iter().zip(before).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
+    let moved = gaps(trial, time)
+        .iter()
+        .zip(gaps_before)
+        .map(|(now, before)| (now - before).abs())
+        .fold(0.0, f64::max);
     require!(PART, "reaction", moved <= trial.rounding();
         "a blow on wall {wall} at {time:?}, whose masses are infinite, moves other walls by {moved:?}");
     trial.take_state(&state)
@@ -66,14 +80,15 @@ fn gaps(trial: &Trial<'_>, time: f64) -> Vec<f64> {
     places.flat_map(|place| times.map(|time| (place, time))).map(depth).collect()
 }
 
-/// Returns numbers that show the present and the later motion of a wall: its velocity, and depths of
-/// overlaps.
-fn answers(trial: &Trial<'_>, touch: Touch, place: DVec2) -> [f64; 4] {
+/// Returns numbers that show the present and the later motion of a wall: its velocity, its angular velocity,
+/// and depths of overlaps.
+fn answers(trial: &Trial<'_>, touch: Touch, place: DVec2) -> [f64; 5] {
     let Touch { wall, time, .. } = touch;
-    let velocity = trial.boundary.surface(wall, place, time).velocity;
+    let Surface { velocity, angular_velocity, .. } = trial.boundary.surface(wall, place, time);
     let later = time + 0.1 * trial.length() / trial.speed;
     let [now, then] = [time, later].map(|time| trial.depth(place, trial.radius, time));
-    [velocity.x, velocity.y, now.map_or(0.0, |found| found.depth), then.map_or(0.0, |found| found.depth)]
+    let [now, then] = [now, then].map(|found| found.map_or(0.0, |found| found.depth));
+    [velocity.x, velocity.y, angular_velocity, now, then]
 }
 
 /// Checks an impact along the normal and along the surface, and a couple, each given by the speed that it
@@ -97,7 +112,8 @@ fn check_blow(
     let depth = |trial: &Trial<'_>| trial.depth(place, trial.radius, time).map_or(0.0, |found| found.depth);
     let depth_before = depth(trial);
     let reaction = trial.boundary.react(&Impact::new(wall, impulse, point, time).with_couple(couple));
-    let gained = trial.boundary.surface(wall, place, time).velocity - velocity;
+    let struck = trial.boundary.surface(wall, place, time);
+    let gained = struck.velocity - velocity;
     let expected = DVec2::new(
         impulse.dot(normal) / masses[0],
         (impulse.dot(tangent) + if radius.is_finite() { couple / arm } else { 0.0 }) / masses[1],

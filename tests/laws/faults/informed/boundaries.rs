@@ -1,6 +1,7 @@
 //! Boundaries that break their contract where a check may not look.
 
 use std::cell::Cell;
+use std::rc::Rc;
 
 use granular_edmd::boundary::{
     Boundary, Container, FirstTouch, Impact, Obstacles, Overlap, Part, Probe, Reaction, Region, Response,
@@ -392,6 +393,24 @@ fn reactions(boundaries: &mut Boundaries) {
     for (family, name, react, honest) in all {
         boundaries.part(family, name, Altered { react: Box::new(react), ..honest() });
     }
+    // A belt in motion whose disks set it to another speed, by its velocity and by its angular velocity.
+    let was_hit = Rc::new(Cell::new(false));
+    let hits = Rc::clone(&was_hit);
+    let react = Box::new(move |honest: &mut dyn Boundary, impact: &Impact| {
+        hits.set(hits.get() || impact.wall > 3);
+        honest.react(impact)
+    });
+    let surface = Box::new(move |surface: &mut Surface<'_>, _, _| {
+        let factor = if was_hit.get() { 1.001 } else { 1.0 };
+        surface.velocity *= factor;
+        surface.angular_velocity *= factor;
+    });
+    let changed = Altered { surface, react, ..belt() };
+    boundaries.part(
+        "blow on a belt",
+        "blows make a belt faster by 1e-3, and nothing keeps its state",
+        changed,
+    );
 }
 
 /// A peg near a side of a periodic box whose image at the other side is forgotten.
