@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// If the number of disks in the box varies, its mean square enters, too: the denominator has the factor
 /// $`\langle M_i(M_j - \delta_{ij})\rangle/\langle M_i\rangle\langle M_j - \delta_{ij}\rangle`$ with the
-/// numbers $`M`$ of disks in the whole box.
+/// numbers $`M`$ of disks in the whole box. Without disks, $`M_j - \delta_{ij}`$ is 0.
 ///
 /// $`N_{ij}(r)`$ counts the pairs of a disk $`i`$ in a region and a partner $`j`$ anywhere, by the distance
 /// between their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area
@@ -73,7 +73,8 @@ pub struct PairCorrelation {
     centers: RunningMean,
     /// Number of partners in the region, divided by its area.
     partner_density: RunningMean,
-    /// Numbers of possible centers in the box, of possible partners of each center, and of pairs.
+    /// Numbers of possible centers in the box, of possible partners of each center, and of pairs, each times
+    /// the region's share of the box, divided by the area of the box, and both.
     numbers: [RunningMean; 3],
 }
 
@@ -213,7 +214,11 @@ impl Accumulator for PairCorrelation {
         let others = if all > 0.0 { 1.0 - itself / all } else { 0.0 };
         self.centers.push(centers);
         self.partner_density.push(partners * others / region.area());
-        let numbers = [possible, all - itself, possible * (all - itself)];
+        let (area, whole) = (region.area(), snapshot.domain().region().area());
+        let whole = if whole.is_finite() { whole } else { area };
+        let [centers, partners] = [possible * (area / whole), (all - itself).max(0.0) / whole];
+        // A center in an empty box has no partners, rather than -1.
+        let numbers = [centers, partners, centers * partners];
         self.numbers.iter_mut().zip(numbers).for_each(|(mean, number)| mean.push(number));
         for (bin, count) in self.count(snapshot, &region).into_iter().enumerate() {
             let (low, high) = (self.bins.edge(bin), self.bins.edge(bin + 1));

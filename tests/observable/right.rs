@@ -14,6 +14,8 @@ use granular_edmd::replay::Replay;
 use granular_edmd::simulation::{Inlet, RunError};
 use granular_edmd::wall::Sinusoidal;
 use granular_edmd::{Disk, ParameterError, Simulation, initial};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -206,6 +208,37 @@ fn pairs_of_a_gas_whose_number_grows_are_those_of_an_ideal_gas() -> Result<(), F
     for correlation in [&whole, &part] {
         let mean = correlation.iter().skip(3).map(|(_, value)| value.mean()).sum::<f64>() / 7.0;
         assert!((mean - 1.0).abs() < 0.03, "{mean}");
+    }
+    Ok(())
+}
+
+/// An ideal gas has no correlations, also if some samples have no disks, or if the box changes its size.
+#[test]
+fn pairs_of_an_ideal_gas_in_samples_without_disks_and_in_boxes_of_two_sizes() -> Result<(), Failure> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut mean = |numbers: [usize; 4], sizes: [f64; 2], is_periodic: bool| -> Result<f64, Failure> {
+        let mut correlation = PairCorrelation::new(3.0, 3)?;
+        for sample in 0..40_000 {
+            let size = sizes[sample / 20_000];
+            let mut place = || random.random_range(0.0..size);
+            let disks: Result<Vec<Disk>, _> =
+                (0..numbers[sample % 4]).map(|_| Disk::new(DVec2::new(place(), place()), 1e-6)).collect();
+            let domain = if is_periodic {
+                Container::periodic(size, size)?.domain()
+            } else {
+                Container::closed(size, size)?.domain()
+            };
+            correlation.add(&Snapshot::new(sample as f64, &disks?, domain, 0.0));
+        }
+        Ok(correlation.iter().map(|(_, value)| value.mean()).sum::<f64>() / 3.0)
+    };
+    for numbers in [[0, 1, 2, 3], [0, 0, 0, 2], [0, 4, 0, 4], [0, 0, 0, 20], [10; 4]] {
+        for sizes in [[10.0, 10.0], [10.0, 20.0]] {
+            for is_periodic in [true, false] {
+                let found = mean(numbers, sizes, is_periodic)?;
+                assert!((found - 1.0).abs() < 0.1, "{numbers:?} {sizes:?} {is_periodic}: {found}");
+            }
+        }
     }
     Ok(())
 }
