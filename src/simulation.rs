@@ -173,6 +173,8 @@ struct Scratch {
     due: Vec<f64>,
     /// Number of disks for which the scheduler has room.
     seats: usize,
+    /// Number of events and time at which all disks were last checked after a run.
+    checked: Option<(u64, f64)>,
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {

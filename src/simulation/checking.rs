@@ -4,7 +4,8 @@
 //! Every part may be the user's code. No part can make the engine panic. However, a wall at another position
 //! than it reports, or a scheduler that loses events, would let a run end as if nothing had happened. The
 //! engine therefore checks where a check costs next to nothing: at each wall collision, at each new largest
-//! overlap, at the ends of searches for a wall, and at all disks whenever the epoch moves or a run ends.
+//! overlap, at the partner of each collision, at the ends of searches for a wall, and at all disks whenever
+//! the epoch moves, and at the ends of runs or steps once there were as many events as disks.
 
 use glam::DVec2;
 
@@ -136,6 +137,21 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
+    /// Checks all disks at the end of a run or a step, if there were as many events as disks since the last
+    /// check. More checks would cost more than the runs. A scheduler that names no disk at all is noticed when
+    /// an epoch has passed.
+    pub(super) fn check_sometimes(&mut self) -> Outcome<()> {
+        let (events, time) = (self.counters.events(), self.time());
+        let is_due = self.scratch.checked.is_none_or(|(before, since)| {
+            events - before >= self.len() as u64 || time - since >= self.clock.epoch_length
+        });
+        if is_due {
+            self.check_all(self.clock.now)?;
+            self.scratch.checked = Some((events, time));
+        }
+        Ok(())
+    }
+
     /// Checks that no event before this time offset was lost, and that all disks are in the domain at that
     /// time.
     pub(super) fn check_all(&self, offset: f64) -> Outcome<()> {
@@ -143,8 +159,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let rounding = self.clock.rounding() * self.fastest();
         for (disk, particle) in self.bodies.particles.iter().enumerate() {
             if particle.forecast.due() < offset {
-                let due = self.clock.origin + particle.forecast.due();
-                return Err(RunError::Overdue { disk, due, time: self.time() }.into());
+                return Err(self.overdue(disk, particle.forecast.due()).into());
             }
             let position = self.bodies.position(disk, offset);
             if !domain.contains(position, rounding + self.bodies.radius(disk)) {
@@ -169,6 +184,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
         let expected = self.bodies.forecast(disk).map(Forecast::due);
         RunError::Scheduler { disk, due, expected, time: self.time() }
+    }
+
+    #[cold]
+    pub(super) fn overdue(&self, disk: usize, due: f64) -> RunError {
+        RunError::Overdue { disk, due: self.clock.origin + due, time: self.time() }
     }
 
     #[cold]

@@ -58,8 +58,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let partner = forecast.partner as usize;
             // An equal count means that the partner is still on the flight for which the collision was
             // predicted. The partner may also have been removed.
-            let collisions = self.bodies.forecast(partner).map(|partner| partner.collisions);
-            if collisions == Some(forecast.partner_collisions) {
+            let known = self.bodies.forecast(partner).copied();
+            if let Some(known) = known.filter(|known| known.collisions == forecast.partner_collisions) {
+                // The collision gives the partner another event, which would hide one that was lost.
+                if known.due() < due {
+                    return Err(self.overdue(partner, known.due()).into());
+                }
                 return self.collide(disk, partner, observer).map(Some);
             }
             self.counters.repredictions += 1;

@@ -76,7 +76,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Outcome<RunEnd> {
         self.check_end(limits.end())?;
         let watch = Watch::new(limits, &self.counters);
-        let (events, start) = (self.counters.events(), self.time());
         self.clock.events_to_look = 1;
         observer.on_start(&self.snapshot());
         let ended = match self.verdict_of(observer) {
@@ -86,12 +85,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             ),
             stopped => stopped.map(|_| RunEnd::Observer),
         };
-        // After fewer events than disks, a check of all disks would cost more than the run. A scheduler that
-        // names no disk at all is noticed when an epoch is over.
-        let is_long = self.counters.events() - events >= self.len() as u64
-            || self.time() - start >= self.clock.epoch_length;
-        let is_due = ended.is_ok() && is_long;
-        let ended = if is_due { self.check_all(self.clock.now).and(ended) } else { ended };
+        let ended = ended.and_then(|end| self.check_sometimes().map(|()| end));
         observer.on_end(&self.snapshot());
         // At this point, a verdict to stop has no effect. A failure, of a last write for example, must still
         // be reported.
@@ -142,6 +136,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         };
         // A verdict to stop has no effect: the caller of single steps can stop at any of them.
         let _: ControlFlow<()> = self.verdict_of(observer)?;
+        self.check_sometimes()?;
         Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
     }
 

@@ -158,6 +158,50 @@ fn a_motion_with_false_bounds_ends_the_run() {
     assert!(error.to_string().contains("wall::laws::check"), "{error}");
 }
 
+/// A scheduler that loses one time. A disk that is hit before its own event is missed gets a new event.
+#[test]
+fn one_event_that_the_scheduler_lost_is_noticed_before_disks_overlap() {
+    struct Forgetful {
+        honest: LinearScan,
+        sets_until_lost: u64,
+    }
+    impl EventScheduler for Forgetful {
+        fn reset(&mut self, due: &[f64]) {
+            self.honest.reset(due);
+        }
+        fn set(&mut self, disk: usize, due: f64) {
+            self.honest.set(disk, if self.sets_until_lost == 0 { f64::INFINITY } else { due });
+            self.sets_until_lost = self.sets_until_lost.wrapping_sub(1);
+        }
+        fn earliest(&self) -> (usize, f64) {
+            self.honest.earliest()
+        }
+    }
+    let mut errors = 0;
+    for sets_until_lost in (0..1400).step_by(2) {
+        let scheduler = Forgetful { honest: LinearScan::new(), sets_until_lost };
+        let builder = Simulation::builder(Elastic, walls()).disks(gas(&walls(), 40)).scheduler(scheduler);
+        let mut run = builder.build().unwrap();
+        let mut deepest = 0.0_f64;
+        let end = (1..=300).map(|step| 0.1 * f64::from(step)).try_for_each(|time| {
+            run.run_until(time, &mut ())?;
+            let disks = run.disks();
+            let overlap = |(one, other): (&Disk, &Disk)| {
+                one.radius() + other.radius() - one.position().distance(other.position())
+            };
+            let pairs = disks
+                .iter()
+                .enumerate()
+                .flat_map(|(number, one)| disks[number + 1..].iter().map(move |other| (one, other)));
+            deepest = pairs.map(overlap).fold(deepest, f64::max);
+            Ok::<(), RunError>(())
+        });
+        errors += u32::from(end.is_err());
+        assert!(end.is_err() || deepest < 1e-9, "{sets_until_lost}: {deepest}");
+    }
+    assert!(errors > 400, "{errors}");
+}
+
 /// A scheduler that does not take earlier times, and one that forgets a single one.
 #[test]
 fn an_event_that_the_scheduler_lost_is_noticed() {
