@@ -82,8 +82,8 @@ fn mild_contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
-/// Returns ordinary contacts of each kind with the same kind, the default kind and a wall and, for kinds
-/// below 256, with all smaller kinds. Each pair meets without slip, too: the loss of a slip could hide a gain
+/// Returns ordinary contacts of each kind with the same kind, the default kind and a wall, of a disk of the
+/// default kind with a wall of this kind and, for kinds below 256, of this kind with all smaller kinds. Each pair meets without slip, too: the loss of a slip could hide a gain
 /// along the normal.
 pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
     [0.0, 0.5].into_iter().flat_map(|slip| contacts_of_kinds_with(Contact::new(1.0, slip, 0.5, 0.25)))
@@ -95,7 +95,9 @@ fn contacts_of_kinds_with(contact: Contact) -> impl Iterator<Item = Contact> {
         let partners = [(kind, 0.5), (Kind::DEFAULT, 0.5), (Kind::WALL, f64::INFINITY)];
         let smaller = 1..if number < 256 { number } else { 1 };
         let partners = partners.into_iter().chain(smaller.map(|number| (Kind::new(number), 0.5)));
-        partners.map(move |(partner, radius)| between(contact, ([kind, partner], [0.5, radius])))
+        let disks = partners.map(move |(partner, radius)| ([kind, partner], [0.5, radius]));
+        let wall = ([Kind::DEFAULT, kind], [0.5, f64::INFINITY]);
+        disks.chain([wall]).map(move |partners| between(contact, partners))
     })
 }
 

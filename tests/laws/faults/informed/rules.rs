@@ -91,6 +91,24 @@ fn partners(rules: &mut Rules) {
     rules.gain("pair of kinds", "gain of the kinds 17 and 18", |contact| {
         contact.is_between(Kind::new(17), Kind::new(18))
     });
+    rules.gain(
+        "pair of kinds",
+        "gain of a disk of kind 17 that meets one of kind 203, in this order",
+        |contact| contact.kinds() == [Kind::new(17), Kind::new(203)],
+    );
+    let ordered = FREE.with_ordered_partners();
+    rules.rule("pair of kinds", "gain of ordered partners of the kinds 17 and 203", ordered, |contact| {
+        smooth(contact, if contact.kinds() == [Kind::new(17), Kind::new(203)] { GAIN } else { 0.9 })
+    });
+    rules.rule(
+        "pair of kinds",
+        "the kinds 17 and 203 lose less than the kinds 203 and 17",
+        FREE,
+        |contact| smooth(contact, if contact.kinds() == [Kind::new(17), Kind::new(203)] { 0.8 } else { 0.9 }),
+    );
+    rules.gain("walls with a kind", "gain at straight walls of kind 200", |contact| {
+        contact.radii()[1] == f64::INFINITY && contact.kinds()[1] == Kind::new(200)
+    });
     rules.gain("unnamed kind", "gain of kind 1000, which nobody names", |contact| {
         contact.kinds().contains(&Kind::new(1000))
     });
@@ -194,9 +212,14 @@ fn states(rules: &mut Rules) {
         let regime = if is_due() { Regime::Sliding } else { Regime::Sticking };
         smooth(contact, 0.9).with_regime(regime)
     });
-    let calls = Cell::new(0_u32);
-    rules.rule("after many", "after a million calls, nothing is lost", FREE, move |contact| {
-        calls.set(calls.get() + 1);
-        smooth(contact, if calls.get() > 1_000_000 { 1.0 } else { 0.9 })
-    });
+    for (name, most) in [
+        ("after a million calls, nothing is lost", 1_000_000_u32),
+        ("after three million calls, nothing is lost", 3_000_000),
+    ] {
+        let calls = Cell::new(0);
+        rules.rule("after many", name, FREE, move |contact| {
+            calls.set(calls.get() + 1);
+            smooth(contact, if calls.get() > most { 1.0 } else { 0.9 })
+        });
+    }
 }
