@@ -115,6 +115,9 @@ fn equal_samples_tell_no_more_than_one() {
     assert!(!estimate.is_converged());
     assert_eq!((estimate.samples(), estimate.independent_samples()), (100, 1.0));
     assert_eq!(estimate.to_string(), "0.30000 ± 0.00000 (all samples are equal)");
+    let independent = [0.3; 100].into_iter().collect::<RunningMean>().estimate();
+    assert!(!independent.is_converged());
+    assert_eq!(independent.to_string(), "0.30000 ± 0.00000 (all samples are equal)");
 }
 
 /// The only scatter is in the last samples, which fill no block of the sizes whose blocks are all equal.
@@ -241,10 +244,10 @@ fn two_digits_of_the_error_are_printed() {
         let numbers = (0..1000).map(|k| -0.125 + if k % 3 == 0 { spread } else { -0.5 * spread });
         let mean: RunningMean = numbers.collect();
         let estimate: Estimate = mean.estimate();
-        assert!(estimate.assumes_independence() && estimate.is_converged());
+        assert!(estimate.assumes_independence() && estimate.is_converged() == (spread != 0.0));
         estimate.to_string()
     };
-    assert_eq!(printed(0.0), "-0.12500 ± 0.00000 (independent samples)");
+    assert_eq!(printed(0.0), "-0.12500 ± 0.00000 (all samples are equal)");
     assert_eq!(printed(1.0), "-0.124 ± 0.022 (independent samples)");
     assert_eq!(printed(1e4), "10 ± 224 (independent samples)");
 }

@@ -2,6 +2,7 @@
 
 use super::Maxwellian;
 use super::bisection::boundary;
+use super::largest_loss::largest_loss_of_friction;
 use super::stick_slip::StickSlip;
 use crate::ParameterError;
 use crate::quantity::{accept, non_negative};
@@ -70,8 +71,9 @@ impl IsoLine {
     ///
     /// The result contains the connected pieces of the line. If a piece ends between two of the frictions,
     /// its exact end is its last point. At such an end, the line leaves the plane, or its lower and its upper
-    /// inelasticity meet. In the second case, the point belongs to both pieces. The trace misses a piece that
-    /// lies entirely between two of the frictions.
+    /// inelasticity meet. In the second case, the point belongs to both pieces. If friction alone costs more
+    /// than the energy of the line, the line has a gap around the friction of the largest loss, which the trace
+    /// finds. It misses a piece, or another gap, that lies entirely between two of the frictions.
     ///
     /// # Errors
     /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not
@@ -85,7 +87,14 @@ impl IsoLine {
         let on = |branch: usize| {
             move |friction| self.roots(friction)[branch].and_then(|root| within(root, largest_inelasticity))
         };
-        Ok([pieces(frictions, on(0)), pieces(frictions, on(1))].concat())
+        let mut frictions = frictions.to_vec();
+        let costly = largest_loss_of_friction(self.mass_ratio, self.slip_ratio);
+        let next = frictions.partition_point(|&friction| friction < costly);
+        if on(0)(costly).is_none() && (1..frictions.len()).contains(&next) {
+            // A point without the line, so it is in no piece.
+            frictions.insert(next, costly);
+        }
+        Ok([pieces(&frictions, on(0)), pieces(&frictions, on(1))].concat())
     }
 
     /// Returns both real values of q at a friction, in ascending order, including values outside the plane.

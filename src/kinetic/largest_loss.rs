@@ -41,6 +41,12 @@ pub fn friction_of_largest_loss(rule: &Frictional, gas: &Maxwellian) -> Option<f
     Some((1.0 - tangential) * slip_ratio * sine / (opposite * cosine))
 }
 
+/// Returns the friction with the largest loss of disks without inelasticity; 0 if there is none.
+pub(super) fn largest_loss_of_friction(mass_ratio: f64, slip_ratio: f64) -> f64 {
+    let sine = Slope::new(1.0, 0.0).root().unwrap_or(0.0);
+    slip_ratio * sine / (mass_ratio * ((1.0 - sine) * (1.0 + sine)).sqrt())
+}
+
 fn friction_ratio(rule: &Frictional) -> f64 {
     if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() }
 }

@@ -58,7 +58,8 @@ type Moments = [DVec2; MOMENTS];
 /// - the domain is not periodic in both directions, or has changed;
 /// - there is gravity, or a disk meets a wall;
 /// - a collision of disks changes the energy by more than 1e-6 of their energy;
-/// - disks change by anything but collisions: an inlet, a driving, or a change between two runs.
+/// - disks change by anything but collisions: an inlet, a driving, or a change between two runs. If only their
+///   positions change between two runs, the observer begins with new origins.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -315,6 +316,9 @@ impl Observer for TransportCoefficients {
         let (name, same) = ("area of the domain", "that of the previous run, for transport coefficients");
         let stays = accept(domain == start.domain(), name, same, area);
         self.fault = periodic.and(weightless).and(stays).and(goes_on).err();
+        for lags in &mut self.lags {
+            lags.begin(start);
+        }
     }
 
     fn on_collision(&mut self, collision: &Collision) {
@@ -362,6 +366,9 @@ impl Observer for TransportCoefficients {
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.advance(end.time());
         self.stretch.pause(end.time());
+        for lags in &mut self.lags {
+            lags.pause(end);
+        }
     }
 
     fn verdict(&mut self) -> Verdict {

@@ -13,6 +13,10 @@ use crate::{Flight, Kind};
 /// Distance from a wall at which a flight to it starts, in radii.
 const AWAY: f64 = 1.5;
 
+/// Largest distance between two positions at which disks are sent to a wall, in radii. Disks that need less
+/// room beside them do not count as able to pass.
+const STEP: f64 = 0.25;
+
 /// Speed of such a flight, relative to the speed of a typical disk. The speed is high, so that walls hardly
 /// move during the flight.
 const FAST: f64 = 1e3;
@@ -55,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         smallest
     }
 
-    /// Returns positions on all walls and on the edges of the domain, at most one diameter apart, each with a
-    /// unit vector normal to the wall or edge.
+    /// Returns positions on all walls and on the edges of the domain, at most a [`STEP`] apart, each with a unit
+    /// vector normal to the wall or edge.
     fn places_at_walls(&self, radius: f64) -> impl Iterator<Item = (DVec2, DVec2)> {
         let inside = self.boundary.interior();
         let top = inside.top.min(inside.bottom + inside.width());
@@ -67,7 +71,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             lines.flat_map(|line| line.windows(2).map(|ends| [ends[0], ends[1]]).collect::<Vec<_>>());
         pieces.flat_map(move |[from, to]| {
             let (way, across) = (to - from, (to - from).perp().normalize_or_zero());
-            let count = (way.length() / (2.0 * radius)).ceil();
+            let count = (way.length() / (STEP * radius)).ceil();
             (0..count as u32).map(move |step| (from + (f64::from(step) + 0.5) / count * way, across))
         })
     }

@@ -102,10 +102,11 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk has room to touch a sink, and none has been removed in a thousand collisions or more: walls
-    /// cover the sink, for example because they are closer than a radius to a line for centers. A gate that
-    /// opens later is a harmless cause. Walls farther away that separate all disks from a sink, or leave only
-    /// too narrow a way to it, are not noticed.
+    /// No disk seems to have room to touch a sink, and none has been removed in a thousand collisions or more:
+    /// walls cover the sink, for example because they are closer than a radius to a line for centers, or the
+    /// sink lets all these disks pass. A gate that opens later is a harmless cause, and so is a slot that is
+    /// wider than a disk by less than a quarter of a radius. Walls farther away that separate all disks from a
+    /// sink, or leave only too narrow a way to it, are not noticed.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,
@@ -164,8 +165,8 @@ impl fmt::Display for Warning {
             ),
             Self::ClosedSink { name, .. } => write!(
                 formatter,
-                "no disk has room at the sink \"{name}\", since walls are in its way: a line for centers must be farther \
-                 from them than a radius"
+                "no disk has room at the sink \"{name}\": walls are in its way (a line for centers must be farther from \
+                 them than a radius), or it lets all kinds of these disks pass"
             ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,

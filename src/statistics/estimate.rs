@@ -121,7 +121,8 @@ impl Estimate {
     /// of [`block_average`](super::block_average)), all samples are equal, or there are fewer than two
     /// samples.
     pub const fn is_converged(&self) -> bool {
-        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
+        let are_equal = self.assumes_independence() && self.standard_error == 0.0;
+        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks) && !are_equal
     }
 
     /// Returns whether the error assumes independent samples.
@@ -152,7 +153,7 @@ impl fmt::Display for Estimate {
         write!(formatter, "{:.digits$} ± {:.digits$}", self.mean, self.standard_error)?;
         match (self.samples, self.basis) {
             (0 | 1, _) => formatter.write_str(" (too few samples for an error)"),
-            (_, Basis::ShortBlocks) if self.standard_error == 0.0 => {
+            (_, Basis::ShortBlocks | Basis::Independent) if self.standard_error == 0.0 => {
                 formatter.write_str(" (all samples are equal)")
             }
             (_, Basis::Independent) => formatter.write_str(" (independent samples)"),

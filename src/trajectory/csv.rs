@@ -11,6 +11,11 @@ use crate::disk::numbered;
 /// The column of the time.
 const TIME: &str = "time";
 
+/// Units that need no conversion; `sigma` is the reduced unit of length of many programs. A unit in brackets
+/// may follow the name of a column.
+const UNITS: [&str; 10] =
+    ["1", "rad", "length", "sigma", "time", "mass", "length/time", "1/time", "rad/time", ""];
+
 /// Reads a table whose first line names the columns.
 ///
 /// Commas, semicolons, tabs or spaces separate the cells; the first line shows which. After the names, a line
@@ -22,9 +27,17 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     };
     let head = head.trim_start_matches('#').trim_start();
     let divider = [',', ';', '\t'].into_iter().find(|&divider| head.contains(divider));
-    // A unit in brackets may follow a name.
-    let names = cells(head, divider).map(|name| name.split(" [").next().unwrap_or(name));
-    let mut columns: Vec<Column> = names.flat_map(|name| Column::of(name, 1)).collect();
+    let mut foreign = Vec::new();
+    let mut columns: Vec<Column> = Vec::new();
+    for heading in cells(head, divider) {
+        let (name, unit) = heading.split_once(" [").unwrap_or((heading, "1]"));
+        let known = columns.len();
+        columns.extend(Column::of(name, 1));
+        let is_used = columns[known..].iter().any(|column| column.slot.is_some() || column.name == TIME);
+        if is_used && !UNITS.contains(&unit.trim_end_matches(']')) {
+            foreign.push(heading);
+        }
+    }
     if columns.iter().all(|column| column.slot.is_none()) {
         return Err(unknown(line, head));
     }
@@ -35,6 +48,9 @@ pub(super) fn table(text: &Text) -> Result<Table, ReadError> {
     }
     let mut table = Table::new(columns, line);
     table.time_column = TIME;
+    if !foreign.is_empty() {
+        table.notes.push(format!("numbers are read without conversion of units: {}", foreign.join(", ")));
+    }
     let common = common(&table.columns);
     let mut first = None;
     for (text, line) in rows {

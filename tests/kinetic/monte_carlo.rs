@@ -65,6 +65,32 @@ fn not_a_number_is_not_hidden() -> Outcome {
     Ok(())
 }
 
+/// A rule that loses energy in one collision of millions, none of which is drawn.
+#[test]
+fn losses_that_were_not_drawn_are_not_excluded() -> Outcome {
+    let rare = from_fn(|contact: &Contact| {
+        Impulse::new(contact.normal_impulse(if contact.closing_speed() < 9.0 { 1.0 } else { 0.0 }), 0.0)
+    });
+    let change = MonteCarlo::new(1).with_samples(1).mean_energy_change(&rare, &Maxwellian::new(1.0)?);
+    assert_eq!((change.mean(), change.standard_error()), (0.0, 0.0));
+    assert!(!change.is_converged(), "{change}");
+    Ok(())
+}
+
+/// Around the friction of the largest loss, friction alone loses more than this line does.
+#[test]
+fn a_line_has_its_gap_on_any_grid() -> Outcome {
+    let line = IsoLine::new(-0.3431, &Maxwellian::new(1.0)?)?;
+    for steps in [10_u32, 20, 40, 100, 1000] {
+        let frictions: Vec<f64> = (0..=steps).map(|step| f64::from(step) / f64::from(steps)).collect();
+        let pieces = line.trace(&frictions, 0.5)?;
+        let [before, after] = &pieces[..] else { panic!("{steps}: {} pieces", pieces.len()) };
+        let gap = [before.last(), after.first()].map(|end| end.map_or(f64::NAN, |end| end.0));
+        assert!((gap[0] - 0.258_4).abs() < 1e-4 && (gap[1] - 0.267_1).abs() < 1e-4, "{steps}: {gap:?}");
+    }
+    Ok(())
+}
+
 #[test]
 fn parameters_without_a_meaning_are_refused() -> Outcome {
     let gas = Maxwellian::new(1.0)?;

@@ -164,7 +164,7 @@ impl Driving for Layer {
 
     fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError> {
         let is_inside = |disk: &Disk| disk.position().dot(self.along) < self.edge;
-        let mut layer: Vec<Disk> = disks.iter().filter(|disk| is_inside(disk)).cloned().collect();
+        let mut layer: Vec<Disk> = disks.iter().filter(|disk| is_inside(disk)).copied().collect();
         self.noise.kick(&mut layer)?;
         let mut heated = layer.into_iter();
         disks.iter_mut().filter(|disk| is_inside(disk)).zip(&mut heated).for_each(|(disk, hot)| *disk = hot);

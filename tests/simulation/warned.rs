@@ -321,6 +321,29 @@ fn a_sink_that_never_opens_is_a_warning() -> Outcome {
     Ok(())
 }
 
+/// A slot hardly wider than a disk over a long sink, wherever it lies.
+#[test]
+fn a_sink_under_a_narrow_slot_is_no_warning() -> Outcome {
+    for (slot, offset) in [(1.15, 0.0), (1.15, 0.3), (1.15, 0.6), (1.5, 0.0), (1.5, 0.3), (1.5, 7.1)] {
+        let [left, right] = [-0.5, 0.5].map(|side| 100.0 + offset + side * slot);
+        let block = |from: f64, to: f64| {
+            Part::block([(from, -1.0), (to, -1.0), (to, 2.0), (from, 2.0)].map(DVec2::from))
+        };
+        let vessel = Vessel::new(Container::closed(200.0, 10.0)?)
+            .with("west", block(-1.0, left)?)?
+            .with("east", block(right, 201.0)?)?
+            .with("exit", line([(0.0, 1.0), (200.0, 1.0)])?.absorbing())?;
+        let columns = (4..190).map(|column| 2.0 + f64::from(column));
+        let places = columns.flat_map(|x| [4.5, 6.0, 7.5, 9.0].map(|y| DVec2::new(1.01 * x, y)));
+        let disks = places.map(|place| Disk::new(place, 0.5)).collect::<Result<Vec<_>, _>>()?;
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+        let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+        run.run(&Limits::until(1000.0).with_most_collisions(2000), &mut ())?;
+        assert_eq!((run.counters().removals, run.warnings()), (0, vec![]), "{slot} {offset}");
+    }
+    Ok(())
+}
+
 /// A sink to which disks could get is none, though none is high enough.
 #[test]
 fn a_sink_that_waits_is_no_warning() -> Outcome {

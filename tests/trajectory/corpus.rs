@@ -97,6 +97,12 @@ fn tables_of_many_programs() {
             // pandas and R have a column of their own.
             (",x,y,radius\n0,1,2,0.5\n1,3,2,0.5\n", "(1 2) r0.5; (3 2) r0.5 | ignored: (without a name)"),
             ("\"\",\"x\",\"y\",\"radius\"\n\"1\",1,2,0.5\n", "(1 2) r0.5 | ignored: (without a name)"),
+            // Units of the user's own, which are not converted.
+            (
+                "x [m],y [length],radius [mm],angle [deg],weight [kg]\n1,2,0.5,90,1\n",
+                "(1 2) r0.5 a90 | numbers are read without conversion of units: x [m], radius [mm], angle [deg] \
+                 | ignored: weight",
+            ),
             ("x;y;d;weight\n1;2;1;9\n", "(1 2) r0.5 | ignored: weight"),
             ("x\ty\tradius\tvx\tvy\n1\t2\t0.5\t3\t4\n", "(1 2) r0.5 v(3 4)"),
             ("# x y radius omega\n1 2 0.5 3\n# the end\n", "(1 2) r0.5 w3"),
