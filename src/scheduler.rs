@@ -64,8 +64,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// The engine compares each result with the event that it keeps: a disk that does not exist, or a time that
 /// differs from the last one set for the disk, ends the run with an error. A scheduler that loses a `set` may
 /// never name an event that is due. The engine then ends the run with an error, but only when another disk
-/// hits the one whose event was lost, when the epoch ends, or at the end of a run or a step once there were as
-/// many events as disks since the last check. Checking all disks more often would cost time. Nor does the
+/// hits the one whose event was lost, when the epoch ends, or at the end of a run or a step once there were
+/// as many events as disks since the last check. Checking all disks more often would cost time. Nor does the
 /// engine notice that two events were swapped, once both have been named. [`laws::check`] finds such faults
 /// if they show within its scripts of up to three million operations; `docs/validation.md` says which planted
 /// faults the check finds.

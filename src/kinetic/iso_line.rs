@@ -72,8 +72,8 @@ impl IsoLine {
     /// The result contains the connected pieces of the line. If a piece ends between two of the frictions,
     /// its exact end is its last point. At such an end, the line leaves the plane, or its lower and its upper
     /// inelasticity meet. In the second case, the point belongs to both pieces. If friction alone costs more
-    /// than the energy of the line, the line has a gap around the friction of the largest loss, which the trace
-    /// finds. It misses a piece, or another gap, that lies entirely between two of the frictions.
+    /// than the energy of the line, the line has a gap around the friction of the largest loss, which the
+    /// trace finds. It misses a piece, or another gap, that lies entirely between two of the frictions.
     ///
     /// # Errors
     /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not

@@ -58,8 +58,8 @@ type Moments = [DVec2; MOMENTS];
 /// - the domain is not periodic in both directions, or has changed;
 /// - there is gravity, or a disk meets a wall;
 /// - a collision of disks changes the energy by more than 1e-6 of their energy;
-/// - disks change by anything but collisions: an inlet, a driving, or a change between two runs. If only their
-///   positions change between two runs, the observer begins with new origins.
+/// - disks change by anything but collisions: an inlet, a driving, or a change between two runs. If only
+///   their positions change between two runs, the observer begins with new origins.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

@@ -138,8 +138,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Checks all disks at the end of a run or a step, if there were as many events as disks since the last
-    /// check. More checks would cost more than the runs. A scheduler that names no disk at all is noticed when
-    /// an epoch has passed.
+    /// check. More checks would cost more than the runs. A scheduler that names no disk at all is noticed
+    /// when an epoch has passed.
     pub(super) fn check_sometimes(&mut self) -> Outcome<()> {
         let (events, time) = (self.counters.events(), self.time());
         let is_due = self.scratch.checked.is_none_or(|(before, since)| {

@@ -59,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         smallest
     }
 
-    /// Returns positions on all walls and on the edges of the domain, at most a [`STEP`] apart, each with a unit
-    /// vector normal to the wall or edge.
+    /// Returns positions on all walls and on the edges of the domain, at most a [`STEP`] apart, each with a
+    /// unit vector normal to the wall or edge.
     fn places_at_walls(&self, radius: f64) -> impl Iterator<Item = (DVec2, DVec2)> {
         let inside = self.boundary.interior();
         let top = inside.top.min(inside.bottom + inside.width());

@@ -93,20 +93,20 @@ pub enum Warning {
         upwards: f64,
     },
     /// The disks have gained energy since the run was built, or since disks, walls or gravity were last
-    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, and no disk came
-    /// in or left: a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds such a
-    /// rule.
+    /// changed between two runs or by the kick of a driving, though no wall moves or is warm, and no disk
+    /// came in or left: a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds
+    /// such a rule.
     EnergyGained {
         /// Energy at that time, and what [`LeastRebound`](crate::collision::LeastRebound) has added since.
         before: f64,
         /// Energy now.
         now: f64,
     },
-    /// No disk seems to have room to touch a sink, and none has been removed in a thousand collisions or more:
-    /// walls cover the sink, for example because they are closer than a radius to a line for centers, or the
-    /// sink lets all these disks pass. A gate that opens later is a harmless cause, and so is a slot that is
-    /// wider than a disk by less than a quarter of a radius. Walls farther away that separate all disks from a
-    /// sink, or leave only too narrow a way to it, are not noticed.
+    /// No disk seems to have room to touch a sink, and none has been removed in a thousand collisions or
+    /// more: walls cover the sink, for example because they are closer than a radius to a line for centers,
+    /// or the sink lets all these disks pass. A gate that opens later is a harmless cause, and so is a slot
+    /// that is wider than a disk by less than a quarter of a radius. Walls farther away that separate all
+    /// disks from a sink, or leave only too narrow a way to it, are not noticed.
     ClosedSink {
         /// The first wall of the sink.
         wall: usize,

@@ -83,8 +83,8 @@ fn mild_contacts() -> impl Iterator<Item = Contact> {
 }
 
 /// Returns ordinary contacts of each kind with the same kind, the default kind and a wall, of a disk of the
-/// default kind with a wall of this kind and, for kinds below 256, of this kind with all smaller kinds. Each pair meets without slip, too: the loss of a slip could hide a gain
-/// along the normal.
+/// default kind with a wall of this kind and, for kinds below 256, of this kind with all smaller kinds. Each
+/// pair meets without slip, too: the loss of a slip could hide a gain along the normal.
 pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
     [0.0, 0.5].into_iter().flat_map(|slip| contacts_of_kinds_with(Contact::new(1.0, slip, 0.5, 0.25)))
 }

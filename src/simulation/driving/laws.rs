@@ -91,10 +91,10 @@ impl Promises {
 /// one in a run that is cut into two. The order of the disks changes from kick to kick.
 ///
 /// Three more drivings show whether disks are remembered by their position in the list. If the kicks are the
-/// same in two opposite orders that never change, they must also be the same in an order that changes. Otherwise,
-/// random numbers may be drawn in the order of the list, and the check only requires that a kick does not
-/// resemble the previous one at its position. The page "Validation" says which planted faults the check
-/// finds.
+/// same in two opposite orders that never change, they must also be the same in an order that changes.
+/// Otherwise, random numbers may be drawn in the order of the list, and the check only requires that a kick
+/// does not resemble the previous one at its position. The page "Validation" says which planted faults the
+/// check finds.
 ///
 /// # Errors
 /// Returns the first broken promise.
