@@ -132,6 +132,15 @@ impl Domain {
         place
     }
 
+    /// Returns the position of a center in the domain; on the lower of two periodic edges if it is on the
+    /// upper one, so that the whole domain holds each center exactly once.
+    pub(crate) fn folded(&self, place: DVec2) -> DVec2 {
+        let wrapped = self.wrapped(place);
+        // The remainder of a small negative number may be rounded to the whole period.
+        let is_beyond = wrapped.cmpge(DVec2::new(self.right, self.top)) & self.periods().cmpgt(DVec2::ZERO);
+        DVec2::select(is_beyond, DVec2::new(self.left, self.bottom), wrapped)
+    }
+
     /// Returns the unwrapped position of a disk: its position without the shifts at periodic sides and ends.
     ///
     /// Differences of unwrapped positions are displacements.

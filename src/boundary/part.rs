@@ -93,7 +93,9 @@ impl Part {
     /// Disks may overlap such a part: it is a line that their centers must not pass. A center arrives when it
     /// is within 1e-7 radii of the line, on a side on which the brick is free. A center that begins on the
     /// line, or behind a one-sided brick, does not arrive. At times later than $`10^8R/v`$, the position of a
-    /// line that moves without a period has a rounding error above this distance, and centers may pass.
+    /// line that moves without a period has a rounding error above this distance, and centers may pass. A
+    /// line that lies in a wall, which no center can reach, takes a disk out when the disk touches the wall
+    /// there, as [`absorbing`](Self::absorbing) does.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

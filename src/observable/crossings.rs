@@ -17,9 +17,10 @@ use crate::{Disk, ParameterError};
 ///
 /// A crossing is *forward* if it goes from the right to the left of the direction from `start` to `end`:
 /// upward through a line from left to right. Disks fly on parabolas between two collisions, so each crossing
-/// is found exactly, even if a disk turns back between two samples. An interval counts only if it was watched
-/// from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count. A run ends with
-/// an error if disks change other than by the collisions that the observer receives: in a
+/// is found exactly, even if a disk turns back between two samples. A center on the line counts as on the
+/// left, so a disk that turns back there has crossed the line twice or not at all. An interval counts only if
+/// it was watched from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count. A
+/// run ends with an error if disks change other than by the collisions that the observer receives: in a
 /// [`BetweenKinds`](super::BetweenKinds), which hides other collisions, or under the driving of a study.
 ///
 /// A disk that a wall [absorbs](crate::boundary::Part::absorbing_centers) at the segment has not crossed it:
@@ -59,6 +60,9 @@ pub struct Crossings {
 
 /// Rounding of velocities, relative to the speeds of a flight.
 const ROUNDING: f64 = 1e-6;
+
+/// Distance from the line within which a removed disk is on the line, relative to lengths.
+const ON_LINE: f64 = 1e-9;
 
 /// The free flight of a center since `time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,39 +144,51 @@ impl Crossings {
         // A filter by kind passes on collisions with disks of other kinds, whose flights are not followed.
         if let Some(flight) = self.flights.get_mut(&id) {
             let flight = std::mem::replace(flight, next);
-            self.count(&flight, next.time);
+            self.count(&flight, &next, false);
         }
     }
 
-    /// Counts the crossings of a flight after its start and up to a time.
-    fn count(&mut self, flight: &Free, end: f64) {
-        for shift in self.images(flight, end) {
-            let [start, stop] = self.line.map(|point| point + shift);
-            let along = stop - start;
+    /// Counts the crossings of a flight up to the start of the next one. If the disk is `removed` there, a
+    /// line through its last position has not been crossed.
+    fn count(&mut self, flight: &Free, next: &Free, removed: bool) {
+        let elapsed = next.time - flight.time;
+        let turns = self.turns(flight.at(elapsed, self.pull) - next.position);
+        for image in self.images(flight, elapsed) {
+            let along = self.line[1] - self.line[0];
             let across = along.perp();
-            // The distance from the line times the line's length, as a polynomial in the elapsed time.
-            let gap = [
-                (flight.position - start).dot(across),
-                flight.velocity.dot(across),
-                0.5 * self.pull.dot(across),
-            ];
-            for (wait, is_forward) in sign_changes(gap, end - flight.time) {
-                let fallen = (flight.velocity + 0.5 * self.pull * wait) * wait;
-                let place = (flight.position + fallen - start).dot(along) / along.length_squared();
-                if (0.0..1.0).contains(&place) {
+            // The side of the position at which one flight ends and the next one begins is computed from the
+            // same numbers for both flights. Otherwise, a disk that turns back on the line could cross it in
+            // one direction only.
+            let [from, to] = [(flight, image), (next, image - turns)]
+                .map(|(free, image)| free.position - (self.line[0] + self.periods * image));
+            let gap = [from.dot(across), flight.velocity.dot(across), 0.5 * self.pull.dot(across)];
+            let mut is_forward = to.dot(across) >= 0.0;
+            let rate = gap[1] + 2.0 * gap[2] * elapsed;
+            if removed && to.dot(across).abs() <= ON_LINE * (along.length() + to.length()) * along.length() {
+                is_forward = rate < 0.0;
+            }
+            for (wait, is_forward) in passages(gap, elapsed, is_forward) {
+                let place = (flight.at(wait, self.pull) - flight.position + from).dot(along);
+                if (0.0..along.length_squared()).contains(&place) {
                     self.present[usize::from(!is_forward)] += 1;
                 }
             }
         }
     }
 
-    /// Returns the displacements of the images of the line that a flight may cross.
-    fn images(&self, flight: &Free, end: f64) -> Vec<DVec2> {
+    /// Returns a displacement in whole periods.
+    fn turns(&self, displacement: DVec2) -> DVec2 {
+        let turns = (displacement / self.periods).round();
+        DVec2::select(self.periods.cmpgt(DVec2::ZERO), turns, DVec2::ZERO)
+    }
+
+    /// Returns the displacements, in periods, of the images of the line that a flight may cross.
+    fn images(&self, flight: &Free, elapsed: f64) -> Vec<DVec2> {
         if self.periods == DVec2::ZERO {
             return vec![DVec2::ZERO];
         }
-        let elapsed = end - flight.time;
         let reach = (flight.velocity.abs() + 0.5 * self.pull.abs() * elapsed) * elapsed;
+        let reach = reach + ON_LINE * self.periods;
         let (low, high) = (self.line[0].min(self.line[1]), self.line[0].max(self.line[1]));
         let range = |period: f64, from: f64, to: f64| {
             let ends = if period > 0.0 { [(from / period).ceil(), (to / period).floor()] } else { [0.0; 2] };
@@ -181,8 +197,7 @@ impl Crossings {
         let (from, to) = (flight.position - reach - high, flight.position + reach - low);
         let columns = range(self.periods.x, from.x, to.x);
         let rows = |column: i64| range(self.periods.y, from.y, to.y).map(move |row| (column, row));
-        let shift = |(column, row): (i64, i64)| self.periods * DVec2::new(column as f64, row as f64);
-        columns.flat_map(rows).map(shift).collect()
+        columns.flat_map(rows).map(|(column, row)| DVec2::new(column as f64, row as f64)).collect()
     }
 
     /// Counts the crossings of all flights up to a snapshot, and begins new flights with its disks.
@@ -198,23 +213,40 @@ impl Crossings {
     }
 }
 
-/// Returns the times, after 0 and up to `end`, at which `c + b t + a t²` changes its sign, and whether it
-/// then becomes positive.
-fn sign_changes([c, b, a]: [f64; 3], end: f64) -> impl Iterator<Item = (f64, bool)> {
+/// Returns the times from 0 to `end` at which `c + b t + a t²` changes sides, and whether it then becomes
+/// positive. Zero is on the positive side; `is_forward` is the side at the end.
+fn passages([c, b, a]: [f64; 3], end: f64, is_forward: bool) -> impl Iterator<Item = (f64, bool)> {
     let discriminant = b * b - 4.0 * a * c;
     let root = discriminant.max(0.0).sqrt();
     // Both zeros are computed in forms in which nothing cancels.
     let sum = -0.5 * (b + root.copysign(b));
     let (first, second) = (sum / a, c / sum);
     let zeros = if a == 0.0 { [-c / b, f64::NAN] } else { [first.min(second), first.max(second)] };
-    let is_simple = a == 0.0 || discriminant > 0.0;
-    let zeros = zeros.into_iter().filter(move |&zero| is_simple && zero > 0.0 && zero <= end);
-    zeros.map(move |zero| (zero, b + 2.0 * a * zero > 0.0))
+    let zeros = zeros.map(|zero| (zero, b + 2.0 * a * zero > 0.0));
+    let was_forward = c >= 0.0;
+    let found = if was_forward == is_forward {
+        let is_inside = |(zero, _): (f64, bool)| 0.0 < zero && zero < end;
+        let are_passages = discriminant > 0.0 && zeros.into_iter().all(is_inside);
+        (are_passages && zeros[0].1 != was_forward)
+            .then_some(zeros)
+            .map_or([None; 2], |zeros| zeros.map(Some))
+    } else {
+        let zero = zeros.into_iter().find(|&(zero, rises)| zero.is_finite() && rises == is_forward);
+        // Because of rounding, the zero may lie just beyond an end, or vanish.
+        let nearest = if c.abs() < (c + (b + a * end) * end).abs() { 0.0 } else { end };
+        [Some((zero.map_or(nearest, |(zero, _)| zero.clamp(0.0, end)), is_forward)), None]
+    };
+    found.into_iter().flatten()
 }
 
 impl Free {
     fn of(disk: &Disk, time: f64) -> Self {
         Self { time, position: disk.position(), velocity: disk.velocity() }
+    }
+
+    /// Returns the position after a time of flight.
+    fn at(&self, elapsed: f64, pull: DVec2) -> DVec2 {
+        self.position + (self.velocity + 0.5 * pull * elapsed) * elapsed
     }
 
     /// Returns whether a disk on this flight has the velocity of the other flight when the other flight
@@ -268,7 +300,7 @@ impl Observer for Crossings {
 
     fn on_remove(&mut self, disk: &Disk, time: f64) {
         if let Some(flight) = self.flights.remove(&disk.id()) {
-            self.count(&flight, time);
+            self.count(&flight, &Free::of(disk, time), true);
         }
     }
 

@@ -137,10 +137,7 @@ impl Fields {
 impl Accumulator for Fields {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
-            let (place, domain) = (disk.position(), snapshot.domain());
-            // A disk exactly on the right or the upper side of a periodic domain is at the other side, too.
-            let cell = self.grid.find(place).or_else(|| self.grid.find(domain.wrapped(place)));
-            if let Some(cell) = cell {
+            if let Some(cell) = self.grid.cell_of(disk, &snapshot.domain()) {
                 self.sums[cell].add(disk);
             }
         }

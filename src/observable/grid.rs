@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::Snapshot;
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, finite};
 use crate::statistics::{Bins, Moments};
@@ -82,6 +83,12 @@ impl Grid {
         cells.contains(scaled).then(|| scaled.y as usize * self.columns + scaled.x as usize)
     }
 
+    /// Returns the cell that holds a disk. A disk exactly on the right or the upper side of a periodic domain
+    /// is at the other side, too.
+    pub(super) fn cell_of(&self, disk: &Disk, domain: &Domain) -> Option<usize> {
+        self.find(disk.position()).or_else(|| self.find(domain.folded(disk.position())))
+    }
+
     /// Checks that some of the cells lie inside the domain of a run. Otherwise, the run would measure
     /// nothing.
     pub(super) fn check_against(&self, domain: &Domain) -> Result<(), ParameterError> {
@@ -91,10 +98,10 @@ impl Grid {
     }
 
     /// Returns the sums over the disks in each cell.
-    pub(super) fn sums(&self, disks: &[Disk]) -> Vec<CellSums> {
+    pub(super) fn sums(&self, snapshot: &Snapshot<'_>) -> Vec<CellSums> {
         let mut sums = vec![CellSums::default(); self.count()];
-        for disk in disks {
-            if let Some(cell) = self.find(disk.position()) {
+        for disk in snapshot.disks() {
+            if let Some(cell) = self.cell_of(disk, &snapshot.domain()) {
                 sums[cell].add(disk);
             }
         }

@@ -170,7 +170,8 @@ impl PairCorrelation {
         let (mut counts, disks) = (vec![0; self.bins.count()], snapshot.disks());
         let is_partner = |disk: &Disk| self.is_of(1, disk);
         let neighbors = Neighbors::among(disks, snapshot.domain(), self.range(), is_partner);
-        let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && region.contains(disk.position());
+        let is_inside = |disk: &Disk| region.contains(snapshot.domain().folded(disk.position()));
+        let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && is_inside(disk);
         for (index, _) in disks.iter().enumerate().filter(around) {
             for neighbor in neighbors.of(index) {
                 if let Some(bin) = self.bins.find(neighbor.separation.length()) {
@@ -206,7 +207,7 @@ impl Accumulator for PairCorrelation {
         let count = |which, is_counted: &dyn Fn(&Disk) -> bool| {
             disks.iter().filter(|disk| self.is_of(which, disk) && is_counted(disk)).count() as f64
         };
-        let is_inside = |disk: &Disk| region.contains(disk.position());
+        let is_inside = |disk: &Disk| region.contains(snapshot.domain().folded(disk.position()));
         let (centers, partners) = (count(0, &is_inside), count(1, &is_inside));
         let (possible, all) = (count(0, &|_| true), count(1, &|_| true));
         // A disk is not its own partner.

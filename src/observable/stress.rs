@@ -224,7 +224,8 @@ impl Observer for Stress {
         let area = self.area(snapshot);
         let collisional = transferred.map(|sum| sum / (area * duration));
         let mut kinetic = [0.0; 4];
-        let inside = |place| self.region.is_none_or(|region| region.contains(place));
+        let domain = snapshot.domain();
+        let inside = |place| self.region.is_none_or(|region| region.contains(domain.folded(place)));
         for disk in snapshot.disks().iter().filter(|disk| inside(disk.position())) {
             let parts = products(disk.velocity() * (disk.mass() / area), disk.velocity());
             for (sum, part) in kinetic.iter_mut().zip(parts) {

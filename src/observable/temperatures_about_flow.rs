@@ -50,7 +50,7 @@ impl Observable for TemperaturesAboutFlow {
 
     fn measure(&self, snapshot: &Snapshot<'_>) -> Temperature {
         let [mut horizontal, mut vertical, mut rotational, mut freedom] = [0.0; 4];
-        for cell in self.grid.sums(snapshot.disks()).iter().filter(|cell| cell.count > 1) {
+        for cell in self.grid.sums(snapshot).iter().filter(|cell| cell.count > 1) {
             horizontal += cell.velocity[0].squares;
             vertical += cell.velocity[1].squares;
             rotational += cell.angular_velocity.squares;

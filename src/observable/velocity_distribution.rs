@@ -141,7 +141,8 @@ impl VelocityDistribution {
 impl Frame {
     /// Returns the scaled velocities √m (v − u) of the disks, and the degrees of freedom of each component.
     /// Each velocity comes with the fraction of its variance that remains when the mean is subtracted.
-    fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
+    fn peculiar(&self, snapshot: &Snapshot<'_>) -> (Vec<(DVec2, f64)>, f64) {
+        let disks = snapshot.disks();
         match self {
             Self::Container => {
                 let scaled = disks.iter().map(|disk| (disk.velocity() * disk.mass().sqrt(), 1.0));
@@ -154,7 +155,9 @@ impl Frame {
                 }
                 about(&[all], disks, |_| Some(0))
             }
-            Self::Flow(grid) => about(&grid.sums(disks), disks, |disk| grid.find(disk.position())),
+            Self::Flow(grid) => {
+                about(&grid.sums(snapshot), disks, |disk| grid.cell_of(disk, &snapshot.domain()))
+            }
         }
     }
 }
@@ -192,7 +195,7 @@ fn relative_moment(moment: f64, squares: f64, order: i32, shares: f64, freedom: 
 
 impl Accumulator for VelocityDistribution {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
-        let (peculiar, freedom) = self.frame.peculiar(snapshot.disks());
+        let (peculiar, freedom) = self.frame.peculiar(snapshot);
         let sum = |term: &dyn Fn(DVec2, f64) -> f64| peculiar.iter().map(|&(v, left)| term(v, left)).sum();
         let squares: f64 = sum(&|v, _| v.length_squared());
         let whole: f64 =

@@ -118,11 +118,12 @@ impl Estimate {
     /// Returns whether the error can be trusted.
     ///
     /// If not, the error is only a lower bound: the series is too short for its correlations (see the table
-    /// of [`block_average`](super::block_average)), all samples are equal, or there are fewer than two
-    /// samples.
+    /// of [`block_average`](super::block_average)), all samples are equal, a sample is NaN, or there are
+    /// fewer than two samples.
     pub const fn is_converged(&self) -> bool {
-        let are_equal = self.assumes_independence() && self.standard_error == 0.0;
-        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks) && !are_equal
+        let is_known =
+            self.standard_error > 0.0 || (self.standard_error == 0.0 && !self.assumes_independence());
+        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks) && is_known
     }
 
     /// Returns whether the error assumes independent samples.

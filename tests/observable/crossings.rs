@@ -51,6 +51,78 @@ fn disks_above_a_line_are_those_that_crossed_it() -> Outcome {
     Ok(())
 }
 
+/// Disks turn back exactly on lines a radius away from walls, and on lines through the seam of periodic sides
+/// and ends. None is lost or gained.
+#[test]
+fn disks_that_turn_back_on_a_line_have_not_crossed_it() -> Outcome {
+    let is_before =
+        |disk: &Disk, line: [DVec2; 2]| (disk.position() - line[0]).dot((line[1] - line[0]).perp()) < 0.0;
+    for gravity in [0.0, 0.4] {
+        let container = Container::closed(20.0, 16.0)?;
+        let disks =
+            initial::with_maxwellian_velocities(initial::random(&container, 50, 0.5, 16.0, 1)?, 1.0, 2)?;
+        for [from, to] in [
+            [(0.0, 0.5), (20.0, 0.5)],
+            [(20.0, 0.5), (0.0, 0.5)],
+            [(0.0, 15.5), (20.0, 15.5)],
+            [(0.5, 0.0), (0.5, 16.0)],
+            [(19.5, 16.0), (19.5, 0.0)],
+        ] {
+            let line = [from, to].map(DVec2::from);
+            let builder = Simulation::builder(Elastic, container.clone()).disks(disks.clone());
+            let mut run = builder.gravity(gravity).build()?;
+            let before = |disks: &[Disk]| {
+                (disks.iter().filter(|disk| is_before(disk, line)).count() as u64).cast_signed()
+            };
+            let mut crossings = Crossings::new(line, SampleTimes::every(1.0)?)?;
+            for piece in 1..=40 {
+                run.run_until(5.0 * f64::from(piece), &mut crossings)?;
+            }
+            assert!(run.counters().wall_collisions > 100);
+            assert_eq!(net(&crossings), before(&disks) - before(&run.disks()), "{line:?} {gravity}");
+        }
+    }
+    // A disk bounces on the line; it stops there, and is sent back from there.
+    let bouncing = Disk::new(DVec2::splat(2.0), 0.5)?.with_velocity(DVec2::NEG_Y)?;
+    let mut run = Simulation::builder(Elastic, Container::closed(4.0, 4.0)?).disks([bouncing]).build()?;
+    let mut crossings =
+        Crossings::new([DVec2::new(0.0, 0.5), DVec2::new(4.0, 0.5)], SampleTimes::every(6.0)?)?;
+    run.run_until(60.0, &mut crossings)?;
+    assert_eq!((crossings.forward(), crossings.backward()), (&[0; 10][..], &[0; 10][..]));
+    let first = Disk::new(DVec2::new(1.0, 8.0), 0.5)?.with_velocity(DVec2::X)?;
+    let row = [first, Disk::new(DVec2::new(6.0, 8.0), 0.5)?];
+    let run = Simulation::builder(Elastic, Container::closed(40.0, 16.0)?).disks(row).build()?;
+    for line in [[(5.0, 0.0), (5.0, 16.0)], [(5.0, 16.0), (5.0, 0.0)]] {
+        let mut crossings = Crossings::new(line.map(DVec2::from), SampleTimes::every(1.0)?)?;
+        let mut run = run.clone();
+        run.run_until(74.0, &mut crossings)?;
+        assert_eq!(net(&crossings), 0, "{line:?}");
+    }
+    Ok(())
+}
+
+/// Net crossings of the lines at the seams of a box that is periodic both ways are what the images count.
+#[test]
+fn crossings_of_a_seam_are_those_of_the_images() -> Outcome {
+    let container = Container::periodic(12.0, 10.0)?;
+    let disks = initial::random(&container, 30, 0.4, 10.0, 1)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+    for [from, to] in [[(12.0, 0.0), (12.0, 10.0)], [(0.0, 0.0), (0.0, 10.0)], [(0.0, 10.0), (12.0, 10.0)]] {
+        let line = [from, to].map(DVec2::from);
+        let mut run = Simulation::builder(Elastic, container.clone()).disks(disks.clone()).build()?;
+        let mut crossings = Crossings::new(line, SampleTimes::every(1.0)?)?;
+        run.run_until(100.0, &mut crossings)?;
+        let images = |disks: &[Disk]| -> i64 {
+            let axis = usize::from(from.1 == to.1);
+            disks.iter().map(|disk| i64::from(disk.image()[axis])).sum()
+        };
+        let sense = if from.1 == to.1 { 1 } else { -1 };
+        assert!(crossings.forward().iter().sum::<u64>() > 20);
+        assert_eq!(net(&crossings), sense * (images(&run.disks()) - images(&disks)), "{line:?}");
+    }
+    Ok(())
+}
+
 /// A shower through a line into a sink: disks come in above and leave below.
 #[test]
 fn a_shower_crosses_a_line_on_its_way_to_a_sink() -> Outcome {

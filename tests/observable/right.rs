@@ -6,9 +6,9 @@ use granular_edmd::boundary::{Boundary, Brick, Container, Obstacles, Part, Probe
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Accumulator, CenterOfMass, EnergyChange, Fields, Grid, HeightProfile, MeanSquaredDisplacement,
-    PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Temperatures, TimeCorrelation,
-    TransportCoefficients, WallStress, measured_by,
+    Accumulator, CenterOfMass, EnergyChange, EnergyChangeProfile, Fields, Grid, HeightProfile,
+    MeanSquaredDisplacement, Observable, PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress,
+    Temperatures, TemperaturesAboutFlow, TimeCorrelation, TransportCoefficients, WallStress, measured_by,
 };
 use granular_edmd::replay::Replay;
 use granular_edmd::simulation::{Inlet, RunError};
@@ -239,6 +239,36 @@ fn pairs_of_an_ideal_gas_in_samples_without_disks_and_in_boxes_of_two_sizes() ->
                 assert!((found - 1.0).abs() < 0.1, "{numbers:?} {sizes:?} {is_periodic}: {found}");
             }
         }
+    }
+    Ok(())
+}
+
+/// A lattice with disks exactly on the upper edges of a periodic box is the one with disks on the lower
+/// edges.
+#[test]
+fn disks_on_a_seam_are_counted_once() -> Result<(), Failure> {
+    let lattice = |first: f64| -> Result<Vec<Disk>, Failure> {
+        let place = |k: u32| DVec2::new(first + f64::from(k % 20), first + f64::from(k / 20));
+        (0..240).map(|k| Ok(Disk::new(place(k), 0.5)?.with_velocity(DVec2::new(-1.0, -1.0))?)).collect()
+    };
+    let region = |x: f64| Region::new(DVec2::new(x, 0.0), DVec2::new(x + 10.0, 12.0));
+    let measured = |first: f64, region: Region| -> Result<_, Failure> {
+        let mut run =
+            Simulation::builder(Elastic, Container::periodic(20.0, 12.0)?).disks(lattice(first)?).build()?;
+        let mut pairs = Sampled::new(PairCorrelation::new(1.2, 1)?.within(region)?, times()?);
+        let mut stress = Stress::new(times()?).within(region)?;
+        let mut profile = Sampled::new(EnergyChangeProfile::new(0.0, 12.0, 1)?, times()?);
+        let grid = Grid::new(region, 1, 1)?;
+        let mut fields = Sampled::new(Fields::new(grid), times()?);
+        run.run_until(3.0, &mut (&mut pairs, &mut stress, &mut profile, &mut fields))?;
+        let pressure = stress.tensor().pressure.mean();
+        let g = pairs.iter().next().map(|(_, value)| value.mean());
+        let heat = TemperaturesAboutFlow::new(grid).measure(&run.snapshot());
+        let layer = profile.layers()[0].translational_temperature.count();
+        Ok((g.map(f64::to_bits), pressure, fields.iter().map(|cell| cell.count).sum::<u64>(), layer, heat))
+    };
+    for region in [region(0.0), region(10.0), Region::new(DVec2::ZERO, DVec2::new(20.0, 12.0))] {
+        assert_eq!(measured(0.0, region)?, measured(1.0, region)?, "{region:?}");
     }
     Ok(())
 }
