@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::Region;
+use super::{Overlap, Probe, Region};
 
 /// Error of the area of a piece, relative to the area of the region, below which the piece is not halved
 /// further.
@@ -17,8 +17,11 @@ const TOLERANCE: f64 = 1e-12;
 /// Largest number of times that a piece is halved. A jump at an unknown height is then lost in rounding.
 const MOST_HALVINGS: u32 = 44;
 
-/// Number of points between two crossings at which a line is examined if some curves may be unknown.
-pub(super) const LOOKS: u32 = 16;
+/// Numbers of parts in which a line between two crossings is examined if some curves may be unknown:
+/// everywhere, and where a wall is near. Narrower features are lost, at most 1e-7 of the area that they
+/// belong to.
+const LOOKS: u32 = 16;
+const CLOSE_LOOKS: u32 = 16 * LOOKS;
 
 /// Distance of the first and the last examined point from the ends of their interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
@@ -113,13 +116,17 @@ pub(super) fn meet(one: &Region, other: &Region) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
+/// A lower bound of the distance from a position to the nearest unknown curve. Distances above the second
+/// argument need not be known.
+pub(super) type Gap<'a> = &'a dyn Fn(DVec2, f64) -> f64;
+
 /// A region, with a test of whether a center in it is free.
 pub(super) struct Field<'a> {
     pub(super) region: Region,
     /// The curves that may separate free positions from occupied ones.
     pub(super) curves: Vec<Curve>,
-    /// Number of points between two crossings at which a line is examined: 1 if all curves are known.
-    pub(super) looks: u32,
+    /// `None` if all curves are known.
+    pub(super) unknown: Option<Gap<'a>>,
     pub(super) is_free: &'a dyn Fn(DVec2) -> bool,
 }
 
@@ -132,7 +139,7 @@ impl Field<'_> {
         }
         let region = self.region;
         self.curves.retain(|curve| meet(&curve.bounds(), &region));
-        if self.curves.is_empty() && self.looks == 1 {
+        if self.curves.is_empty() && self.unknown.is_none() {
             // A region without an upper end has no middle.
             let middle = region.min + 0.5 * size.min(DVec2::splat(1e300));
             return if (self.is_free)(middle) { region.area() } else { 0.0 };
@@ -222,27 +229,49 @@ impl Field<'_> {
             return 0.0;
         }
         let is_free = |place: f64| (self.is_free)(DVec2::new(place, height));
-        // An unknown curve that crosses a known one cuts off the end of an interval, so both ends are
-        // examined.
-        let last = self.looks - 1;
-        let place = |look: u32| match look {
-            0 if last > 0 => low + NEAR_END * (high - low),
-            look if look == last && last > 0 => high - NEAR_END * (high - low),
-            look => low + (f64::from(look) + 0.5) / f64::from(self.looks) * (high - low),
-        };
-        let (mut start, mut was_free, mut length) = (low, is_free(place(0)), 0.0);
-        for look in 1..self.looks {
-            if is_free(place(look)) == was_free {
-                continue;
+        let mut places = Vec::new();
+        self.look_between(low, high, height, &mut places);
+        let (mut start, mut last, mut length) = (low, places[0], 0.0);
+        let mut was_free = is_free(last);
+        for &place in &places[1..] {
+            if is_free(place) != was_free {
+                let (mut before, mut after) = (last, place);
+                while after - before > 1e-15 * (high - low) && before.next_up() < after {
+                    let middle = 0.5 * (before + after);
+                    if is_free(middle) == was_free { before = middle } else { after = middle }
+                }
+                length += if was_free { after - start } else { 0.0 };
+                (start, was_free) = (after, !was_free);
             }
-            let (mut before, mut after) = (place(look - 1), place(look));
-            while after - before > 1e-15 * (high - low) && before.next_up() < after {
-                let middle = 0.5 * (before + after);
-                if is_free(middle) == was_free { before = middle } else { after = middle }
-            }
-            length += if was_free { after - start } else { 0.0 };
-            (start, was_free) = (after, !was_free);
+            last = place;
         }
         length + if was_free { high - start } else { 0.0 }
     }
+
+    /// Lists places of a line between two crossings, the closer together the nearer an unknown curve is.
+    fn look_between(&self, low: f64, high: f64, height: f64, places: &mut Vec<f64>) {
+        let Some(gap) = self.unknown else { return places.push(low + 0.5 * (high - low)) };
+        // An unknown curve that crosses a known one cuts off the end of an interval, so both ends are
+        // examined.
+        places.push(low + NEAR_END * (high - low));
+        let part = (high - low) / f64::from(LOOKS);
+        let narrow = 0.5 * (high - low) / f64::from(CLOSE_LOOKS);
+        let mut parts: Vec<(f64, f64)> =
+            (0..LOOKS).rev().map(|look| (low + (f64::from(look) + 0.5) * part, 0.5 * part)).collect();
+        while let Some((middle, half)) = parts.pop() {
+            if half <= narrow || gap(DVec2::new(middle, height), half) >= half {
+                places.push(middle);
+            } else {
+                parts.extend([(middle + 0.5 * half, 0.5 * half), (middle - 0.5 * half, 0.5 * half)]);
+            }
+        }
+        places.push(high - NEAR_END * (high - low));
+    }
+}
+
+/// Returns the distance of a probe from the nearest position at which it would be free instead of overlapping
+/// a wall, or the other way around, up to `reach`.
+pub(super) fn gap(overlap: impl Fn(&Probe) -> Option<Overlap>, probe: &Probe, reach: f64) -> f64 {
+    let depth = overlap(&probe.with_radius(probe.radius() + reach)).map_or(0.0, |found| found.depth);
+    (reach - depth).abs()
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::area::{Curve, Field, LOOKS, meet};
+use super::area::{Curve, Field, Gap, gap, meet};
 use super::brick::{ASLANT, Brick};
 use super::part::enclosing;
 use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
@@ -185,9 +185,11 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         };
         // The curves of the inner boundary's walls are unknown: only overlaps show them.
         let is_near_wall = |circle: &Curve| self.boundary.may_touch(&circle.bounds(), radius);
-        let looks = if curves.iter().any(is_near_wall) { LOOKS } else { 1 };
+        let overlap = |probe: &Probe| self.boundary.overlap(probe);
+        let gap = |place, reach| gap(overlap, &Probe::new(place, radius, time), reach);
+        let unknown = curves.iter().any(is_near_wall).then_some(&gap as Gap<'_>);
         let region = region.within(&Region::new(low, high));
-        Some(all - Field { region, curves, looks, is_free: &is_taken }.area())
+        Some(all - Field { region, curves, unknown, is_free: &is_taken }.area())
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

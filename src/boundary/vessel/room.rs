@@ -1,7 +1,7 @@
 //! The free area in a vessel.
 
 use super::Vessel;
-use crate::boundary::area::{Curve, Field, LOOKS, meet};
+use crate::boundary::area::{Curve, Field, Gap, meet};
 use crate::boundary::{Boundary, Probe, Region};
 
 impl Vessel {
@@ -10,10 +10,12 @@ impl Vessel {
         let region = region.within(&self.container.room(radius, time));
         let is_free = |place| self.overlap_with_parts(&Probe::new(place, radius, time)).is_none();
         let is_closed = |placed: &super::Placed| placed.part.takes_centers() || placed.part.is_closed();
-        let looks = if self.parts.iter().all(is_closed) { 1 } else { LOOKS };
+        // Behind an open one-sided wall, the distance to the wall jumps and is no help.
+        let gap = |_, _| f64::INFINITY;
+        let unknown = (!self.parts.iter().all(is_closed)).then_some(&gap as Gap<'_>);
         let is_near = self.parts_may_touch(&region, radius);
         let curves = if is_near { self.curves(&region, radius, time) } else { Vec::new() };
-        Field { region, curves, looks, is_free: &is_free }.area()
+        Field { region, curves, unknown, is_free: &is_free }.area()
     }
 
     /// Returns whether a disk with its center in a region can touch a part at any time.
