@@ -91,6 +91,9 @@ impl Experiment for Gas {
         }
         run.set_boundary(self.boundary_in(step, left)?)?;
         if step.index == PUSHED {
+            if self.push < 0.0 {
+                return Err("nothing pushes backward".into());
+            }
             run.map_disks(|_, disk| disk.with_velocity(self.push * disk.velocity()))?;
         }
         Ok(())
@@ -122,6 +125,7 @@ fn main() -> ExitCode {
     driven_values_are_played();
     stopped_values_are_played();
     limited_values_are_played();
+    failed_values_are_played();
     ExitCode::SUCCESS
 }
 
@@ -183,6 +187,10 @@ impl Case {
             let seen = self.text(&format!("study/{value}.times"));
             let seen: Vec<f64> = seen.lines().map(|line| line.parse().unwrap()).collect();
             assert_eq!(rows.iter().map(time).collect::<Vec<_>>(), seen, "{} {value}", self.0.display());
+            // A window may end within a step.
+            let window =
+                self.rows(&format!("replay study --value {value} --from {} --until {}", seen[9], seen[70]));
+            assert_eq!(window, rows[10..=70]);
             let recorded = self.text(&format!("study/{value}.xyz"));
             let out = format!("trajectory study --value {value} --out {value}.xyz");
             self.told(&out, 0);
@@ -282,4 +290,15 @@ fn limited_values_are_played() {
     let case = Case::run("limited", "every = 1", "every = 1\nmost_collisions = 150");
     case.check();
     assert_eq!(case.counts(), [150, 150]);
+}
+
+/// The error of an experiment that cannot prepare a step is told, unless the step comes after `--until`.
+fn failed_values_are_played() {
+    let case = Case::run("failed", "push = 1.0", "push = -1.0");
+    let all = [0, 1].map(|value| case.rows(&format!("replay study --value {value} --from -1")).len());
+    assert_eq!(all[..], case.counts());
+    let told = case.told("replay plan.toml", 0);
+    assert!(told.contains("the run ended: nothing pushes backward"), "{told}");
+    assert_eq!(case.told("replay plan.toml --until 4", 0), "");
+    assert!(case.told("trajectory plan.toml --out run.xyz", 1).contains("nothing pushes backward"));
 }

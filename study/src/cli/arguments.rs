@@ -90,8 +90,8 @@ pub(super) enum Command {
     /// disk, change of energy.
     Replay(Replay),
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
-    /// from its position in the other run than a tolerance. An experiment that prepares steps or has a driving
-    /// is refused.
+    /// from its position in the other run than a tolerance. An experiment that prepares steps, or has a
+    /// driving, is refused.
     Diff(Diff),
     /// Prints completions for a shell, or with `man` a page of the manual.
     Completions {

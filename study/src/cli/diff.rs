@@ -45,6 +45,9 @@ pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Diff) -
             let until = played.reach(until);
             is_over |= played.is_over();
             let before = replay.present().time();
+            if until < before {
+                return Err("the runs have no time in common".into());
+            }
             let ended = (1..=PARTS).try_for_each(|part| {
                 let time = before + (until - before) * f64::from(part) / f64::from(PARTS);
                 show(time);
@@ -84,8 +87,8 @@ impl<'a, E: Experiment<Rule: Clone, Boundary: Clone>> Played<'a, E> {
         self.0.as_ref().is_some_and(Player::is_over)
     }
 
-    /// Plays until a time or the end of the value, and returns the time that is reached. The error of a run
-    /// is left to its replay, which also has it.
+    /// Plays until a time or the end of the value, and returns the time to which the replay must run. The
+    /// replay has the same errors, and reports them.
     fn reach(&mut self, until: f64) -> f64 {
         let Some(player) = &mut self.0 else { return until };
         loop {
@@ -108,8 +111,7 @@ impl<'a, E: Experiment<Rule: Clone, Boundary: Clone>> Played<'a, E> {
         if disks.len() == others.len() && disks.iter().zip(&others).all(is_same) {
             return Ok(());
         }
-        Err("the experiment prepares the steps of its values, which `diff` does not, so it cannot compare them"
-            .into())
+        Err("the experiment prepares the steps of its values, and such runs cannot be compared".into())
     }
 }
 
