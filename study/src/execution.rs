@@ -2,7 +2,7 @@
 
 mod ramp;
 pub(super) mod session;
-mod value;
+pub(super) mod value;
 
 use std::fmt;
 use std::ops::Range;

@@ -201,7 +201,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ///
     /// The companion sees the whole value, including its settling. A value that continues after an
     /// interruption gets a new companion. A companion's verdict counts like the observer's, so the verdict
-    /// must follow from the run alone.
+    /// must follow from the run alone. Commands that play a value again, such as `replay`, make no companion.
     ///
     /// # Errors
     /// If the companion cannot be made: for example, it cannot write its file.

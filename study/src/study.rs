@@ -122,7 +122,7 @@ impl<E: Experiment> Study<E> {
         Plan::from_toml_unproven(&folder.read_plan()?).map_err(StudyError::unreadable(&folder.plan()))
     }
 
-    fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
+    pub(super) fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
         let hash = blake3::hash(text.as_bytes());
         let version = env!("CARGO_PKG_VERSION").to_owned();

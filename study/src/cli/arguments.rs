@@ -82,15 +82,16 @@ pub(super) enum Command {
     /// mass, density or momenta, omega, orientation or angle, id, type, kind or species, image. Notes on
     /// standard error say what is ignored, wrapped or shrunk.
     Convert(Convert),
-    /// Runs a value again, bit by bit the same, and writes its last collisions, its collisions in an interval
-    /// of time, or the state before a collision.
+    /// Runs a value again, bit by bit the same and to the same end, and writes its last collisions, its
+    /// collisions in an interval of time, or the state before a collision.
     ///
     /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
     /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
     /// disk, change of energy.
     Replay(Replay),
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
-    /// from its position in the other run than a tolerance.
+    /// from its position in the other run than a tolerance. An experiment that prepares steps, or has a
+    /// driving, is refused.
     Diff(Diff),
     /// Prints completions for a shell, or with `man` a page of the manual.
     Completions {
@@ -128,7 +129,8 @@ pub(super) struct Place {
     #[arg(long, default_value_t = 0)]
     pub(super) value: usize,
     /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
-    /// --shrink` makes a start from disks that overlap.
+    /// --shrink` makes a start from disks that overlap. The run has no observer and no limit of collisions,
+    /// and no step of it is prepared (`Experiment::prepare`); an experiment with a driving is refused.
     #[arg(long)]
     pub(super) start: Option<PathBuf>,
     /// Absolute time at which the run ends. By default, this is the end of the value. From a file at a time
@@ -147,7 +149,7 @@ pub(super) struct Trajectory {
     pub(super) out: PathBuf,
     #[command(flatten)]
     pub(super) place: Place,
-    /// Number of cycles, which may go beyond the end of the value.
+    /// Number of cycles, which may go beyond the end of the value, unless the experiment has a driving.
     #[arg(long, default_value_t = 100)]
     pub(super) cycles: u32,
 }

@@ -1,11 +1,13 @@
 //! The command `replay`, which runs a value again and writes its collisions, or the state before a collision.
 
+use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
+use std::rc::Rc;
 
-use granular_edmd::replay::{Replayed, Steps};
+use granular_edmd::observable::{Collision, Observer, Partner, on_collision};
 use granular_edmd::trajectory::State;
 
 use super::arguments::Replay;
@@ -13,13 +15,14 @@ use super::convert::Ending;
 use super::source::{HEADINGS, Source, row, tell_end};
 use super::terminal::{end_at_once, wrote};
 use super::{End, Failure, PlanError, StudyError};
+use crate::execution::value::play::{Found, Pause, Player};
 use crate::{Experiment, Run};
 
 /// Default number of collisions to write.
 const FEW: usize = 10;
 
-/// Number of collisions between two updates of the display, after which rows are written.
-const BATCH: u64 = 1024;
+/// Number of rows that are written at a time.
+const BATCH: usize = 1024;
 
 /// Runs a value again, and writes the requested collisions or the requested state. An incomplete file is
 /// removed.
@@ -64,68 +67,106 @@ impl Replay {
 /// Writes all collisions as they occur, or the last collisions at the end.
 fn rows<E: Experiment>(
     wishes: &Replay,
-    mut source: Source<E>,
+    source: Source<E>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
 ) -> Result<(), Failure> {
-    let (end, show) = (source.end, source.clock());
-    if let Some(from) = wishes.from.filter(|from| *from > source.run.time()) {
-        source.advance(from, u64::MAX, &show)?;
-    }
+    let show = source.clock();
+    let Source { run, found, end, .. } = source;
     let last = wishes.last.unwrap_or(if wishes.from.is_some() { usize::MAX } else { FEW });
-    let is_own = |it: &Replayed| wishes.disk.is_none_or(|id| it.id == id || it.partner_id == Some(id));
-    let (mut steps, mut kept) = (Steps::new(source.run), VecDeque::new());
-    let mut text = HEADINGS.to_owned() + "\n";
-    for number in 1.. {
-        // If the run ends with an error, the collisions before the error are still written.
-        let next = steps.next(end).unwrap_or_else(|error| {
-            tell_end(steps.run(), &error);
-            None
-        });
-        let is_over = next.is_none();
-        kept.extend(next.filter(is_own));
+    let caught = Rc::new(RefCell::new(VecDeque::new()));
+    let value = found.as_ref().map(Found::value);
+    let catcher = wishes.catcher::<E>(&run, last, Rc::clone(&caught));
+    let mut player = Player::new(value.as_ref(), run, catcher)?;
+    let (mut kept, mut text) = (VecDeque::new(), HEADINGS.to_owned() + "\n");
+    loop {
+        let paused = player.play(end, u64::MAX);
+        let boundary = player.run().boundary();
+        kept.extend(caught.borrow_mut().drain(..).map(|(number, it)| row(number, &it, boundary) + "\n"));
         kept.drain(..kept.len().saturating_sub(last));
-        if !is_over && number % BATCH != 0 {
-            continue;
+        show(player.run().time());
+        let is_over = !matches!(paused, Ok(Pause::Prepared | Pause::Slice));
+        // If the run ends with an error, the collisions before the error are still written.
+        if let Err(error) = paused {
+            tell_end(player.run(), &*error);
         }
-        show(steps.run().time());
-        if is_over || last == usize::MAX {
-            text.extend(kept.drain(..).map(|it| row(&it, steps.run().boundary()) + "\n"));
+        if is_over || (last == usize::MAX && kept.len() >= BATCH) {
+            text.extend(kept.drain(..));
             if !write(text.as_bytes())? || is_over {
-                break;
+                return Ok(());
             }
             text.clear();
         }
     }
-    Ok(())
+}
+
+impl Replay {
+    /// Returns an observer that catches the last of the requested collisions, with their numbers.
+    fn catcher<E: Experiment>(
+        &self,
+        start: &Run<E>,
+        last: usize,
+        caught: Rc<RefCell<VecDeque<(u64, Collision)>>>,
+    ) -> Box<dyn Observer> {
+        let (mut number, disk) = (start.counters().collisions(), self.disk);
+        let from = self.from.filter(|from| *from > start.time());
+        let is_of = |it: &Collision, id| {
+            it.ids[0] == id || (matches!(it.partner, Partner::Disk(_)) && it.ids[1] == id)
+        };
+        Box::new(on_collision(move |it: &Collision| {
+            number += 1;
+            if from.is_none_or(|from| it.time > from) && disk.is_none_or(|id| is_of(it, id)) {
+                let mut caught = caught.borrow_mut();
+                caught.push_back((number, *it));
+                let more = caught.len().saturating_sub(last);
+                caught.drain(..more);
+            }
+        }))
+    }
 }
 
 /// Writes the state before a collision, even if the collision ended the run with an error.
 fn state_before<E: Experiment>(
     number: u64,
-    mut source: Source<E>,
+    source: Source<E>,
     path: Option<&Path>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
 ) -> Result<(), Failure> {
-    let (first, end, show) = (source.run.counters().collisions() + 1, source.end, source.clock());
+    let show = source.clock();
+    let Source { run, found, end, .. } = source;
+    let first = run.counters().collisions() + 1;
     if number < first {
         let message = format!("the first collision of this run has the number {first}, not {number}");
         return Err(PlanError::Refused(message).into());
     }
-    let ended = source.advance(end, number - 1, show);
-    let found = source.run.counters().collisions();
+    let absent = |last| format!("there is no collision {number} until {end}: the last one is {last}").into();
+    let value = found.as_ref().map(Found::value);
+    let mut player = Player::new(value.as_ref(), run, Box::new(()))?;
+    let ended = loop {
+        match player.play(end, number - 1) {
+            Ok(Pause::Prepared | Pause::Slice) => show(player.run().time()),
+            ended => break ended,
+        }
+    };
+    let found = player.run().counters().collisions();
     if found + 1 < number {
         ended?;
+        return Err(absent(found));
     }
-    let state = contents::<E>(&mut source.run, path)?;
-    // The run may end without a further collision.
-    if found + 1 < number || matches!(Steps::new(source.run).next(end), Ok(None)) {
-        return Err(format!("there is no collision {number} until {end}: the last one is {found}").into());
-    }
-    write(&state).map(drop)
+    let mut state = contents::<E>(player.run(), path)?;
+    // The run may end without a further collision. Until it comes, the experiment may change the state.
+    let is_there = ended.is_err()
+        || loop {
+            match player.play(end, number) {
+                Ok(Pause::Prepared) => state = contents::<E>(player.run(), path)?,
+                Ok(Pause::Slice) => {}
+                last => break last.is_err() || player.run().counters().collisions() == number,
+            }
+        };
+    if is_there { write(&state).map(drop) } else { Err(absent(found)) }
 }
 
 /// Returns the present state, encoded in the format that the ending of the file's name chooses.
-fn contents<E: Experiment>(run: &mut Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
+fn contents<E: Experiment>(run: &Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
     let path = path.unwrap_or(Path::new("-.csv"));
     let Some(ending) = Ending::of(path) else { return Ok(run.checkpoint().to_bytes()?) };
     let text = ending.text(path, &State::of(&run.snapshot())).transpose()?;

@@ -1,30 +1,31 @@
 //! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a
 //! file. Also the command `trajectory`.
 
+use std::cell::Cell;
+use std::error::Error;
 use std::path::Path;
-use std::time::Duration;
+use std::rc::Rc;
 
 use granular_edmd::Simulation;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::{CollisionRule, Regime};
-use granular_edmd::observable::{Partner, SampleTimes};
-use granular_edmd::replay::Replayed;
-use granular_edmd::simulation::{Checkpoint, CheckpointError, Limits, RunEnd, RunError};
+use granular_edmd::observable::{Collision, Partner, SampleTimes, Snapshot, on_sample};
+use granular_edmd::simulation::{Checkpoint, CheckpointError, RunError};
 use granular_edmd::trajectory::{ByEnding, Reader, Recorder};
 
 use super::arguments::{Place, Trajectory};
 use super::convert::Ending;
 use super::terminal::{Watch, read, say, tell};
 use super::{End, Failure, Plan, PlanError, StudyError, chain};
+use crate::execution::value::play::{Found, Pause, Player};
 use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
-
-/// Wall-clock time between two updates of the display.
-const LOOK: Duration = Duration::from_millis(200);
 
 /// A run at its start.
 pub(super) struct Source<E: Experiment> {
     pub(super) run: Run<E>,
+    /// The value that the run belongs to; `None` if the run starts from a file.
+    pub(super) found: Option<Found<E>>,
     pub(super) cycle: f64,
     /// Time at which the run ends.
     pub(super) end: f64,
@@ -33,35 +34,48 @@ pub(super) struct Source<E: Experiment> {
 impl<E: Experiment> Source<E> {
     /// Opens a value of a plan, or of the study in a folder, at its start.
     pub(super) fn open(path: &Path, place: &Place, start: Option<&Path>) -> Result<Self, Failure> {
-        let Place { ramp, value, until, .. } = *place;
-        let (run, cycle, end) = if path.is_dir() && start.is_none() {
-            let (experiment, run, end) = Study::<E>::open(path)?.start_of(ramp, value)?;
-            (run, experiment.cycle(), end)
-        } else {
-            // A study knows the times of the value, unless others before it are still to be done. A start
-            // file needs only the plan, so nothing else about the folder is an error here.
-            let study = if path.is_dir() { Study::<E>::open(path).ok() } else { None };
-            let known = study.and_then(|study| study.start_of(ramp, value).ok());
-            let path = if path.is_dir() { &path.join("plan.toml") } else { path };
-            let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
-            let (experiment, seed) = (plan.experiment(ramp, value)?, plan.ramp_seed(ramp));
-            let run = match start {
-                Some(file) => begun(&experiment, file, seed),
-                None if value == 0 => experiment.build(seed),
-                None => Err("it starts where another one ended: `run` the plan, and give the folder".into()),
-            };
-            let run = run.map_err(|source| StudyError::Build { ramp, value, source })?;
-            let is_within = |(_, first, end): &(E, Run<E>, f64)| (first.time()..*end).contains(&run.time());
-            let later = run.time() + plan.protocol().cycles() as f64 * experiment.cycle();
-            let end = known.filter(is_within).map_or(later, |(_, _, end)| end);
-            (run, experiment.cycle(), end)
+        let source = match start {
+            Some(file) => Self::from_file(path, place, file)?,
+            None => Self::of_value(path, place)?,
         };
-        let (start, until) = (run.time(), until.unwrap_or(end));
+        let (start, end, until) = (source.run.time(), source.end, place.until.unwrap_or(source.end));
         if until > start && until <= end {
-            return Ok(Self { run, cycle, end: until });
+            return Ok(Self { end: until, ..source });
         }
         let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
         Err(PlanError::Refused(message).into())
+    }
+
+    fn of_value(path: &Path, &Place { ramp, value, .. }: &Place) -> Result<Self, Failure> {
+        let found = if path.is_dir() {
+            Study::open(path)?.find(ramp, value)?
+        } else {
+            let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
+            plan.experiment(ramp, value)?;
+            if value > 0 {
+                let source = "it starts where another one ended: `run` the plan, and give the folder".into();
+                return Err(StudyError::Build { ramp, value, source }.into());
+            }
+            Found::first(path, plan, ramp)?
+        };
+        let ((run, end), cycle) = (found.start()?, found.experiment().cycle());
+        Ok(Self { run, found: Some(found), cycle, end })
+    }
+
+    fn from_file(path: &Path, &Place { ramp, value, .. }: &Place, file: &Path) -> Result<Self, Failure> {
+        // A study knows the times of the value, unless others before it are still to be done. A start file
+        // needs only the plan, so nothing else about the folder is an error here.
+        let study = if path.is_dir() { Study::<E>::open(path).ok() } else { None };
+        let known = study.and_then(|study| study.find(ramp, value).ok()?.start().ok());
+        let path = if path.is_dir() { &path.join("plan.toml") } else { path };
+        let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
+        let (experiment, seed) = (plan.experiment(ramp, value)?, plan.ramp_seed(ramp));
+        let run = begun(&experiment, file, seed);
+        let run = run.map_err(|source| StudyError::Build { ramp, value, source })?;
+        let is_within = |(first, end): &(Run<E>, f64)| (first.time()..*end).contains(&run.time());
+        let later = run.time() + plan.protocol().cycles() as f64 * experiment.cycle();
+        let end = known.filter(is_within).map_or(later, |(_, end)| end);
+        Ok(Self { run, found: None, cycle: experiment.cycle(), end })
     }
 
     /// Returns a display of the simulated time, in cycles.
@@ -72,22 +86,13 @@ impl<E: Experiment> Source<E> {
             watch.show(&Progress { ramp: 0, value: 0, done, total });
         }
     }
-
-    /// Runs until a time or a total number of collisions, whichever comes first.
-    pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<(), RunError> {
-        loop {
-            let left = number.saturating_sub(self.run.counters().collisions());
-            let limits = Limits::until(until).with_most_collisions(left).with_wall_clock(LOOK);
-            if self.run.run(&limits, &mut ())? != RunEnd::WallClock {
-                return Ok(());
-            }
-            show(self.run.time());
-        }
-    }
 }
 
 /// Starts from a file: a checkpoint, or disks.
 fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>, ExperimentError> {
+    if experiment.driving(seed)?.is_some() {
+        return Err("its driving is not in a file, so it cannot start from one".into());
+    }
     let (rule, boundary) = (experiment.rule()?, experiment.boundary()?);
     let state = match Checkpoint::read(path) {
         Err(error) if is_no_checkpoint(&error) => Reader::new().read(path)?,
@@ -122,9 +127,9 @@ fn is_no_checkpoint(error: &CheckpointError) -> bool {
 
 /// Prints the error with which a run ended. The id of the disk is added, since errors name disks by index and
 /// tables by id.
-pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
-    let id = match error {
-        RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. } => run.disk(*disk),
+pub(super) fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &(dyn Error + 'static)) {
+    let id = match error.downcast_ref() {
+        Some(RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. }) => run.disk(*disk),
         _ => None,
     };
     let id = id.map_or_else(String::new, |disk| format!("; that disk has the id {}", disk.id()));
@@ -136,20 +141,19 @@ pub(super) const HEADINGS: &str = "number,time,disk,partner,wall,x,y,closing_spe
                                    tangential_impulse,energy_change,regime";
 
 /// Returns a collision as a row.
-pub(super) fn row(replayed: &Replayed, boundary: &impl Boundary) -> String {
-    let Replayed { number, id, partner_id, collision: it, .. } = replayed;
-    let wall = match it.partner {
-        Partner::Wall(wall) => boundary.wall_name(wall).to_string(),
-        Partner::Disk(_) => String::new(),
+pub(super) fn row(number: u64, it: &Collision, boundary: &impl Boundary) -> String {
+    let [id, partner] = it.ids;
+    let (partner, wall) = match it.partner {
+        Partner::Wall(wall) => (String::new().into(), boundary.wall_name(wall).to_string()),
+        Partner::Disk(_) => (Scalar::from(partner), String::new()),
     };
     let (contact, impulse) = (&it.contact, &it.impulse);
     let [x, y, time] = [it.position.x, it.position.y, it.time].map(Scalar::from);
     let speeds = [contact.closing_speed(), contact.slip_speed()];
     let changes = [impulse.normal(), impulse.tangential(), it.energy_change];
-    let partner = partner_id.map_or_else(|| String::new().into(), Scalar::from);
     let regime = Some(impulse.regime()).filter(|regime| *regime != Regime::Unspecified);
     let regime = regime.map_or_else(String::new, |regime| format!("{regime:?}"));
-    let cells = [(*number).into(), time, (*id).into(), partner, wall.into(), x, y].into_iter();
+    let cells = [number.into(), time, id.into(), partner, wall.into(), x, y].into_iter();
     let cells = cells.chain(speeds.into_iter().chain(changes).map(Scalar::from)).chain([regime.into()]);
     cells.map(|cell| cell.to_string()).collect::<Vec<_>>().join(",")
 }
@@ -158,12 +162,33 @@ pub(super) fn row(replayed: &Replayed, boundary: &impl Boundary) -> String {
 pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Failure> {
     let Trajectory { plan, out, place, cycles } = wishes;
     Ending::need(out, Ending::is_trajectory)?;
-    let Source { mut run, cycle, .. } = Source::<E>::open(plan, place, place.start.as_deref())?;
-    let mut recorder = Recorder::create(out, ByEnding, SampleTimes::every(cycle)?)?;
+    let Source { run, found, cycle, .. } = Source::<E>::open(plan, place, place.start.as_deref())?;
+    let (times, count) = (SampleTimes::every(cycle)?, Rc::new(Cell::new(0)));
+    let (recorder, counted) = (Recorder::create(out, ByEnding, times)?, Rc::clone(&count));
+    let counter = on_sample(times, move |_: &Snapshot<'_>| counted.set(counted.get() + 1));
     // The run lasts half a cycle longer, so that rounding cannot lose the last frame.
     let end = run.time() + cycle * (f64::from(*cycles) + 0.5);
-    run.run_until(place.until.map_or(end, |until| end.min(until)), &mut recorder)?;
-    let (frames, disks) = (recorder.times().len(), run.len());
+    let end = place.until.map_or(end, |until| end.min(until));
+    let value = found.as_ref().map(Found::value);
+    let mut player = Player::new(value.as_ref(), run, Box::new((recorder, counter)))?;
+    play(&mut player, end)?;
+    if player.is_over() && !player.is_driven() {
+        player = player.beyond();
+        play(&mut player, end)?;
+    }
+    let (frames, disks) = (count.get(), player.run().len());
+    if player.is_over() && frames < *cycles {
+        tell(&format!(
+            "the value ended at {}; without its driving, the run cannot go on",
+            player.run().time()
+        ));
+    }
     say(&format!("{frames} frames of {disks} disks are in {}", out.display()))?;
     Ok(End::Done)
+}
+
+/// Plays until a time or the end of the value.
+fn play<E: Experiment>(player: &mut Player<'_, E>, until: f64) -> Result<(), Failure> {
+    while matches!(player.play(until, u64::MAX)?, Pause::Prepared | Pause::Slice) {}
+    Ok(())
 }

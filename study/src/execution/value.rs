@@ -1,10 +1,14 @@
 //! One value of a ramp, from its start to its record. The record is a pure function of the plan, the indices
 //! of ramp and value, and the record from which the value starts.
 
+#[cfg(feature = "cli")]
+pub(crate) mod play;
+
 use std::path::Path;
 use std::time::Duration;
 
 use granular_edmd::Simulation;
+use granular_edmd::observable::Observer;
 use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError, Warning};
 
 use crate::errors::{ExperimentError, StudyError, chain};
@@ -16,7 +20,7 @@ use crate::sliced::{self, Riders};
 use crate::{Experiment, Protocol, Run, SavedDriving, Start, Study};
 
 /// A value to be run.
-pub(super) struct Value<'a, E: Experiment> {
+pub(crate) struct Value<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) origin: Origin,
     pub(super) experiment: E,
@@ -62,30 +66,40 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// Starts the value, or continues it from a record with fewer samples, if the record keeps the state.
     pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
-        let (start, counters) = (self.start(), *run.counters());
-        let work = |steps, measured| Work {
-            origin: self.origin.clone(),
-            start,
-            steps,
-            is_prepared: false,
-            is_under_way: false,
-            counters,
-            measured,
-        };
         if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
             let missing = self.study.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
-            let work = work(self.study.plan.protocol().steps() - missing, measured);
+            let work = self.work(&run, self.study.plan.protocol().steps() - missing, measured);
             match self.go_on((work, state, driving), self.study.folder()) {
                 Err(StudyError::Damaged { .. }) => {}
                 made => return made,
             }
         }
+        let mut active = self.begin_alone(run)?;
+        active.riders.companion = self.companion(active.run.time(), false)?;
+        Ok(active)
+    }
+
+    /// Starts the value from its first state, without a companion.
+    fn begin_alone(&'a self, run: Run<E>) -> Result<Active<'a, E>, StudyError> {
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
-        let work = work(0, Measured { times: Vec::new(), samples: Vec::new(), observer });
-        let riders = self.riders(run.time(), self.driving()?, false)?;
+        let work = self.work(&run, 0, Measured { times: Vec::new(), samples: Vec::new(), observer });
+        let riders = Riders { driving: self.driving()?, ..Riders::default() };
         Ok(Active { value: self, work, run, riders })
+    }
+
+    /// Returns the work after these steps of a run that is in its first state.
+    fn work(&self, first: &Run<E>, steps: u64, measured: Measured<E::Sample, E::Observer>) -> WorkOf<E> {
+        Work {
+            origin: self.origin.clone(),
+            start: self.start(),
+            steps,
+            is_prepared: false,
+            is_under_way: false,
+            counters: *first.counters(),
+            measured,
+        }
     }
 
     /// Returns the driving at the start of the value.
@@ -95,17 +109,11 @@ impl<'a, E: Experiment> Value<'a, E> {
         self.experiment.driving(seed).map_err(|source| self.cannot_start(source))
     }
 
-    /// Returns the driving and the companion from this time on.
-    fn riders(
-        &self,
-        time: f64,
-        driving: Option<Box<dyn SavedDriving>>,
-        is_resumed: bool,
-    ) -> Result<Riders, StudyError> {
+    /// Returns the companion from this time on.
+    fn companion(&self, time: f64, is_resumed: bool) -> Result<Option<Box<dyn Observer>>, StudyError> {
         let Origin { ramp, value, seed, .. } = self.origin;
         let start = Start { folder: self.study.folder(), ramp, value, seed, time, is_resumed };
-        let companion = self.experiment.companion(&start).map_err(|source| self.cannot_start(source))?;
-        Ok(Riders { driving, companion, is_under_way: false })
+        self.experiment.companion(&start).map_err(|source| self.cannot_start(source))
     }
 
     /// Returns whether the record of the same value in another study contains all data for the record of this
@@ -138,7 +146,8 @@ impl<'a, E: Experiment> Value<'a, E> {
         let loaded = check(is_loaded, "its driving is another").map_err(str::to_owned);
         let state = loaded.and_then(|()| self.state_of(partial));
         let (work, run) = state.map_err(|reason| StudyError::damaged(path, reason))?;
-        let riders = self.riders(run.time(), driving, true)?;
+        let companion = self.companion(run.time(), true)?;
+        let riders = Riders { driving, companion, is_under_way: false };
         Ok(Active { value: self, work, run, riders })
     }
 
@@ -192,31 +201,6 @@ impl<'a, E: Experiment> Value<'a, E> {
     }
 }
 
-#[cfg(feature = "cli")]
-impl<E: Experiment> Study<E> {
-    /// Returns a value's experiment, its simulation at the start, and the time of its end.
-    pub(crate) fn start_of(&self, ramp: usize, value: usize) -> Result<(E, Run<E>, f64), StudyError> {
-        let before = self.ramp_records(ramp).take(value).map(|record| Ok(self.plan.seen(&record?)));
-        let seen: Vec<_> = before.collect::<Result<_, StudyError>>()?;
-        let next = self.plan.next(&seen);
-        let reason = if next.is_some() { "values before it are finished" } else { "values are in the ramp" };
-        let absent = || format!("only {} {reason}", seen.len()).into();
-        let step = next.filter(|_| seen.len() == value);
-        let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
-        // Other code may give other results.
-        if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
-            return Err(StudyError::changed(self.folder(), "revision"));
-        }
-        let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
-        let experiment = self.plan.experiment_at(ramp, step.at)?;
-        let (origin, before) = (self.origin(ramp, value), before.as_ref());
-        let value = Value { study: self, origin, experiment, step, before };
-        let (run, end) = (value.first_state()?, self.plan.protocol().cycles() as f64);
-        let end = value.start().time(end, value.experiment.cycle());
-        Ok((value.experiment, run, end))
-    }
-}
-
 impl<E: Experiment> Active<'_, E> {
     /// Returns the number of finished steps.
     pub(super) const fn steps(&self) -> u64 {
@@ -231,15 +215,12 @@ impl<E: Experiment> Active<'_, E> {
     /// whether the step is done; if not, the next call continues the step, with the same bits. The error is
     /// the outcome of a value that ends early.
     pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
-        self.prepare()?;
-        let ended = self.advance(slice);
+        let prepared = self.prepare();
+        prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })?;
+        let ended = self.advance(slice, f64::INFINITY, u64::MAX);
         let time = self.run.time();
         match ended {
-            Ok(RunEnd::Time) => {
-                self.work.steps += 1;
-                self.work.is_prepared = false;
-                Ok(true)
-            }
+            Ok(RunEnd::Time) => Ok(true),
             Ok(RunEnd::WallClock) => Ok(false),
             Ok(RunEnd::Collisions) => {
                 let most = self.value.study.plan.protocol().most_collisions.unwrap_or(u64::MAX);
@@ -258,42 +239,54 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     /// Calls the experiment's `prepare` for the next step, unless it was called already.
-    fn prepare(&mut self) -> Result<(), Outcome> {
+    fn prepare(&mut self) -> Result<(), ExperimentError> {
         if std::mem::replace(&mut self.work.is_prepared, true) {
             return Ok(());
         }
         let interval = self.value.study.plan.protocol().step(self.work.steps);
         let observer = &mut self.work.measured.observer;
-        let prepared = self.value.experiment.prepare(&interval, &mut self.run, observer);
-        prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })
+        self.value.experiment.prepare(&interval, &mut self.run, observer)
     }
 
-    /// Runs the next step to its end, and takes its sample on the way if the step has one.
-    fn advance(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
+    /// Runs the next step to its end, and takes its sample on the way if the step has one. The time `until`
+    /// and the number of collisions `most` in the value may end the run earlier.
+    fn advance(&mut self, slice: Duration, until: f64, most: u64) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
-        let done = self.run.counters().since(&self.work.counters).collisions();
-        let left = protocol.most_collisions.unwrap_or(u64::MAX).saturating_sub(done);
+        let left = most.min(protocol.most_collisions.unwrap_or(u64::MAX)).saturating_sub(self.collisions());
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
-        let [to_sample, to_end] = [end - (1.0 - protocol.phase), end].map(|cycles| {
-            let end = self.work.start.time(cycles, cycle);
-            Limits::until(end).with_wall_clock(slice).with_most_collisions(left)
-        });
-        let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
-            &mut self.work;
-        let Some(sample) = protocol.step(*steps).sample else {
-            return sliced::run(&mut self.run, &to_end, &mut self.riders, &mut (), is_under_way);
-        };
-        // A slice may have ended between the sample and the end of the step.
-        if samples.len() as u64 == sample {
-            let ended = sliced::run(&mut self.run, &to_sample, &mut self.riders, observer, is_under_way)?;
-            if ended != RunEnd::Time {
-                return Ok(ended);
+        let [sample_time, end] =
+            [end - (1.0 - protocol.phase), end].map(|cycles| self.work.start.time(cycles, cycle));
+        let limits =
+            |end: f64| Limits::until(end.min(until)).with_wall_clock(slice).with_most_collisions(left);
+        let Work {
+            measured: Measured { times, samples, observer }, is_under_way, is_prepared, steps, ..
+        } = &mut self.work;
+        let (run, riders) = (&mut self.run, &mut self.riders);
+        let ended = if let Some(sample) = protocol.step(*steps).sample {
+            // A slice may have ended between the sample and the end of the step.
+            if samples.len() as u64 == sample {
+                let ended = sliced::run(run, &limits(sample_time), riders, observer, is_under_way)?;
+                if ended != RunEnd::Time || until < sample_time {
+                    return Ok(ended);
+                }
+                let snapshot = run.snapshot();
+                times.push(snapshot.time());
+                samples.push(self.value.experiment.sample(&snapshot, observer));
             }
-            let snapshot = self.run.snapshot();
-            times.push(snapshot.time());
-            samples.push(self.value.experiment.sample(&snapshot, observer));
+            sliced::run(run, &limits(end), riders, observer, is_under_way)?
+        } else {
+            sliced::run(run, &limits(end), riders, &mut (), is_under_way)?
+        };
+        if ended == RunEnd::Time && until >= end {
+            *steps += 1;
+            *is_prepared = false;
         }
-        sliced::run(&mut self.run, &to_end, &mut self.riders, observer, is_under_way)
+        Ok(ended)
+    }
+
+    /// Returns the number of collisions in the value so far.
+    fn collisions(&self) -> u64 {
+        self.run.counters().since(&self.work.counters).collisions()
     }
 
     /// Returns the data from which the unfinished value can continue later.
