@@ -61,6 +61,7 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it. An
 ///   impact on a wall whose normal and tangential masses are infinite changes neither the motion of its
 ///   surface nor a gap, now or later. Other walls may move with the one that is hit, as parts of one body do.
+///   A stop that takes the impulse of a wall, as a [`Piston`](crate::wall::Piston) has it, is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
 ///   a periodic seam, a disk overlaps the same wall.
 ///

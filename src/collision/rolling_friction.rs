@@ -16,7 +16,8 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// This is Coulomb's law of rolling resistance with impulses in place of forces: a lasting contact resists
 /// rolling by a torque of at most $`\mu_r F_n R`$ (Iwashita and Oda 1998, without their spring). The couple
-/// transfers no momentum, so it does not act on disks that only translate.
+/// transfers no momentum, so it does not act on disks that only translate. A straight wall, or the corner or
+/// end of a part, has $`R_2 = \infty`$.
 ///
 /// The couple acts after the tangential impulse, on the spins that friction has left. Friction is thus the
 /// same with and without rolling friction, and the couple never gains energy, whatever the inner rule does:

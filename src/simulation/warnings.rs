@@ -78,10 +78,10 @@ pub enum Warning {
         /// Energy added by the remedy.
         energy: f64,
     },
-    /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
-    /// them aside. Rows of a lattice over a floor that moves vertically bounce like this forever. Small
-    /// velocities at the start prevent this, for example from
-    /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
+    /// All disks move along one axis only, although a thousand collisions between disks or more have
+    /// happened: they started in line, and nothing pushes them aside. Rows of a lattice over a floor that
+    /// moves vertically bounce like this forever. Small velocities at the start prevent this, for example
+    /// from [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.
         collisions: u64,

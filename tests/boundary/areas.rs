@@ -172,8 +172,8 @@ fn obstacles_alone_and_in_walls() -> Result<(), Failure> {
     Ok(())
 }
 
-/// An obstacle whose circle hardly meets the circles of small pegs has the area of one more peg. A cap narrower
-/// than 1/256 of a line may be lost, an area of 1e-7.
+/// An obstacle whose circle hardly meets the circles of small pegs has the area of one more peg. A cap
+/// narrower than 1/256 of a line may be lost, an area of 1e-7.
 #[test]
 fn obstacles_beside_narrow_features_of_parts() -> Result<(), Failure> {
     let obstacle = Disk::new(DVec2::splat(6.0), 0.7)?;

@@ -104,7 +104,8 @@ pub(super) enum Command {
         /// Folder of the study.
         folder: PathBuf,
     },
-    /// Measures the speed in standard states, in about ten seconds; with a plan, estimates its core hours.
+    /// Measures the speed in standard states, in about ten seconds; with a plan, estimates its core hours,
+    /// without prepared steps and drivings.
     Bench {
         /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
         plan: Option<PathBuf>,
