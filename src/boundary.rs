@@ -73,6 +73,7 @@ use glam::DVec2;
 
 use crate::quantity::accept;
 use crate::{Fingerprint, Flight, ParameterError};
+use area::Curves;
 
 /// The walls around the disks.
 ///
@@ -340,10 +341,16 @@ pub trait Boundary {
     /// where they are. The default is `None`; so is a free area that depends on the kind of the matter.
     ///
     /// Containers, vessels and obstacles know the area to 1e-10, even if walls overlap, unless a part with an
-    /// inside is [for some kinds only](Part::only_for). The exceptions are obstacles that lie in a curved
-    /// wall, and parts whose lines end inside the container with disks on one side only. There, pieces
-    /// smaller than a sixteenth of the distance between the surrounding walls may be missed.
+    /// inside is [for some kinds only](Part::only_for). The exceptions are parts whose lines end inside the
+    /// container with disks on one side only, and obstacles that reach into them or into custom walls. There,
+    /// pieces thinner than 1/16 of the distance between the surrounding walls, or 1/256, may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        let _ = (region, radius, time);
+        None
+    }
+
+    #[doc(hidden)]
+    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
         let _ = (region, radius, time);
         None
     }

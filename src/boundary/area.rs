@@ -116,6 +116,11 @@ pub(super) fn meet(one: &Region, other: &Region) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
+/// Curves on which the center of a disk touches a wall: those of a boundary that knows all of them. No custom
+/// boundary can make them.
+#[derive(Debug)]
+pub struct Curves(pub(super) Vec<Curve>);
+
 /// A lower bound of the distance from a position to the nearest unknown curve. Distances above the second
 /// argument need not be known.
 pub(super) type Gap<'a> = &'a dyn Fn(DVec2, f64) -> f64;

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
+use super::area::Curves;
 use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
 use crate::forward::forward;
 use crate::{Fingerprint, Flight, ParameterError};
@@ -23,6 +24,7 @@ forward! { Boundary for [&mut T, Box<T>] {
     fn tight_fit(&self, radius: f64) -> Option<usize>;
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>>;
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64>;
+    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves>;
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool;
     fn state(&self) -> Vec<f64>;
     fn fingerprint(&self) -> Option<Fingerprint>;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::area::{Curve, Field, Gap, gap, meet};
+use super::area::{Curve, Curves, Field, Gap, gap, meet};
 use super::brick::{ASLANT, Brick};
 use super::part::enclosing;
 use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
@@ -62,6 +62,15 @@ impl<B: Boundary> Obstacles<B> {
     /// Returns the obstacles.
     pub fn obstacles(&self) -> &[Disk] {
         &self.obstacles
+    }
+
+    /// Returns the circles near a region on which the center of a disk touches an obstacle.
+    fn circles(&self, region: &Region, radius: f64) -> Vec<Curve> {
+        let circles = self.obstacles.iter().flat_map(|obstacle| {
+            let contact = obstacle.radius() + radius;
+            self.images(obstacle).map(move |place| Curve::Circle(place, contact))
+        });
+        circles.filter(|circle| meet(&circle.bounds(), region)).collect()
     }
 
     /// Returns the positions of an obstacle and of its periodic images.
@@ -167,14 +176,11 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
         let all = self.boundary.area(region, radius, time)?;
-        let circles = self.obstacles.iter().flat_map(|obstacle| {
-            let contact = obstacle.radius() + radius;
-            self.images(obstacle).map(move |place| Curve::Circle(place, contact))
-        });
         let region = region.within(&self.domain().region());
-        let curves: Vec<Curve> = circles.filter(|circle| meet(&circle.bounds(), &region)).collect();
+        let mut curves = self.circles(&region, radius);
         let ends = curves.iter().map(|circle| (circle.bounds().min, circle.bounds().max));
         let (low, high) = enclosing(ends);
+        let region = region.within(&Region::new(low, high));
         let is_taken = |place: DVec2| {
             let touches = |obstacle: &Disk| {
                 let apart = self.domain().separation(obstacle.position(), place);
@@ -183,13 +189,21 @@ impl<B: Boundary> Boundary for Obstacles<B> {
             self.obstacles.iter().any(touches)
                 && self.boundary.overlap(&Probe::new(place, radius, time)).is_none()
         };
-        // The curves of the inner boundary's walls are unknown: only overlaps show them.
-        let is_near_wall = |circle: &Curve| self.boundary.may_touch(&circle.bounds(), radius);
+        // The curves of a custom boundary's walls are unknown: only overlaps show them.
         let overlap = |probe: &Probe| self.boundary.overlap(probe);
         let gap = |place, reach| gap(overlap, &Probe::new(place, radius, time), reach);
-        let unknown = curves.iter().any(is_near_wall).then_some(&gap as Gap<'_>);
-        let region = region.within(&Region::new(low, high));
+        let inner = self.boundary.curves(&region, radius, time);
+        let is_near_wall = |circle: &Curve| self.boundary.may_touch(&circle.bounds(), radius);
+        let are_unknown = inner.is_none() && curves.iter().any(is_near_wall);
+        let unknown = are_unknown.then_some(&gap as Gap<'_>);
+        curves.extend(inner.map(|Curves(inner)| inner).unwrap_or_default());
         Some(all - Field { region, curves, unknown, is_free: &is_taken }.area())
+    }
+
+    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
+        let Curves(mut curves) = self.boundary.curves(region, radius, time)?;
+        curves.extend(self.circles(region, radius));
+        Some(Curves(curves))
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

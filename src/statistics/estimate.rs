@@ -123,7 +123,7 @@ impl Estimate {
     pub const fn is_converged(&self) -> bool {
         let is_known =
             self.standard_error > 0.0 || (self.standard_error == 0.0 && !self.assumes_independence());
-        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks) && is_known
+        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks) && is_known && !self.mean.is_nan()
     }
 
     /// Returns whether the error assumes independent samples.

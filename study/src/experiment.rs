@@ -268,7 +268,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
     /// fingerprint stay unchanged. Walls that react, such as a [`Piston`](granular_edmd::wall::Piston), keep
-    /// their present positions and velocities, whatever initial ones these parameters give.
+    /// their present positions and velocities, whatever initial ones these parameters give. A method of your
+    /// own must set the walls of [`boundary`](Self::boundary), too, if [`prepare`](Self::prepare) exchanges
+    /// walls.
     ///
     /// # Errors
     /// If the disks do not fit into the walls, or the new walls that react cannot take over the present

@@ -125,6 +125,7 @@ fn main() -> ExitCode {
     driven_values_are_played();
     stopped_values_are_played();
     limited_values_are_played();
+    values_with_a_phase_are_played();
     failed_values_are_played();
     ExitCode::SUCCESS
 }
@@ -290,6 +291,19 @@ fn limited_values_are_played() {
     let case = Case::run("limited", "every = 1", "every = 1\nmost_collisions = 150");
     case.check();
     assert_eq!(case.counts(), [150, 150]);
+}
+
+/// Samples within a step neither hide its limit nor its collisions.
+fn values_with_a_phase_are_played() {
+    let case = Case::run("phase", "every = 1", "every = 1\nphase = 0.35\nmost_collisions = 150");
+    case.check();
+    assert_eq!(case.counts(), [150, 150]);
+    let all = case.rows("replay study --from -1");
+    for number in (1..=150).step_by(7) {
+        case.told(&format!("replay study --before {number} --out {number}.checkpoint"), 0);
+        let rest = case.rows(&format!("replay study --start {number}.checkpoint --from -1"));
+        assert_eq!(rest[0], all[number - 1], "{number}");
+    }
 }
 
 /// The error of an experiment that cannot prepare a step is told, unless the step comes after `--until`.

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::Container;
+use crate::boundary::area::{Curve, Curves};
 use crate::boundary::plane::Plane;
 use crate::boundary::{
     Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch,
@@ -105,6 +106,12 @@ impl Boundary for Container {
 
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
         Some(region.within(&self.room(radius, time)).area())
+    }
+
+    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
+        let Region { min, max } = region.within(&self.room(radius, time));
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y), min];
+        Some(Curves(corners.windows(2).map(|ends| Curve::Line(ends[0], ends[1])).collect()))
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

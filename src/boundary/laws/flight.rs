@@ -181,13 +181,18 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
 }
 
-/// Checks that a flight that ends before the touch finds none, that a flight that ends just after the touch
-/// finds it, and that a flight that begins at the touch finds it immediately.
+/// Checks that a flight that ends before the touch finds none, unless the gap is closed up to rounding there,
+/// that a flight that ends just after the touch finds it, and that a flight that begins at the touch finds it
+/// immediately.
 fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
     let Touch { time, wall, .. } = meeting.touch;
     let half = flight.time() + 0.5 * (time - flight.time());
     let early = trial.first_touch(flight, half)?;
-    let is_open = early.is_none() || time <= half;
+    // A search may end at any time at which the gap is closed up to rounding, as it is before a slow touch.
+    let is_closed = |Touch { time, .. }: Touch| {
+        time <= half && trial.depth(flight.position(time), trial.rounding(), time).is_some()
+    };
+    let is_open = early.is_none_or(is_closed) || time <= half;
     require!(PART, "touch time", is_open; "a search that ends at {half:?} finds {early:?}, on {flight:?}");
     if meeting.is_grazing {
         return Ok(());

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::{Vessel, Wall};
+use crate::boundary::area::Curves;
 use crate::boundary::{
     Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch,
 };
@@ -94,6 +95,12 @@ impl Boundary for Vessel {
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
         let depends_on_kind = self.parts.iter().any(|placed| placed.part.is_full_for_some());
         (!depends_on_kind).then(|| self.free_area(region, radius, time))
+    }
+
+    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
+        let mut curves = self.container.curves(region, radius, time).filter(|_| self.knows_all_curves())?;
+        curves.0.extend(self.curves_of_parts(region, radius, time));
+        Some(curves)
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {

@@ -9,13 +9,17 @@ impl Vessel {
     pub(super) fn free_area(&self, region: &Region, radius: f64, time: f64) -> f64 {
         let region = region.within(&self.container.room(radius, time));
         let is_free = |place| self.overlap_with_parts(&Probe::new(place, radius, time)).is_none();
-        let is_closed = |placed: &super::Placed| placed.part.takes_centers() || placed.part.is_closed();
         // Behind an open one-sided wall, the distance to the wall jumps and is no help.
         let gap = |_, _| f64::INFINITY;
-        let unknown = (!self.parts.iter().all(is_closed)).then_some(&gap as Gap<'_>);
+        let unknown = (!self.knows_all_curves()).then_some(&gap as Gap<'_>);
         let is_near = self.parts_may_touch(&region, radius);
-        let curves = if is_near { self.curves(&region, radius, time) } else { Vec::new() };
+        let curves = if is_near { self.curves_of_parts(&region, radius, time) } else { Vec::new() };
         Field { region, curves, unknown, is_free: &is_free }.area()
+    }
+
+    /// Returns whether centers change between free and occupied at the surfaces of bricks only.
+    pub(super) fn knows_all_curves(&self) -> bool {
+        self.parts.iter().all(|placed| placed.part.takes_centers() || placed.part.is_closed())
     }
 
     /// Returns whether a disk with its center in a region can touch a part at any time.
@@ -30,7 +34,7 @@ impl Vessel {
     }
 
     /// Returns the curves in a region on which the center of a disk touches a part.
-    fn curves(&self, region: &Region, radius: f64, time: f64) -> Vec<Curve> {
+    pub(super) fn curves_of_parts(&self, region: &Region, radius: f64, time: f64) -> Vec<Curve> {
         let mut curves = Vec::new();
         for placed in self.parts.iter().filter(|placed| !placed.part.takes_centers()) {
             let pose = placed.part.travel().pose(placed.phase.after(time));

@@ -252,12 +252,14 @@ impl<E: Experiment> Active<'_, E> {
     /// and the number of collisions `most` in the value may end the run earlier.
     fn advance(&mut self, slice: Duration, until: f64, most: u64) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
-        let left = most.min(protocol.most_collisions.unwrap_or(u64::MAX)).saturating_sub(self.collisions());
+        let (most, before) = (most.min(protocol.most_collisions.unwrap_or(u64::MAX)), self.work.counters);
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
         let [sample_time, end] =
             [end - (1.0 - protocol.phase), end].map(|cycles| self.work.start.time(cycles, cycle));
-        let limits =
-            |end: f64| Limits::until(end.min(until)).with_wall_clock(slice).with_most_collisions(left);
+        let limits = |run: &Run<E>, end: f64| {
+            let left = most.saturating_sub(run.counters().since(&before).collisions());
+            Limits::until(end.min(until)).with_wall_clock(slice).with_most_collisions(left)
+        };
         let Work {
             measured: Measured { times, samples, observer }, is_under_way, is_prepared, steps, ..
         } = &mut self.work;
@@ -265,7 +267,7 @@ impl<E: Experiment> Active<'_, E> {
         let ended = if let Some(sample) = protocol.step(*steps).sample {
             // A slice may have ended between the sample and the end of the step.
             if samples.len() as u64 == sample {
-                let ended = sliced::run(run, &limits(sample_time), riders, observer, is_under_way)?;
+                let ended = sliced::run(run, &limits(run, sample_time), riders, observer, is_under_way)?;
                 if ended != RunEnd::Time || until < sample_time {
                     return Ok(ended);
                 }
@@ -273,9 +275,9 @@ impl<E: Experiment> Active<'_, E> {
                 times.push(snapshot.time());
                 samples.push(self.value.experiment.sample(&snapshot, observer));
             }
-            sliced::run(run, &limits(end), riders, observer, is_under_way)?
+            sliced::run(run, &limits(run, end), riders, observer, is_under_way)?
         } else {
-            sliced::run(run, &limits(end), riders, &mut (), is_under_way)?
+            sliced::run(run, &limits(run, end), riders, &mut (), is_under_way)?
         };
         if ended == RunEnd::Time && until >= end {
             *steps += 1;
