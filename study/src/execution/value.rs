@@ -286,11 +286,6 @@ impl<E: Experiment> Active<'_, E> {
         Ok(ended)
     }
 
-    /// Returns the number of collisions in the value so far.
-    fn collisions(&self) -> u64 {
-        self.run.counters().since(&self.work.counters).collisions()
-    }
-
     /// Returns the data from which the unfinished value can continue later.
     pub(super) fn partial(&self) -> Result<Saved<&WorkOf<E>>, ExperimentError> {
         Ok((&self.work, self.run.checkpoint(), self.riders.saved()?))

@@ -191,4 +191,9 @@ impl<E: Experiment> Active<'_, E> {
             _ => Pause::Over,
         })
     }
+
+    /// Returns the number of collisions in the value so far.
+    fn collisions(&self) -> u64 {
+        self.run.counters().since(&self.work.counters).collisions()
+    }
 }
