@@ -144,8 +144,8 @@ use area::Curves;
 ///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
 ///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall jumps. The result
 ///    is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
-/// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall at a time up to
-///     `until`.
+/// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
+///     wall that moves with it as a part of one body, at a time up to `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the positions at which a disk of the default kind
@@ -165,7 +165,8 @@ use area::Curves;
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests promises 1 to 12, except that points lie on walls, and [`laws::check_fingerprints`]
+/// [`laws::check`] tests promises 1 to 12, except that points lie on walls and that `may_meet` tells of other
+/// walls of the same body, and [`laws::check_fingerprints`]
 /// tests 13; `docs/validation.md` says which planted faults they find. The engine notices many faults, too.
 /// At each collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than
 /// 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a disk that
@@ -256,7 +257,8 @@ pub trait Boundary {
     }
 
     /// Returns a point of a wall, at its position at `time`, or `None` if the boundary knows no such point.
-    /// The point is no hinge: it moves whenever the wall moves so that the free [`area`](Self::area) changes.
+    /// The point is no hinge: it moves whenever the wall moves so that the free [`area`](Self::area) changes,
+    /// and does not come back while the area is another.
     ///
     /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
     /// The default is `None`.
@@ -367,7 +369,8 @@ pub trait Boundary {
         Reaction::None
     }
 
-    /// Returns whether a disk with its center in `region` may touch this wall at any time up to `until`.
+    /// Returns whether a disk with its center in `region` may touch this wall, or another wall that moves
+    /// with it as a part of one body, at any time up to `until`.
     ///
     /// The engine calls this method after a wall has [reacted](Self::react), in order to find the disks whose
     /// flights may now end differently. A narrow result saves predictions; the default is the result of
