@@ -166,8 +166,8 @@ use area::Curves;
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] tests promises 1 to 12, except that points lie on walls and that `may_meet` tells of other
-/// walls of the same body, and [`laws::check_fingerprints`]
-/// tests 13; `docs/validation.md` says which planted faults they find. The engine notices many faults, too.
+/// walls of the same body, and [`laws::check_fingerprints`] tests 13; `docs/validation.md` says which planted
+/// faults they find. The engine notices many faults, too.
 /// At each collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than
 /// 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a disk that
 /// has left the domain by more than its radius (noticed within some collisions of each disk), and a disk that
@@ -351,6 +351,7 @@ pub trait Boundary {
         None
     }
 
+    // Only the library's own walls answer, for exact areas where obstacles reach into them.
     #[doc(hidden)]
     fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
         let _ = (region, radius, time);

@@ -35,16 +35,21 @@ pub fn friction_of_largest_loss(rule: &Frictional, gas: &Maxwellian) -> Option<f
     let ratio = friction_ratio(rule);
     let tangential = rule.tangential_inelasticity();
     let sine = Slope::new(ratio, tangential).root()?;
-    let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
     let slip_ratio = gas.slip_ratio_squared().sqrt();
     let opposite = gas.mass_ratio() * (1.0 - rule.normal_inelasticity());
-    Some((1.0 - tangential) * slip_ratio * sine / (opposite * cosine))
+    Some(friction_at(sine, (1.0 - tangential) * slip_ratio, opposite))
 }
 
 /// Returns the friction with the largest loss of disks without inelasticity; 0 if there is none.
 pub(super) fn largest_loss_of_friction(mass_ratio: f64, slip_ratio: f64) -> f64 {
-    let sine = Slope::new(1.0, 0.0).root().unwrap_or(0.0);
-    slip_ratio * sine / (mass_ratio * ((1.0 - sine) * (1.0 + sine)).sqrt())
+    friction_at(Slope::new(1.0, 0.0).root().unwrap_or(0.0), slip_ratio, mass_ratio)
+}
+
+/// Returns the friction with this sticking probability, from the ratio of the impulses that stop the slip and
+/// the closing.
+fn friction_at(sine: f64, slip: f64, closing: f64) -> f64 {
+    let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
+    slip * sine / (closing * cosine)
 }
 
 fn friction_ratio(rule: &Frictional) -> f64 {

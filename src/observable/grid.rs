@@ -143,6 +143,12 @@ pub(super) fn inside(region: Region, domain: &Domain) -> Result<Region, Paramete
     Ok(region)
 }
 
+/// Returns whether a region holds the center of a disk, which may lie exactly on an edge of a periodic
+/// domain.
+pub(super) fn holds(region: &Region, domain: &Domain, disk: &Disk) -> bool {
+    region.contains(domain.folded(disk.position()))
+}
+
 /// Reads an optional region from a file, and checks it with [`checked_region`].
 #[cfg(feature = "serde")]
 pub(super) fn region_from_file<'de, D: serde::Deserializer<'de>>(

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::grid::{checked_region, inside};
+use super::grid::{checked_region, holds, inside};
 use super::neighbors::{Neighbors, check_range};
 use super::table::{Table, headings, row};
 use super::{Accumulator, Heading, Snapshot};
@@ -170,8 +170,8 @@ impl PairCorrelation {
         let (mut counts, disks) = (vec![0; self.bins.count()], snapshot.disks());
         let is_partner = |disk: &Disk| self.is_of(1, disk);
         let neighbors = Neighbors::among(disks, snapshot.domain(), self.range(), is_partner);
-        let is_inside = |disk: &Disk| region.contains(snapshot.domain().folded(disk.position()));
-        let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && is_inside(disk);
+        let domain = snapshot.domain();
+        let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && holds(region, &domain, disk);
         for (index, _) in disks.iter().enumerate().filter(around) {
             for neighbor in neighbors.of(index) {
                 if let Some(bin) = self.bins.find(neighbor.separation.length()) {
@@ -207,7 +207,8 @@ impl Accumulator for PairCorrelation {
         let count = |which, is_counted: &dyn Fn(&Disk) -> bool| {
             disks.iter().filter(|disk| self.is_of(which, disk) && is_counted(disk)).count() as f64
         };
-        let is_inside = |disk: &Disk| region.contains(snapshot.domain().folded(disk.position()));
+        let domain = snapshot.domain();
+        let is_inside = |disk: &Disk| holds(&region, &domain, disk);
         let (centers, partners) = (count(0, &is_inside), count(1, &is_inside));
         let (possible, all) = (count(0, &|_| true), count(1, &|_| true));
         // A disk is not its own partner.
@@ -215,10 +216,11 @@ impl Accumulator for PairCorrelation {
         let others = if all > 0.0 { 1.0 - itself / all } else { 0.0 };
         self.centers.push(centers);
         self.partner_density.push(partners * others / region.area());
-        let (area, whole) = (region.area(), snapshot.domain().region().area());
+        // The box may be another in a later run. A box without an upper end counts as the region alone.
+        let (area, whole) = (region.area(), domain.region().area());
         let whole = if whole.is_finite() { whole } else { area };
+        // In an empty box, a center has no partners, and not -1.
         let [centers, partners] = [possible * (area / whole), (all - itself).max(0.0) / whole];
-        // A center in an empty box has no partners, rather than -1.
         let numbers = [centers, partners, centers * partners];
         self.numbers.iter_mut().zip(numbers).for_each(|(mean, number)| mean.push(number));
         for (bin, count) in self.count(snapshot, &region).into_iter().enumerate() {

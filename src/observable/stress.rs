@@ -3,14 +3,14 @@
 use glam::DVec2;
 
 use super::free_shares::{FreeShares, check_area};
-use super::grid::{checked_region, inside};
+use super::grid::{checked_region, holds, inside};
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
 use super::{Collision, Heading, Observer, SampleTimes, Snapshot, Verdict, contract};
-use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
+use crate::{Disk, ParameterError};
 
 /// A stress tensor with the sign of a pressure, positive where the disks push; made by [`Stress`].
 ///
@@ -225,8 +225,8 @@ impl Observer for Stress {
         let collisional = transferred.map(|sum| sum / (area * duration));
         let mut kinetic = [0.0; 4];
         let domain = snapshot.domain();
-        let inside = |place| self.region.is_none_or(|region| region.contains(domain.folded(place)));
-        for disk in snapshot.disks().iter().filter(|disk| inside(disk.position())) {
+        let is_inside = |disk: &&Disk| self.region.is_none_or(|region| holds(&region, &domain, disk));
+        for disk in snapshot.disks().iter().filter(is_inside) {
             let parts = products(disk.velocity() * (disk.mass() / area), disk.velocity());
             for (sum, part) in kinetic.iter_mut().zip(parts) {
                 *sum += part;
