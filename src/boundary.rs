@@ -145,7 +145,8 @@ use area::Curves;
 ///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall jumps. The result
 ///    is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
-///     wall that moves with it as a part of one body, at a time up to `until`.
+///     wall that moves with it as a part of one body, at a time up to `until`. For those other walls, it is
+///     also true where a disk would have touched them without the reaction.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the positions at which a disk of the default kind
@@ -165,9 +166,9 @@ use area::Curves;
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests promises 1 to 12, except that points lie on walls and that `may_meet` tells of other
-/// walls of the same body, and [`laws::check_fingerprints`] tests 13; `docs/validation.md` says which planted
-/// faults they find. The engine notices many faults, too.
+/// [`laws::check`] tests promises 1 to 12, except that points lie on walls, and
+/// [`laws::check_fingerprints`] tests 13; `docs/validation.md` says which planted faults they find. The
+/// engine notices many faults, too.
 /// At each collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than
 /// 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a disk that
 /// has left the domain by more than its radius (noticed within some collisions of each disk), and a disk that
@@ -258,7 +259,7 @@ pub trait Boundary {
 
     /// Returns a point of a wall, at its position at `time`, or `None` if the boundary knows no such point.
     /// The point is no hinge: it moves whenever the wall moves so that the free [`area`](Self::area) changes,
-    /// and does not come back while the area is another.
+    /// and if its motion has a period, the area has it, too.
     ///
     /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
     /// The default is `None`.

@@ -5,6 +5,7 @@
 
 mod area;
 mod flight;
+mod meetings;
 mod pair;
 mod reaction;
 mod surface;
@@ -55,7 +56,8 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
 ///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
-///   to infinity at the edges of the domain.
+///   to infinity at the edges of the domain. After a blow, `may_meet` of the wall that is hit also holds where
+///   other disks touch walls that the blow moves.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface
 ///   with the same response.
 /// - A wall that reacts to an impact moves according to its mass, and `state` and `set_state` restore it. An
@@ -63,12 +65,14 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   surface nor a gap, now or later. Other walls may move with the one that is hit, as parts of one body do.
 ///   A stop that takes the impulse of a wall, as a [`Piston`](crate::wall::Piston) has it, is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
-///   a periodic seam, a disk overlaps the same wall.
+///   a periodic seam, a disk overlaps the same wall, and a wall that it touches on both sides has the same
+///   velocity there.
 ///
 /// If the boundary knows its free `area`, the check computes the same area from the gaps to the walls, which
 /// it measures by the overlaps of larger disks. Both areas must agree to 2e-5 of the region, for centers of
 /// disks and for matter (radius 0). Along thin walls, which leave no gap behind them, the area of matter may
-/// be too large by about 1e-3 of the region.
+/// be too large by about 1e-3 of the region. While no wall's point moves, the area stays the same, and where
+/// the points come back after a period, so does the area.
 ///
 /// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check changes the boundary's time origin.

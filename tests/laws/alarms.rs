@@ -92,6 +92,7 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
         ("belt", Box::new(container()?.with_surface_speed(Wall::Lid, 0.3)?)),
         ("thermal", Box::new(container()?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?)),
         ("piston", Box::new(container()?.with_piston(Wall::Lid, piston)?)),
+        ("pistons", Box::new(container()?.with_piston(Wall::Lid, piston)?.with_piston(Wall::Left, piston)?)),
         ("pegs", Box::new(Obstacles::new(container()?, [Disk::new(middle, 1.1)?]))),
         ("peg", vessel(Part::peg(middle, 0.8)?)?),
         ("block", vessel(Part::block(triangle)?)?),

@@ -85,7 +85,7 @@ fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting
 
 /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or end at
 /// the latest.
-fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
+pub(super) fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
     let longest = LONGEST * trial.length() / trial.speed;
     let (domain, start) = (trial.domain, flight.time());
     let (place, velocity) = (flight.position(start), flight.velocity(start));
@@ -171,6 +171,7 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     let is_closed = trial.depth(place, trial.rounding(), time).is_some();
     require!(PART, "no early touch", is_closed; "the gap to wall {wall} is open at {time:?}, on {flight:?}");
     check_surface(trial, touch, place)?;
+    trial.check_seam_velocities(touch, place)?;
     let surface = trial.boundary.surface(wall, place, time);
     let velocity = flight.velocity(time);
     let rate = (velocity - surface.velocity).dot(surface.normal);

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::meetings::check_meetings;
 use super::trial::{PART, Trial};
 use crate::Violation;
 use crate::boundary::{Boundary, Impact, Reaction, Surface, Touch};
@@ -22,6 +23,7 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
     if surface.mass == f64::INFINITY && surface.tangential_mass == f64::INFINITY {
         return check_fixed(trial, touch, place, surface.normal);
     }
+    check_meetings(trial, touch, place)?;
     for (number, share) in BLOWS.into_iter().enumerate() {
         let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
         check_blow(trial, touch, place, [-share, sign * share, 0.0])?;
@@ -71,13 +73,9 @@ fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2)
 
 /// Returns the distances from the walls at places all over the domain, at a time and soon after it.
 fn gaps(trial: &Trial<'_>, time: f64) -> Vec<f64> {
-    let (low, high) = trial.rectangle();
-    let shares = [0.05, 0.35, 0.65, 0.95];
-    let places =
-        shares.iter().flat_map(|&x| shares.iter().map(move |&y| low + DVec2::new(x, y) * (high - low)));
     let times = [time, time + 0.1 * trial.length() / trial.speed];
     let depth = |(place, time)| trial.depth(place, trial.length(), time).map_or(0.0, |found| found.depth);
-    places.flat_map(|place| times.map(|time| (place, time))).map(depth).collect()
+    trial.places().flat_map(|place| times.map(|time| (place, time))).map(depth).collect()
 }
 
 /// Returns numbers that show the present and the later motion of a wall: its velocity, its angular velocity,

@@ -12,6 +12,9 @@ pub(super) const PART: &str = "boundary";
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
 
+/// Largest relative difference between velocities on both sides of a seam.
+const SAME: f64 = 5e-8;
+
 /// Largest number of searches that together follow one flight.
 const MOST_SEARCHES: u32 = 10_000;
 
@@ -35,6 +38,8 @@ pub(super) struct Trial<'a> {
     pub(super) state: Vec<f64>,
     /// Number of flights that graze a wall.
     pub(super) grazes: usize,
+    /// Number of blows after which other disks were sent to the walls.
+    pub(super) blows: usize,
     /// For each wall, the number of its touches, and the number of touches at which an overlap named the
     /// wall.
     pub(super) touches: Vec<[u32; 2]>,
@@ -44,7 +49,19 @@ impl<'a> Trial<'a> {
     pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
         let (touches, state) = (vec![[0; 2]; wall_count], boundary.state());
-        Self { boundary, domain, wall_count, radius, kind, speed, origin: 0.0, state, grazes: 0, touches }
+        Self {
+            boundary,
+            domain,
+            wall_count,
+            radius,
+            kind,
+            speed,
+            origin: 0.0,
+            state,
+            grazes: 0,
+            blows: 0,
+            touches,
+        }
     }
 
     /// Returns the larger side of the domain, or its width if the domain is open above.
@@ -68,6 +85,13 @@ impl<'a> Trial<'a> {
     pub(super) fn rectangle(&self) -> (DVec2, DVec2) {
         let Domain { left, right, bottom, top, .. } = self.domain;
         (DVec2::new(left, bottom), DVec2::new(right, top.min(bottom + self.length())))
+    }
+
+    /// Returns places all over the domain.
+    pub(super) fn places(&self) -> impl Iterator<Item = DVec2> + use<> {
+        let (low, high) = self.rectangle();
+        let shares = [0.05, 0.35, 0.65, 0.95];
+        shares.into_iter().flat_map(move |x| shares.map(move |y| low + DVec2::new(x, y) * (high - low)))
     }
 
     pub(super) fn set_origin(&mut self, origin: f64) {
@@ -114,20 +138,43 @@ impl<'a> Trial<'a> {
         self.boundary.overlap(&Probe::new(place, self.radius + more, time).with_kind(self.kind))
     }
 
-    /// Checks that a disk finds the same walls on both sides of each seam of a periodic domain, at the height
-    /// or the width of this position.
-    pub(super) fn check_seams(&self, place: DVec2, time: f64) -> Result<(), Violation> {
+    /// Returns the positions on both sides of each seam of a periodic domain, at the height or the width of
+    /// this position.
+    fn seams(&self, place: DVec2) -> impl Iterator<Item = [DVec2; 2]> {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
         let sides = [left, right].map(|x| DVec2::new(x, place.y));
         let ends = [bottom, top].map(|y| DVec2::new(place.x, y));
-        for seam in [(periodic_sides, sides), (periodic_ends, ends)].iter().filter(|(is_seam, _)| *is_seam) {
+        let seams = [(periodic_sides, sides), (periodic_ends, ends)];
+        seams.into_iter().filter(|(is_seam, _)| *is_seam).map(|(_, places)| places)
+    }
+
+    /// Checks that a disk finds the same walls on both sides of each seam.
+    pub(super) fn check_seams(&self, place: DVec2, time: f64) -> Result<(), Violation> {
+        for places in self.seams(place) {
             let [here, there] =
-                seam.1.map(|place| self.depth(place, 0.0, time).map_or(0.0, |found| found.depth));
+                places.map(|place| self.depth(place, 0.0, time).map_or(0.0, |found| found.depth));
             // Deep inside a wall, depths need not be continuous.
             let is_same = (here.min(self.radius) - there.min(self.radius)).abs() <= 2.0 * self.rounding();
             require!(PART, "periodic images", is_same;
                 "a disk of radius {:?} at {:?} is {here:?} deep in a wall at {time:?}, but {there:?} at its image {:?}",
-                self.radius, seam.1[0], seam.1[1]);
+                self.radius, places[0], places[1]);
+        }
+        Ok(())
+    }
+
+    /// Checks that a wall that disks touch on both sides of a seam has the same velocity there.
+    pub(super) fn check_seam_velocities(&self, touch: Touch, place: DVec2) -> Result<(), Violation> {
+        let Touch { wall, time, .. } = touch;
+        let is_touched = |place: &DVec2| {
+            let found = self.depth(*place, self.rounding(), time);
+            found.is_some_and(|found| found.with == wall && found.depth <= 2.0 * self.rounding())
+        };
+        for places in self.seams(place).filter(|places| places.iter().all(is_touched)) {
+            let [here, there] = places.map(|place| self.boundary.surface(wall, place, time).velocity);
+            let is_same = here.distance(there) <= SAME * (here.length() + self.speed);
+            require!(PART, "periodic images", is_same;
+                "wall {wall} moves at {here:?} at {:?}, time {time:?}, but at {there:?} at its image {:?}",
+                places[0], places[1]);
         }
         Ok(())
     }

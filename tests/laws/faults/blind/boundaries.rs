@@ -72,6 +72,7 @@ pub(crate) fn honest() -> Vec<Planted<Walled>> {
     boundaries.add("board", Altered::new(board()));
     boundaries.add("sieve", bases::sieve(bases::GHOST));
     boundaries.add("sprung", Altered::new(Sprung::new()));
+    boundaries.add("carriage", Altered::new(Sprung::with_ceiling()));
     boundaries.add("rotor", Altered::new(Rotor::new()));
     boundaries.faults
 }

@@ -291,8 +291,10 @@ fn areas(boundaries: &mut Boundaries) {
         });
         boundaries.part(family, name, Altered { area, ..measured() });
     }
-    let hinged = Altered { are_points_fixed: true, ..lidded() };
+    let hinged = Altered { points: Box::new(|_| 0.0), ..lidded() };
     boundaries.part("hinge", "the points of the walls stay while the lid moves", hinged);
+    let hasty = Altered { points: Box::new(|time| 2.9 * time), ..lidded() };
+    boundaries.part("hinge", "the points of the walls come back before the lid", hasty);
 }
 
 fn regions(boundaries: &mut Boundaries) {
@@ -315,12 +317,17 @@ fn regions(boundaries: &mut Boundaries) {
     for (family, name, answer) in all {
         boundaries.part(family, name, Altered { may_touch: Box::new(answer), ..shaken() });
     }
-    let may_meet = Box::new(|region: &Region, answer| answer && region.max.y < 3.5);
+    let may_meet = Box::new(|_, region: &Region, answer| answer && region.max.y < 3.5);
     boundaries.part(
         "meets below",
         "the floor meets only what is below 3.5",
         Altered { may_meet, ..sprung() },
     );
+    let carriage = || Altered::new(Sprung::with_ceiling());
+    let may_meet = Box::new(|wall, region: &Region, answer| answer && (wall == 5 || region.min.y < 5.5));
+    boundaries.part("body", "the floor of a body forgets its ceiling", Altered { may_meet, ..carriage() });
+    let may_meet = Box::new(|wall, region: &Region, answer| answer && (wall == 4 || region.max.y > 5.5));
+    boundaries.part("body", "the ceiling of a body forgets its floor", Altered { may_meet, ..carriage() });
 }
 
 fn origins(boundaries: &mut Boundaries) {
@@ -428,6 +435,11 @@ fn seams(boundaries: &mut Boundaries) {
         honest.overlap(probe).filter(|found| probe.position().x < 5.0 || found.with == 0)
     });
     boundaries.part("seam", "a peg has no image", Altered { touch, overlap, ..Altered::new(pegs) });
+    let walls = resting().with_periodic_sides().expect("periodic sides");
+    let surface = Box::new(|surface: &mut Surface<'_>, position: DVec2, _| {
+        surface.velocity.x = 0.1 * position.x;
+    });
+    boundaries.part("seam", "a belt stretches up to a seam", Altered { surface, ..Altered::new(walls) });
 }
 
 fn responses(boundaries: &mut Boundaries) {

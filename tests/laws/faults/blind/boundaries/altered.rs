@@ -28,12 +28,12 @@ pub(in crate::faults) struct Altered {
     /// The answer, the region and the radius.
     pub(in crate::faults) area: Box<dyn Fn(Option<f64>, &Region, f64) -> Option<f64>>,
     pub(in crate::faults) react: Box<dyn Fn(&mut dyn Boundary, &Impact) -> Reaction>,
-    pub(in crate::faults) may_meet: Box<dyn Fn(&Region, bool) -> bool>,
+    pub(in crate::faults) may_meet: Box<dyn Fn(usize, &Region, bool) -> bool>,
     pub(in crate::faults) state: Box<dyn Fn(Vec<f64>) -> Vec<f64>>,
     pub(in crate::faults) restored: Box<dyn Fn(&[f64]) -> Option<Vec<f64>>>,
     pub(in crate::faults) mark: Option<Fingerprint>,
-    /// True if the points of the walls stay where they are at the origin.
-    pub(in crate::faults) are_points_fixed: bool,
+    /// Takes a time, and returns the time of which the points of the walls tell.
+    pub(in crate::faults) points: Box<dyn Fn(f64) -> f64>,
     /// True if the mark depends on the origin.
     pub(in crate::faults) is_marked_anew: bool,
 }
@@ -53,11 +53,11 @@ impl Altered {
             overlap: Box::new(|honest, probe| honest.overlap(probe)),
             area: Box::new(|area, _, _| area),
             react: Box::new(|honest, impact| honest.react(impact)),
-            may_meet: Box::new(|_, answer| answer),
+            may_meet: Box::new(|_, _, answer| answer),
             state: Box::new(|state| state),
             restored: Box::new(|state| Some(state.to_vec())),
             mark: None,
-            are_points_fixed: false,
+            points: Box::new(|time| time),
             is_marked_anew: false,
         }
     }
@@ -81,7 +81,7 @@ impl Boundary for Altered {
     }
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.honest.wall_point(wall, if self.are_points_fixed { 0.0 } else { time })
+        self.honest.wall_point(wall, (self.points)(time))
     }
 
     fn set_time_origin(&mut self, origin: f64) {
@@ -125,7 +125,7 @@ impl Boundary for Altered {
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        (self.may_meet)(region, self.honest.may_meet(wall, region, radius, until))
+        (self.may_meet)(wall, region, self.honest.may_meet(wall, region, radius, until))
     }
 
     fn state(&self) -> Vec<f64> {

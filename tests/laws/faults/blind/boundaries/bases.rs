@@ -85,11 +85,13 @@ pub(in crate::faults) fn sieve(passes: Kind) -> Altered {
     }
 }
 
-/// A box with a heavy floor on a spring, which blows set in motion.
+/// A box with a heavy floor on a spring, which blows set in motion. The floor may carry a ceiling.
 pub(in crate::faults) struct Sprung {
     container: Container,
     swing: Swing,
     origin: f64,
+    /// The height of the ceiling at rest.
+    ceiling: Option<f64>,
 }
 
 /// The motion of the floor: the factors of the cosine and the sine of the time.
@@ -142,7 +144,12 @@ impl WallMotion for Swing {
 
 impl Sprung {
     pub(in crate::faults) fn new() -> Self {
-        Self { container: resting(), swing: Swing { cosine: 0.1, sine: 0.0 }, origin: 0.0 }
+        let swing = Swing { cosine: 0.1, sine: 0.0 };
+        Self { container: resting(), swing, origin: 0.0, ceiling: None }
+    }
+
+    pub(in crate::faults) fn with_ceiling() -> Self {
+        Self { ceiling: Some(9.0), ..Self::new() }
     }
 
     fn index(&self) -> usize {
@@ -157,15 +164,16 @@ impl Boundary for Sprung {
 
     fn interior(&self) -> Domain {
         let Domain { left, right, top, .. } = self.container.domain();
-        Domain::new(left, right, REST + ROOM, top)
+        Domain::new(left, right, REST + ROOM, self.ceiling.map_or(top, |ceiling| ceiling - ROOM))
     }
 
     fn wall_count(&self) -> usize {
-        self.index() + 1
+        self.index() + 1 + usize::from(self.ceiling.is_some())
     }
 
     fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        if wall == self.index() { "sprung floor".into() } else { self.container.wall_name(wall) }
+        let own = wall.checked_sub(self.index()).and_then(|own| ["sprung floor", "ceiling"].get(own));
+        own.map_or_else(|| self.container.wall_name(wall), |&name| name.into())
     }
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
@@ -178,7 +186,9 @@ impl Boundary for Sprung {
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        region.min.y - radius <= REST + ROOM || self.container.may_touch(region, radius)
+        region.min.y - radius <= REST + ROOM
+            || self.ceiling.is_some_and(|ceiling| region.max.y + radius >= ceiling - ROOM)
+            || self.container.may_touch(region, radius)
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
@@ -186,25 +196,37 @@ impl Boundary for Sprung {
         let height = flight.position(start).y - flight.radius() - REST;
         let approach = Approach::new(start, height, flight.velocity(start).y, flight.acceleration().y);
         let touch = first_touch(&self.swing, &approach, until).map(|time| Touch::new(time, self.index()));
-        self.container.first_touch(flight, until).or(touch)
+        let other = self.ceiling.map_or(FirstTouch::NONE, |ceiling| {
+            let height = ceiling - flight.position(start).y - flight.radius();
+            let approach = Approach::new(start, height, -flight.velocity(start).y, -flight.acceleration().y);
+            let mirrored = Swing { cosine: -self.swing.cosine, sine: -self.swing.sine };
+            first_touch(&mirrored, &approach, until).map(|time| Touch::new(time, self.index() + 1))
+        });
+        self.container.first_touch(flight, until).or(touch).or(other)
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
-        if wall != self.index() {
+        if wall < self.index() {
             return self.container.surface(wall, position, time);
         }
-        Surface::new(DVec2::Y, DVec2::new(0.0, self.swing.state(time).velocity)).with_mass(MASS)
+        let normal = if wall == self.index() { DVec2::Y } else { DVec2::NEG_Y };
+        Surface::new(normal, DVec2::new(0.0, self.swing.state(time).velocity)).with_mass(MASS)
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
-        let height = probe.position().y - REST - self.swing.state(probe.time()).displacement;
-        let own = Overlap::new(self.index(), probe.radius() - height);
+        let height = probe.position().y - self.swing.state(probe.time()).displacement;
+        let below = Overlap::new(self.index(), probe.radius() - height + REST);
+        let above = self
+            .ceiling
+            .map(|ceiling| Overlap::new(self.index() + 1, probe.radius() + height - ceiling))
+            .filter(|above| above.depth > below.depth);
+        let own = above.unwrap_or(below);
         let other = self.container.overlap(probe).filter(|other| other.depth > own.depth);
         other.or(Some(own).filter(|own| own.depth > 0.0))
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {
-        if impact.wall != self.index() {
+        if impact.wall < self.index() {
             return Reaction::None;
         }
         let mut state = self.swing.state(impact.time);
@@ -214,8 +236,10 @@ impl Boundary for Sprung {
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        if wall == self.index() {
-            return region.min.y - radius <= REST + self.swing.reach().1;
+        if wall >= self.index() {
+            let reach = self.swing.reach().1;
+            let above = self.ceiling.is_some_and(|ceiling| region.max.y + radius >= ceiling - ROOM);
+            return above || region.min.y - radius <= REST + reach;
         }
         self.container.may_meet(wall, region, radius, until)
     }
