@@ -145,8 +145,7 @@ use area::Curves;
 ///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall jumps. The result
 ///    is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
-///     wall that moves with it as a part of one body, at a time up to `until`. For those other walls, it is
-///     also true where a disk would have touched them without the reaction.
+///     wall that moves with it as a part of one body, at a time up to `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the positions at which a disk of the default kind

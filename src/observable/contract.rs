@@ -66,8 +66,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    `on_end` before it and `on_start` after it.
 /// 2. `on_collision` is called once for each collision, in the order of time, after the disks have changed.
 /// 3. `on_sample` is called at the time that `next_sample` returned, unless this time is after the end of the
-///    run. The sample includes all events up to and including its time, up to rounding. A time before the
-///    start of the run is sampled at the start.
+///    run. The sample includes all events whose absolute times are not later. A time before the start of the
+///    run is sampled at the start.
 /// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If a verdict
 ///    stops the run or makes it fail, no further event happens.
 /// 5. `on_insert` is called when an inlet lets a disk in, and `on_remove` when a sink takes a disk out, so an

@@ -37,6 +37,12 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 /// time of that phase as the first time. Compute the end of a run as a multiple, too
 /// (`count as f64 * interval`). Otherwise, rounding may put the last sample just after the end.
 ///
+/// # Two clocks
+/// Times of two clocks are the same only to the bit: 3 times 0.1 is 0.30000000000000004, which is later than
+/// 0.3. A sample, a kick and the opening of an inlet at such times come in the order of the bits, now one
+/// first and now the other. Where their order matters, take intervals whose multiples are exact, such as 0.25
+/// and 0.5, or put the first time of one clock between two times of the other ([`Self::starting_at`]).
+///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
 /// let mut times = SampleTimes::every(2.0)?;

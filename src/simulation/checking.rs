@@ -85,11 +85,23 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
+    /// Returns whether a disk on its present flight touches a wall at `time`, up to rounding.
+    pub(super) fn touches(&self, disk: usize, wall: usize, time: f64) -> bool {
+        let Material { radius, kind, .. } = self.bodies.material(disk);
+        let probe = Probe::new(self.bodies.position(disk, time), radius, time).with_kind(kind);
+        self.boundary.overlap(&self.enlarged(disk, wall, &probe)).is_some()
+    }
+
+    /// Returns a probe that overlaps each wall from which a gap within rounding separates the disk.
+    fn enlarged(&self, disk: usize, wall: usize, probe: &Probe) -> Probe {
+        probe.with_radius((1.0 + NEAR) * probe.radius() + self.rounding_at(disk, Partner::Wall(wall)))
+    }
+
     /// Checks that a gap before a wall is within rounding.
     #[cold]
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
         let (now, radius) = (self.clock.now, probe.radius());
-        let within = probe.with_radius((1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall)));
+        let within = self.enlarged(disk, wall, probe);
         // A wall that jumps away from the disks may have jumped within the rounding error of the time. The
         // engine never passes times before the epoch.
         let before = (now - self.clock.rounding()).max(0.0);

@@ -188,10 +188,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         for disk in 0..self.bodies.len() {
             let (region, at_wall) = self.cells.region(disk);
             let Forecast { exit, exit_due: until, wall: expected, .. } = *self.forecast(disk);
-            // A predicted touch may now happen later, or not at all.
-            let was_to_meet = exit == Exit::Wall && usize::from(expected) == wall;
+            // A predicted touch of the body may now happen later, or not at all.
+            let expected = (exit == Exit::Wall).then_some(usize::from(expected));
+            let is_lost = |expected| expected == wall || !self.touches(disk, expected, until);
             let may_meet = || self.boundary.may_meet(wall, &region, self.bodies.radius(disk), until);
-            if at_wall && (was_to_meet || may_meet()) {
+            if at_wall && (expected.is_some_and(is_lost) || may_meet()) {
                 self.end_flight(disk);
                 self.schedule(disk);
             }

@@ -37,6 +37,7 @@ mod schedulers;
 #[path = "../trajectory/scratch.rs"]
 mod scratch;
 mod setups;
+mod sled;
 mod slopes;
 mod steps;
 mod stopping;

@@ -16,6 +16,10 @@ const SAMPLES: u32 = 200;
 /// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
+/// Longest wait for a flight after a blow, and longest flight then, in the same units: a free wall must not leave
+/// the domain, and the disks of the check do not hold it up.
+pub(super) const SOON: f64 = 0.1;
+
 /// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides when such a
 /// touch happens, and whether it happens.
 const GRAZING: f64 = 1e-2;
@@ -86,7 +90,7 @@ fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting
 /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or end at
 /// the latest.
 pub(super) fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
-    let longest = LONGEST * trial.length() / trial.speed;
+    let longest = if trial.is_struck { SOON } else { LONGEST } * trial.length() / trial.speed;
     let (domain, start) = (trial.domain, flight.time());
     let (place, velocity) = (flight.position(start), flight.velocity(start));
     let pull = flight.acceleration();

@@ -9,7 +9,7 @@ use crate::violation::require;
 use crate::{Flight, Violation};
 
 /// Speed that the blow gives to the wall, in units of the typical speed.
-const BLOW: f64 = 2.0;
+const BLOW: f64 = 0.5;
 
 /// Part of the radius by which a disk is enlarged in order to find the wall near it.
 const NEAR: f64 = 0.5;
@@ -23,19 +23,23 @@ struct Meeting {
 }
 
 /// Checks that `may_meet` names the regions in which other disks touch walls that a blow sets in motion: the
-/// wall that is hit, and the other walls of its body. For those, it also names where disks would have touched
-/// them without the blow.
+/// wall that is hit, and the other walls of its body.
 pub(super) fn check_meetings(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let state = trial.boundary.state();
     trial.blows += 1;
     let flights = flights_about(trial, time, place);
-    let before = touches(trial, &flights)?;
     strike(trial, touch, place);
-    let after = touches(trial, &flights)?;
-    let others = before.into_iter().filter(|(_, touch)| touch.wall != wall);
+    let touches = touches(trial, &flights)?;
     let met: Vec<_> =
-        others.chain(after).map(|(flight, touch)| meeting(trial, wall, flight, touch)).collect();
+        touches.into_iter().map(|(flight, touch)| meeting(trial, wall, flight, touch)).collect();
+    if !trial.is_struck {
+        // Walls keep no record of what was before the blow.
+        let origin = trial.origin;
+        trial.set_origin(origin + time);
+        trial.states[1] = trial.boundary.state();
+        trial.set_origin(origin);
+    }
     trial.take_state(&state)?;
     for Meeting { flight, touch: Touch { wall: other, time: then, .. }, may_meet, nearest } in met {
         let without = near(trial, &flight, then);

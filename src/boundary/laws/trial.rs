@@ -34,8 +34,10 @@ pub(super) struct Trial<'a> {
     pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
-    /// The initial state of the walls.
-    pub(super) state: Vec<f64>,
+    /// The initial state of the walls, and a state after a blow.
+    pub(super) states: [Vec<f64>; 2],
+    /// True if flights begin in the second state.
+    pub(super) is_struck: bool,
     /// Number of flights that graze a wall.
     pub(super) grazes: usize,
     /// Number of blows after which other disks were sent to the walls.
@@ -48,7 +50,7 @@ pub(super) struct Trial<'a> {
 impl<'a> Trial<'a> {
     pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
-        let (touches, state) = (vec![[0; 2]; wall_count], boundary.state());
+        let (touches, states) = (vec![[0; 2]; wall_count], [boundary.state(), boundary.state()]);
         Self {
             boundary,
             domain,
@@ -57,7 +59,8 @@ impl<'a> Trial<'a> {
             kind,
             speed,
             origin: 0.0,
-            state,
+            states,
+            is_struck: false,
             grazes: 0,
             blows: 0,
             touches,
@@ -99,10 +102,10 @@ impl<'a> Trial<'a> {
         self.origin = origin;
     }
 
-    /// Sets a time origin, and the initial state of the walls that react.
+    /// Sets a time origin, and the state of the walls that react in which flights begin.
     pub(super) fn begin(&mut self, origin: f64) -> Result<(), Violation> {
         self.set_origin(origin);
-        self.take_state(&self.state.clone())
+        self.take_state(&self.states[usize::from(self.is_struck)].clone())
     }
 
     /// Checks that the boundary accepts this state.
@@ -220,9 +223,11 @@ impl<'a> Trial<'a> {
             let may = self.boundary.may_touch(&region, radius);
             require!(PART, "may_touch", may;
                 "a disk of radius {radius:?} touches in {region:?}, where it is denied");
-            let may = self.boundary.may_meet(wall, &region, radius, time);
-            require!(PART, "may_meet", may;
-                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied");
+            for until in [time, time + self.length() / self.speed] {
+                let may = self.boundary.may_meet(wall, &region, radius, until);
+                require!(PART, "may_meet", may;
+                    "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied up to {until:?}");
+            }
         }
         Ok(())
     }

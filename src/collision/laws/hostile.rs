@@ -90,7 +90,7 @@ pub(super) fn contacts_of_all_kinds() -> impl Iterator<Item = Contact> {
 }
 
 fn contacts_of_kinds_with(contact: Contact) -> impl Iterator<Item = Contact> {
-    (0..u16::MAX).flat_map(move |number| {
+    (0..=u16::MAX).flat_map(move |number| {
         let kind = Kind::new(number);
         let partners = [(kind, 0.5), (Kind::DEFAULT, 0.5), (Kind::WALL, f64::INFINITY)];
         let smaller = 1..if number < 256 { number } else { 1 };

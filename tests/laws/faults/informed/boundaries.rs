@@ -13,7 +13,7 @@ use granular_edmd::wall::Sinusoidal;
 use granular_edmd::{Disk, Flight, Kind};
 
 use crate::faults::blind::boundaries::Walled;
-use crate::faults::blind::boundaries::altered::Altered;
+use crate::faults::blind::boundaries::altered::{Altered, Asked};
 use crate::faults::blind::boundaries::bases::{
     Rotor, Sprung, board, common_area, dish, measured, resting, shaken, sliding, stirred,
 };
@@ -317,16 +317,29 @@ fn regions(boundaries: &mut Boundaries) {
     for (family, name, answer) in all {
         boundaries.part(family, name, Altered { may_touch: Box::new(answer), ..shaken() });
     }
-    let may_meet = Box::new(|_, region: &Region, answer| answer && region.max.y < 3.5);
+    let may_meet = Box::new(|_: &dyn Boundary, asked: &Asked<'_>| asked.answer && asked.region.max.y < 3.5);
     boundaries.part(
         "meets below",
         "the floor meets only what is below 3.5",
         Altered { may_meet, ..sprung() },
     );
+    let may_meet = Box::new(|honest: &dyn Boundary, asked: &Asked<'_>| {
+        let place = honest.wall_point(asked.wall, asked.until);
+        place.map_or(asked.answer, |place| asked.region.min.y - asked.radius <= place.y)
+    });
+    boundaries.part(
+        "meets at the end",
+        "the floor meets only what it touches in the end",
+        Altered { may_meet, ..sprung() },
+    );
     let carriage = || Altered::new(Sprung::with_ceiling());
-    let may_meet = Box::new(|wall, region: &Region, answer| answer && (wall == 5 || region.min.y < 5.5));
+    let may_meet = Box::new(|_: &dyn Boundary, asked: &Asked<'_>| {
+        asked.answer && (asked.wall == 5 || asked.region.min.y < 5.5)
+    });
     boundaries.part("body", "the floor of a body forgets its ceiling", Altered { may_meet, ..carriage() });
-    let may_meet = Box::new(|wall, region: &Region, answer| answer && (wall == 4 || region.max.y > 5.5));
+    let may_meet = Box::new(|_: &dyn Boundary, asked: &Asked<'_>| {
+        asked.answer && (asked.wall == 4 || asked.region.max.y > 5.5)
+    });
     boundaries.part("body", "the ceiling of a body forgets its floor", Altered { may_meet, ..carriage() });
 }
 
@@ -355,7 +368,39 @@ fn origins(boundaries: &mut Boundaries) {
 
 fn reactions(boundaries: &mut Boundaries) {
     type React = fn(&mut dyn Boundary, &Impact) -> Reaction;
-    let all: [(&'static str, &str, React, fn() -> Altered); 4] = [
+    let all: [(&'static str, &str, React, fn() -> Altered); 7] = [
+        (
+            "sticking",
+            "a floor slower than 1e-3 after a blow gets nothing of it",
+            |honest, impact| {
+                let state = honest.state();
+                let reaction = honest.react(impact);
+                let velocity = honest.surface(impact.wall, impact.point, impact.time).velocity;
+                if velocity.y.abs() < 1e-3 {
+                    honest.set_state(&state).expect("its own state");
+                }
+                reaction
+            },
+            sprung,
+        ),
+        (
+            "second blow",
+            "the floor takes less of all blows but the first",
+            |honest, impact| {
+                let share = if honest.state() == Sprung::new().state() { 1.0 } else { 0.9 };
+                honest.react(&Impact::new(impact.wall, share * impact.impulse, impact.point, impact.time))
+            },
+            sprung,
+        ),
+        (
+            "second blow",
+            "the floor takes no blow while it falls fast",
+            |honest, impact| {
+                let velocity = honest.surface(impact.wall, impact.point, impact.time).velocity;
+                if velocity.y < -0.2 { Reaction::None } else { honest.react(impact) }
+            },
+            sprung,
+        ),
         (
             "oblique blow",
             "the floor takes a blow along its surface, too",

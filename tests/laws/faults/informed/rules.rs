@@ -109,6 +109,9 @@ fn partners(rules: &mut Rules) {
     rules.gain("walls with a kind", "gain at straight walls of kind 200", |contact| {
         contact.radii()[1] == f64::INFINITY && contact.kinds()[1] == Kind::new(200)
     });
+    rules.gain("unnamed kind", "gain of two disks of the kind of walls", |contact| {
+        contact.kinds() == [Kind::WALL; 2] && contact.radii()[1].is_finite()
+    });
     rules.gain("unnamed kind", "gain of kind 1000, which nobody names", |contact| {
         contact.kinds().contains(&Kind::new(1000))
     });

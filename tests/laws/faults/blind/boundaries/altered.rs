@@ -8,6 +8,15 @@ use granular_edmd::boundary::{
 use granular_edmd::glam::DVec2;
 use granular_edmd::{Fingerprint, Flight, ParameterError};
 
+/// A question about the disks that a wall may meet, and the honest answer.
+pub(in crate::faults) struct Asked<'a> {
+    pub(in crate::faults) wall: usize,
+    pub(in crate::faults) region: &'a Region,
+    pub(in crate::faults) radius: f64,
+    pub(in crate::faults) until: f64,
+    pub(in crate::faults) answer: bool,
+}
+
 /// An honest boundary behind functions that change its answers. At first, they change nothing.
 pub(in crate::faults) struct Altered {
     pub(in crate::faults) honest: Box<dyn Boundary>,
@@ -28,7 +37,7 @@ pub(in crate::faults) struct Altered {
     /// The answer, the region and the radius.
     pub(in crate::faults) area: Box<dyn Fn(Option<f64>, &Region, f64) -> Option<f64>>,
     pub(in crate::faults) react: Box<dyn Fn(&mut dyn Boundary, &Impact) -> Reaction>,
-    pub(in crate::faults) may_meet: Box<dyn Fn(usize, &Region, bool) -> bool>,
+    pub(in crate::faults) may_meet: Box<dyn Fn(&dyn Boundary, &Asked<'_>) -> bool>,
     pub(in crate::faults) state: Box<dyn Fn(Vec<f64>) -> Vec<f64>>,
     pub(in crate::faults) restored: Box<dyn Fn(&[f64]) -> Option<Vec<f64>>>,
     pub(in crate::faults) mark: Option<Fingerprint>,
@@ -53,7 +62,7 @@ impl Altered {
             overlap: Box::new(|honest, probe| honest.overlap(probe)),
             area: Box::new(|area, _, _| area),
             react: Box::new(|honest, impact| honest.react(impact)),
-            may_meet: Box::new(|_, _, answer| answer),
+            may_meet: Box::new(|_, asked| asked.answer),
             state: Box::new(|state| state),
             restored: Box::new(|state| Some(state.to_vec())),
             mark: None,
@@ -125,7 +134,8 @@ impl Boundary for Altered {
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        (self.may_meet)(wall, region, self.honest.may_meet(wall, region, radius, until))
+        let answer = self.honest.may_meet(wall, region, radius, until);
+        (self.may_meet)(&*self.honest, &Asked { wall, region, radius, until, answer })
     }
 
     fn state(&self) -> Vec<f64> {

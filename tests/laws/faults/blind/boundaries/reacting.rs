@@ -123,17 +123,15 @@ fn answers(boundaries: &mut Boundaries) {
         surface.tangential_mass = f64::INFINITY;
     });
     boundaries.family = "may meet";
-    boundaries.add(
-        "the floor meets nobody after a blow",
-        Altered { may_meet: Box::new(|_, _, _| false), ..sprung() },
-    );
+    boundaries
+        .add("the floor meets nobody after a blow", Altered { may_meet: Box::new(|_, _| false), ..sprung() });
     boundaries.add(
         "the floor meets only centers below its place at rest",
-        Altered { may_meet: Box::new(|_, region, answer| answer && region.min.y < 2.0), ..sprung() },
+        Altered { may_meet: Box::new(|_, asked| asked.answer && asked.region.min.y < 2.0), ..sprung() },
     );
     boundaries.add(
         "the floor meets only what is in the left half",
-        Altered { may_meet: Box::new(|_, region, answer| answer && region.max.x < 5.0), ..sprung() },
+        Altered { may_meet: Box::new(|_, asked| asked.answer && asked.region.max.x < 5.0), ..sprung() },
     );
 }
 
