@@ -50,7 +50,8 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
 fn check_stop(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let state = trial.boundary.state();
     let surface = trial.boundary.surface(touch.wall, place, touch.time);
-    let stop = |direction: DVec2| SLOW - surface.velocity.dot(direction) / trial.speed;
+    // Into the wall, as impacts push: at the other stop of a piston, it would rest.
+    let stop = |direction: DVec2| -SLOW - surface.velocity.dot(direction) / trial.speed;
     let blow = [stop(surface.normal), stop(surface.normal.perp()), 0.0];
     check_blow(trial, touch, place, blow)?;
     trial.take_state(&state)
