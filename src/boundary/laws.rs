@@ -104,32 +104,29 @@ pub fn check<B: Boundary + ?Sized>(
     let mut trial = Trial::new(&mut boundary, domain, radius, speed);
     let mut random = Random(Xoshiro256PlusPlus::seed_from_u64(seed));
     for number in 0..DISKS {
-        trial.radius = radius * SIZES[number % SIZES.len()];
-        trial.kind = Kind::new(KINDS[number % KINDS.len()]);
-        trial.is_struck = number % 3 == 2;
-        let Some((origin, flight)) = random.flight(&mut trial)? else {
-            // After a blow, a wall may have filled the room.
-            if trial.is_struck {
-                continue;
-            }
-            return Err(Violation::new(
-                PART,
-                "room",
-                format!("there is no room for a disk of radius {:?}", trial.radius),
-            ));
-        };
-        trial.begin(origin)?;
-        trial.check_seams(flight.position(flight.time()), flight.time())?;
-        let flights = if trial.is_struck { FLIGHTS / 2 } else { FLIGHTS };
-        check_flights(&mut trial, flight, flights)?;
-        // Disks of all sizes, three of them after a blow.
-        if number % 41 == 4 {
-            check_areas(&trial, flight.time(), &mut random)?;
-        }
+        check_disk(&mut trial, &mut random, number).map_err(|violation| trial.told(violation))?;
     }
     trial.is_struck = false;
     trial.begin(0.0)?;
     trial.check_names()
+}
+
+/// Checks the flights of one disk, and some areas.
+fn check_disk(trial: &mut Trial<'_>, random: &mut Random, number: usize) -> Result<(), Violation> {
+    trial.radius = trial.largest * SIZES[number % SIZES.len()];
+    trial.kind = Kind::new(KINDS[number % KINDS.len()]);
+    trial.is_struck = trial.blows > 0 && number % 3 == 2;
+    let Some((origin, flight)) = random.flight(trial)? else {
+        // After a blow, a wall may have filled the room.
+        let radius = trial.radius;
+        require!(PART, "room", trial.is_struck; "there is no room for a disk of radius {radius:?}");
+        return Ok(());
+    };
+    trial.begin(origin)?;
+    trial.check_seams(flight.position(flight.time()), flight.time())?;
+    check_flights(trial, flight, if trial.is_struck { FLIGHTS / 2 } else { FLIGHTS })?;
+    // Disks of all sizes, some of them after a blow.
+    if number % 41 == 4 { check_areas(trial, flight.time(), random) } else { Ok(()) }
 }
 
 /// Checks that the domain is a rectangle, which may be open only above, and that it contains the interior.

@@ -30,6 +30,8 @@ pub(super) struct Trial<'a> {
     pub(super) boundary: &'a mut dyn Boundary,
     pub(super) domain: Domain,
     pub(super) wall_count: usize,
+    /// The radius of the largest disks, and that of the present one.
+    pub(super) largest: f64,
     pub(super) radius: f64,
     pub(super) kind: Kind,
     pub(super) speed: f64,
@@ -55,6 +57,7 @@ impl<'a> Trial<'a> {
             boundary,
             domain,
             wall_count,
+            largest: radius,
             radius,
             kind,
             speed,
@@ -100,6 +103,19 @@ impl<'a> Trial<'a> {
     pub(super) fn set_origin(&mut self, origin: f64) {
         self.boundary.set_time_origin(origin);
         self.origin = origin;
+    }
+
+    /// Adds to a violation that it is one of walls in motion, if it is.
+    pub(super) fn told(&self, violation: Violation) -> Violation {
+        if !self.is_struck {
+            return violation;
+        }
+        let found = format!(
+            "{}, after a blow that left the walls in the state {:?}",
+            violation.found(),
+            self.states[1]
+        );
+        Violation::new(violation.part(), violation.law(), found)
     }
 
     /// Sets a time origin, and the state of the walls that react in which flights begin.
