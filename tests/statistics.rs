@@ -308,6 +308,25 @@ fn equal_samples_of_repeats_do_not_converge() {
     assert!(!together.is_converged() && together.standard_error() == 0.0, "{together}");
 }
 
+/// Two long runs with levels of their own: their mean has an error, but two numbers do not tell how large.
+#[test]
+fn a_few_runs_in_different_states_have_not_converged() {
+    let run = |level: f64| {
+        let noise = Autoregressive::new(level as u64, 0.0).take(4096);
+        noise.map(|x| level + 0.01 * x).collect::<BlockedMean>().estimate()
+    };
+    assert!(Estimate::over_repeats([run(1.0), run(1.0 + 1e-4)]).is_converged());
+    let apart = Estimate::over_repeats([run(1.0), run(2.0), run(3.0)]);
+    assert!(!apart.is_converged() && apart.independent_samples() < 3.1, "{apart}");
+}
+
+/// Repeats whose states do not depend on the seed.
+#[test]
+fn the_same_run_again_counts_once() {
+    let run = || Autoregressive::new(3, 0.8).take(512).collect::<BlockedMean>().estimate();
+    assert_eq!(Estimate::over_repeats((0..8).map(|_| run())), run());
+}
+
 #[test]
 fn repeats_without_samples_are_left_out() {
     let none = BlockedMean::new().estimate();

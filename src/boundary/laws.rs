@@ -56,14 +56,15 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
 ///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
-///   to infinity at the edges of the domain. After a blow, `may_meet` of the wall that is hit also holds where
-///   other disks touch walls that the blow moves.
+///   to infinity at the edges of the domain. After a blow, `may_meet` of the wall that is hit also holds
+///   where other disks touch walls that the blow moves.
 /// - With another time origin, the same flight touches at the same absolute time, and finds the same surface
 ///   with the same response.
-/// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and `state` and `set_state` restore it. An
-///   impact on a wall whose normal and tangential masses are infinite changes neither the motion of its
-///   surface nor a gap, now or later. Other walls may move with the one that is hit, as parts of one body do.
-///   A stop that takes the impulse of a wall, as a [`Piston`](crate::wall::Piston) has it, is refused.
+/// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and `state`
+///   and `set_state` restore it. An impact on a wall whose normal and tangential masses are infinite changes
+///   neither the motion of its surface nor a gap, now or later. Other walls may move with the one that is
+///   hit, as parts of one body do. A stop that takes the impulse of a wall, as a
+///   [`Piston`](crate::wall::Piston) has it, is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
 ///   a periodic seam, a disk overlaps the same wall, and a wall that it touches on both sides has the same
 ///   velocity there.

@@ -89,9 +89,9 @@ pub trait Driving {
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Runs up to the first of the `limits`, as [`Self::run`] does, with kicks at the times of `driving`.
     ///
-    /// A kick comes after all events and samples of its time, even at the end of the run.
-    /// [Two clocks](SampleTimes#two-clocks) may differ by a rounding there. The bits do not depend on how a run
-    /// is cut into pieces.
+    /// A kick comes after all events and samples of its time, even at the end of the run. [Two
+    /// clocks](SampleTimes#two-clocks) may differ by a rounding there. The bits do not depend on how a run is
+    /// cut into pieces.
     ///
     /// The observer watches a run from each kick to the next, with `on_start` and `on_end`, and thus sees the
     /// velocities on both sides of a kick. The observer gets the same samples as in a single run.

@@ -22,9 +22,9 @@ const TRIES: u32 = 32;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Adds an inlet, which lets disks in from now on.
     ///
-    /// At equal times, the inlet opens after all events of disks and before a sample. Its clock and that of the
-    /// sample may [differ by a rounding](crate::observable::SampleTimes#two-clocks). Several inlets open in the
-    /// order in which they were added.
+    /// At equal times, the inlet opens after all events of disks and before a sample. Its clock and that of
+    /// the sample may [differ by a rounding](crate::observable::SampleTimes#two-clocks). Several inlets open
+    /// in the order in which they were added.
     ///
     /// # Errors
     /// If the inlet is not in the domain, or a model does not fit into the boundary, just fills a hollow of a

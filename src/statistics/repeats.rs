@@ -30,9 +30,10 @@ impl Estimate {
     ///
     /// The scatter reveals changes for which a single run is too short, such as the reversal of a roll. The
     /// scatter of two or three runs, however, may be small by chance; the errors of the runs then count. The
-    /// estimate has converged if the estimates of all runs have converged, if $`k`$ is about eight or more,
-    /// or if the runs together have 120 independent samples by this error, the number that a single run
-    /// needs. It has not converged if all samples are equal. Runs without samples are left out.
+    /// estimate has converged if the runs agree and the estimates of all have converged, if $`k`$ is about
+    /// eight or more, or if the runs together have 120 independent samples by this error, the number that a
+    /// single run needs. It has not converged if all samples are equal. Runs without samples are left out. If
+    /// all runs have the same mean and the same error, they are the same run, which counts once.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};
@@ -61,6 +62,13 @@ impl Estimate {
         if samples > 1 && runs.iter().all(is_equal) {
             return Self::blocked(runs[0].mean(), 0.0, samples, samples as f64, false);
         }
+        let is_same = |run: &Self| {
+            (run.mean(), run.standard_error(), run.samples())
+                == (runs[0].mean(), runs[0].standard_error(), runs[0].samples())
+        };
+        if !runs.is_empty() && runs.iter().all(is_same) {
+            return runs[0];
+        }
         let weighted = |value: &dyn Fn(&Self) -> f64| -> f64 {
             runs.iter().map(|run| run.samples() as f64 / samples as f64 * value(run)).sum()
         };
@@ -85,7 +93,7 @@ impl Estimate {
         let growth = if naive > 0.0 { error / naive } else { 1.0 };
         let correlated = growth * growth;
         let is_long = samples as f64 / correlated.max(1.0) >= FEWEST_INDEPENDENT;
-        let converged = is_long || count >= ENOUGH || runs.iter().all(Self::is_converged);
+        let converged = is_long || count >= ENOUGH || !differ && runs.iter().all(Self::is_converged);
         Self::blocked(mean, error, samples, correlated, converged)
     }
 

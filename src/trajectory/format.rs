@@ -37,7 +37,7 @@ impl<'a> Frame<'a> {
 /// # Contract
 /// 1. `write_frame` depends on the frame alone: written twice, the same frame gives the same bytes.
 /// 2. `skip_frame` skips exactly the bytes that `write_frame` wrote, and returns the time of the frame to the
-///    bit, even for a negative zero.
+///    bit, even for a negative zero, and however few bytes the input gives at a time.
 /// 3. `skip_frame` returns `None` for a frame that is cut short at any byte, for example by a killed process.
 ///
 /// [`laws::check`](super::laws::check) tests all three; `docs/validation.md` says which planted faults the

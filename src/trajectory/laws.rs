@@ -18,6 +18,9 @@ const ROUNDS: usize = 40;
 /// Numbers of the frames.
 const NUMBERS: [usize; 6] = [0, 1, 2, 3, 4, 1_000_000];
 
+/// Number of bytes that a slow input gives at a time.
+const PIECE: usize = 1;
+
 /// Checks that a format keeps its contract. Writes a few frames of made-up disks about sixty times each: in
 /// alternate rounds, once or twice in a row.
 ///
@@ -60,8 +63,31 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
         let (written, skipped) = (frame.len(), before - rest.len());
         require!(PART, "length", written == skipped;
             "frame {number} has {written} bytes, of which {skipped} are skipped");
+        check_pieces(format, number, frame, time)?;
         check_torn(format, number, frame)?;
     }
+    Ok(())
+}
+
+/// An input that gives its bytes one by one, as a file may anywhere give only a part.
+struct Trickle<'a>(&'a [u8]);
+
+impl io::Read for Trickle<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let few = into.len().min(PIECE);
+        self.0.read(&mut into[..few])
+    }
+}
+
+/// Checks that a frame is skipped as a whole, however few bytes the input gives at a time.
+fn check_pieces(format: &dyn Format, number: usize, frame: &[u8], time: f64) -> Result<(), Violation> {
+    let mut input = io::BufReader::with_capacity(PIECE, Trickle(frame));
+    let read = format.skip_frame(&mut input).map_err(|error| failed(number, &error))?;
+    let left = input.buffer().len() + input.get_ref().0.len();
+    let is_whole = left == 0 && read.is_some_and(|read| read.to_bits() == time.to_bits());
+    require!(PART, "pieces", is_whole;
+        "frame {number} of time {time:?} is read as {read:?} if the input gives {PIECE} bytes at a time, and {left} bytes \
+         are left");
     Ok(())
 }
 

@@ -110,7 +110,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     type Rule: CollisionRule;
     /// Type of the walls.
     type Boundary: Boundary;
-    /// Type of the observer; `()` for none.
+    /// Type of the observer; `()` for none. A field that serde skips is not saved: no state may stand in it.
     type Observer: Observer + Serialize + DeserializeOwned;
     /// Type of a sample's data: numbers, lists, or any other type that can be serialized.
     type Sample: Serialize + DeserializeOwned;

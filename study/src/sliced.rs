@@ -15,7 +15,8 @@ use super::ExperimentError;
 
 /// A [`Driving`] that a study saves and restores together with an unfinished value.
 ///
-/// Every driving that serde writes and reads implements this trait.
+/// Every driving that serde writes and reads implements this trait. A field that serde skips is not saved: no
+/// state may stand in it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a driving that can be saved",
     note = "implement `simulation::Driving`, and derive `Serialize` and `Deserialize`"

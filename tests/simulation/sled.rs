@@ -113,8 +113,8 @@ impl Boundary for Sled {
     }
 }
 
-/// A spinning disk lands on the floor and turns the sled around, while another disk waits before the face: the
-/// touch that was predicted for it does not come.
+/// A spinning disk lands on the floor and turns the sled around, while another disk waits before the face:
+/// the touch that was predicted for it does not come.
 #[test]
 fn a_body_that_turns_around_leaves_the_touches_of_its_other_walls() -> Result<(), Box<dyn std::error::Error>>
 {

@@ -16,8 +16,8 @@ const SAMPLES: u32 = 200;
 /// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
-/// Longest wait for a flight after a blow, and longest flight then, in the same units: a free wall must not leave
-/// the domain, and the disks of the check do not hold it up.
+/// Longest wait for a flight after a blow, and longest flight then, in the same units: a free wall must not
+/// leave the domain, and the disks of the check do not hold it up.
 pub(super) const SOON: f64 = 0.1;
 
 /// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides when such a

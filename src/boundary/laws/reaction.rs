@@ -8,8 +8,8 @@ use crate::Violation;
 use crate::boundary::{Boundary, Impact, Reaction, Surface, Touch};
 use crate::violation::require;
 
-/// Speeds that the tested impacts give to a wall, in units of the typical speed. After an earlier impact, they
-/// are less by a quarter, so that the wall is never faster than after the strongest of these.
+/// Speeds that the tested impacts give to a wall, in units of the typical speed. After an earlier impact,
+/// they are less by a quarter, so that the wall is never faster than after the strongest of these.
 const BLOWS: [f64; 5] = [1e-6, 1e-3, 5e-2, 2.0, 2.0];
 
 /// Speed of a wall after a blow that almost stops it, in the same units.

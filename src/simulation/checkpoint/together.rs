@@ -16,7 +16,8 @@ impl Checkpoint {
     ///
     /// All numbers keep their bits, even infinities and NaN. The state and the observers in one file always
     /// belong to the same time. The observers can be anything that serde writes and reads: a [`Series`], a
-    /// [`Sampled`] accumulator, a tuple of several, or a custom type.
+    /// [`Sampled`] accumulator, a tuple of several, or a custom type. A field that serde skips is not
+    /// written, and begins anew when the file is read: no state may stand in it.
     ///
     /// [`Series`]: crate::observable::Series
     /// [`Sampled`]: crate::observable::Sampled

@@ -64,6 +64,11 @@ pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
     sections.check(count, lines.line())?;
     let mut table = sections.table(domain)?;
     table.time = header.time;
+    if !sections.columns.1 {
+        table
+            .notes
+            .push("the atoms are read as those of the style `sphere`, since the file does not name it".to_owned());
+    }
     Ok(table)
 }
 

@@ -147,6 +147,13 @@ fn radii(boundaries: &mut Boundaries) {
             Altered { surface, ..pegs() },
         );
     }
+    let small = Obstacles::new(resting(), [Disk::new(DVec2::new(5.0, 6.0), 0.2).expect("a radius")]);
+    let surface = Box::new(|surface: &mut Surface<'_>, _, _| surface.radius *= 2.0);
+    boundaries.part(
+        "peg radius",
+        "a peg smaller than the disks is twice as large to rules",
+        Altered { surface, ..Altered::new(small) },
+    );
     let surface = Box::new(|surface: &mut Surface<'_>, _, _| {
         if surface.radius == f64::INFINITY {
             surface.radius = 1e3;

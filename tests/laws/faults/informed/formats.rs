@@ -64,5 +64,10 @@ pub(crate) fn catalogue() -> Vec<Planted<Box<dyn Format>>> {
         Ok(if is_short { time.or(Some(0.0)) } else { time })
     };
     add("cut at the start", "what is cut within 60 bytes counts as whole", Changed { skip, ..changed() });
+    let skip = |input: &mut dyn BufRead| {
+        let has_line = input.fill_buf()?.contains(&b'\n');
+        if has_line { ExtendedXyz.skip_frame(input) } else { Ok(None) }
+    };
+    add("pieces", "what the input does not give at once counts as cut short", Changed { skip, ..changed() });
     all.faults
 }
