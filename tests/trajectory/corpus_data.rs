@@ -15,6 +15,17 @@ fn data(header: &str, sections: &str) -> String {
 const BOX: &str = "2 atoms\n0 8 xlo xhi\n0 6 ylo yhi\n-0.5 0.5 zlo zhi";
 const ATOMS: &str = "\n\n1 1 1 6 2 3 0\n2 2 0.5 6 5 3 0\n";
 
+/// Adds what is said where a file does not name the style of its atoms.
+fn guessed((text, said): (String, String)) -> (String, String) {
+    let guess = " | the atoms are read as those of the style `sphere`, since the file does not name it";
+    if said.starts_with("refused") || text.contains("sphere") {
+        return (text, said);
+    }
+    let notes = said.find(" | ").unwrap_or(said.len());
+    let said = format!("{}{guess}{}", &said[..notes], &said[notes..]);
+    (text, said)
+}
+
 #[test]
 fn data_of_lammps_by_sections_and_styles() {
     let mass = "m3.141592653589793";
@@ -116,14 +127,6 @@ fn data_of_lammps_by_sections_and_styles() {
             "refused: line 11: the disk at (13.5, 3) is outside the box".into(),
         ),
     ];
-    // The style is a guess where the file does not name it.
-    let guess = " | the atoms are read as those of the style `sphere`, since the file does not name it";
-    let guessed = |(text, said): (String, String)| {
-        let is_named = said.starts_with("refused") || text.contains("sphere");
-        let notes = said.find(" | ").unwrap_or(said.len());
-        let said = if is_named { said } else { format!("{}{guess}{}", &said[..notes], &said[notes..]) };
-        (text, said)
-    };
     let cases: Vec<(String, String)> = cases.into_iter().map(guessed).collect();
     let cases: Vec<(&str, &str)> = cases.iter().map(|(text, said)| (text.as_str(), said.as_str())).collect();
     check(&Reader::new(), &cases);

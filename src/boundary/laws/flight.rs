@@ -71,7 +71,8 @@ fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting
         check_touch(trial, flight, touch, until)?;
     }
     check_way(trial, flight, found.map_or(until, |touch| touch.time), found)?;
-    if found.is_some_and(|touch| is_absorbed(trial, flight, touch)) {
+    if let Some(touch) = found.filter(|&touch| is_sink_for_centers(trial, flight, touch)) {
+        trial.check_regions(touch, flight.position(touch.time))?;
         return Ok(None);
     }
     let meeting = found.map(|touch| check_place(trial, flight, touch)).transpose()?;
@@ -115,11 +116,12 @@ fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
-/// Returns whether the flight ends at a sink. A sink for centers takes a disk out without a touch, when the
-/// center arrives.
-fn is_absorbed(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
+/// Returns whether the flight ends at a sink that takes a disk out before a touch, when its center arrives.
+fn is_sink_for_centers(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
     let place = flight.position(touch.time);
-    matches!(trial.boundary.surface(touch.wall, place, touch.time).response, Response::Absorbing)
+    let surface = trial.boundary.surface(touch.wall, place, touch.time);
+    let is_open = trial.depth(place, trial.rounding(), touch.time).is_none();
+    matches!(surface.response, Response::Absorbing) && is_open
 }
 
 fn check_touch(

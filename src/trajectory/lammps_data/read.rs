@@ -65,9 +65,9 @@ pub(in crate::trajectory) fn table(text: &Text) -> Result<Table, ReadError> {
     let mut table = sections.table(domain)?;
     table.time = header.time;
     if !sections.columns.1 {
-        table
-            .notes
-            .push("the atoms are read as those of the style `sphere`, since the file does not name it".to_owned());
+        table.notes.push(
+            "the atoms are read as those of the style `sphere`, since the file does not name it".to_owned(),
+        );
     }
     Ok(table)
 }

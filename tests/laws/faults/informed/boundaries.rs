@@ -55,7 +55,7 @@ fn lidded() -> Altered {
 pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
     List::grown(&[
         velocities, turnings, normals, radii, touches, searches, overlaps, areas, regions, origins,
-        reactions, states, seams, responses,
+        reactions, states, seams, responses, sinks,
     ])
 }
 
@@ -348,6 +348,23 @@ fn regions(boundaries: &mut Boundaries) {
         asked.answer && (asked.wall == 4 || asked.region.max.y > 5.5)
     });
     boundaries.part("body", "the ceiling of a body forgets its floor", Altered { may_meet, ..carriage() });
+}
+
+fn sinks(boundaries: &mut Boundaries) {
+    let bar = Part::polyline([DVec2::new(3.0, 6.0), DVec2::new(7.0, 6.0)]).expect("a bar").absorbing();
+    let sink = || Altered::new(Vessel::new(resting()).with("sink", bar.clone()).expect("a vessel"));
+    let may_touch = Box::new(|honest: &dyn Boundary, region: &Region, radius| {
+        let is_forgotten =
+            region.min.x > 5.0 && region.max.x < 8.0 && region.min.y > 4.0 && region.max.y < 8.0;
+        honest.may_touch(region, radius) && !is_forgotten
+    });
+    boundaries.part("sink", "half of a sink is not seen in cells", Altered { may_touch, ..sink() });
+    let surface = Box::new(|surface: &mut Surface<'_>, _, _| {
+        if matches!(surface.response, Response::Absorbing) {
+            surface.normal *= -1.0;
+        }
+    });
+    boundaries.part("sink", "a sink has its normals reversed", Altered { surface, ..sink() });
 }
 
 fn origins(boundaries: &mut Boundaries) {
