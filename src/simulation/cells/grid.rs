@@ -107,11 +107,17 @@ impl Grid {
     }
 
     pub(in crate::simulation) fn place_of(&self, position: DVec2) -> Place {
-        let along = |edges: &[f64], x: f64| {
+        // Nearly all edges are a pitch apart. Rows high above an open container are not, and rounding may put a
+        // position at an edge on its other side: there, the edges are searched.
+        let along = |edges: &[f64], pitch: f64, x: f64| {
             let inner = &edges[1..edges.len() - 1];
-            1 + inner.partition_point(|&edge| edge <= x) as u32
+            let first = inner.first().copied().unwrap_or(f64::INFINITY);
+            let guess = (((x - first) / pitch + 1.0) as usize).min(inner.len());
+            let is_there = edges[guess] <= x && x < edges[guess + 1];
+            1 + if is_there { guess } else { inner.partition_point(|&edge| edge <= x) } as u32
         };
-        Place { column: along(&self.column_edges, position.x), row: along(&self.row_edges, position.y) }
+        let DVec2 { x, y } = self.layout.pitch;
+        Place { column: along(&self.column_edges, x, position.x), row: along(&self.row_edges, y, position.y) }
     }
 
     #[inline]
