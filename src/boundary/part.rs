@@ -56,9 +56,10 @@ pub struct Part {
     surface_speed: f64,
     /// Absolute time at which the motion has phase 0.
     start: f64,
-    /// The kinds of the disks that the part stops, in order. An empty list means all kinds.
-    #[cfg_attr(feature = "serde", serde(rename = "only_for"))]
-    kinds: Vec<Kind>,
+    /// The kinds of the disks that the part stops, in order, unless it stops all. Files have an empty list for
+    /// all.
+    #[cfg_attr(feature = "serde", serde(rename = "only_for", serialize_with = "list"))]
+    kinds: Option<Vec<Kind>>,
 }
 
 /// Properties.
@@ -125,7 +126,7 @@ impl Part {
     }
 
     /// Returns the same part for disks of these kinds only: all others pass through it, as through a sieve or
-    /// a membrane.
+    /// a membrane. A part for no kinds at all would stop no disk, and a vessel refuses it.
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
     /// same for all kinds. Its vessel then does not know the [`area`](super::Boundary::area), and stresses,
@@ -152,7 +153,7 @@ impl Part {
         let mut kinds: Vec<Kind> = kinds.into_iter().collect();
         kinds.sort_unstable();
         kinds.dedup();
-        Self { kinds, ..self }
+        Self { kinds: Some(kinds), ..self }
     }
 
     /// Returns the same part with a surface that moves tangentially at this speed, like a conveyor belt.
@@ -198,7 +199,7 @@ impl Part {
     /// Returns whether disks of this kind touch the part.
     #[inline]
     pub(super) fn stops(&self, kind: Kind) -> bool {
-        self.kinds.is_empty() || self.kinds.contains(&kind)
+        self.kinds.as_ref().is_none_or(|kinds| kinds.contains(&kind))
     }
 
     /// Returns whether there are places behind the part, where no disk can be.
@@ -208,7 +209,12 @@ impl Part {
 
     /// Returns whether the places behind the part are free for some kinds of disks, and for others not.
     pub(super) fn is_full_for_some(&self) -> bool {
-        !self.kinds.is_empty() && self.has_back()
+        self.kinds.is_some() && self.has_back()
+    }
+
+    /// Returns whether the part stops no disk at all.
+    pub(super) fn stops_none(&self) -> bool {
+        self.kinds.as_ref().is_some_and(Vec::is_empty)
     }
 
     /// Returns whether the part treats disks differently from a plain wall, so that it replaces the section
@@ -271,8 +277,11 @@ impl Part {
         let kind = f64::from(self.kind.number());
         let part = Fingerprint::of("Part").number(self.surface_speed).number(self.start).number(kind);
         let part = part.part(self.travel.fingerprint()?).part(self.conduct.fingerprint()?);
-        let kinds =
-            self.kinds.iter().fold(part, |part, kind| part.text("only for").number(kind.number().into()));
+        let kinds = self
+            .kinds
+            .iter()
+            .flatten()
+            .fold(part, |part, kind| part.text("only for").number(kind.number().into()));
         Some(self.all_bricks().fold(kinds, |part, brick| part.part(brick.fingerprint())))
     }
 }
@@ -316,5 +325,13 @@ impl Sighted {
     /// Returns the distance from the brick, negative behind it.
     pub(super) fn signed_distance(&self) -> f64 {
         if self.nearest.is_free { self.nearest.distance } else { -self.nearest.distance }
+    }
+}
+
+#[cfg(feature = "serde")]
+fn list<S: serde::Serializer>(kinds: &Option<Vec<Kind>>, serializer: S) -> Result<S::Ok, S::Error> {
+    match kinds.as_deref() {
+        Some([]) => Err(serde::ser::Error::custom("a part that is only for no kinds cannot be written")),
+        kinds => serde::Serialize::serialize(kinds.unwrap_or_default(), serializer),
     }
 }

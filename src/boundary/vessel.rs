@@ -241,6 +241,8 @@ impl Vessel {
     fn check(&self, placed: &Placed, less: usize) -> Result<(), VesselError> {
         let count = self.wall_count() - less + placed.part.all_bricks().count();
         accept(count <= MOST_WALLS, "number of walls of the vessel", "at most 2^16", count as f64)?;
+        let stops_some = !placed.part.stops_none();
+        accept(stops_some, "number of kinds for which a part is", "at least 1: leave the part out", 0.0)?;
         let (low, high) = placed.bounds;
         let periods = self.container.domain().periods();
         let count = |length: f64, period: f64| if period > 0.0 { (length / period).max(1.0) } else { 1.0 };

@@ -6,7 +6,7 @@ use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Vessel, V
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, Kind, Simulation, initial};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
     list.iter().copied().map(DVec2::from).collect()
@@ -44,6 +44,17 @@ fn check(name: &str, vessel: &Vessel) {
         let outcome = laws::check(&mut vessel.clone(), radius, 1.0, seed);
         assert_eq!(outcome, Ok(()), "{name}, radius {radius}");
     }
+}
+
+/// A list of kinds that is empty by mistake: the part would stop nobody, not everybody.
+#[test]
+fn a_part_for_no_kinds_is_refused() {
+    let bar = Part::polyline([(3.0, 5.0), (7.0, 5.0)].map(DVec2::from)).expect("a bar");
+    let none = bar.clone().only_for([Kind::new(2)]).only_for([]);
+    let vessel = Vessel::new(Container::closed(10.0, 10.0).expect("a box"));
+    let refused = vessel.clone().with("bar", none).expect_err("a part for no kinds").to_string();
+    assert!(refused.contains("number of kinds for which a part is"), "{refused}");
+    assert!(vessel.with("bar", bar).is_ok());
 }
 
 #[test]

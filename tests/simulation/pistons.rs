@@ -223,6 +223,28 @@ fn a_piston_that_is_set_during_a_run_begins_then() -> Outcome {
     Ok(())
 }
 
+/// The walls of a finished run, in a run that starts where the finished one started.
+#[test]
+fn a_new_run_begins_with_the_initial_state_of_used_walls() -> Outcome {
+    let piston = Piston::new(2.0, [0.0, 10.0])?.with_force(0.5)?;
+    let container = Container::closed(10.0, 20.0)?.with_piston(Wall::Lid, piston)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.5)?, 1.0, 1)?;
+    // Before the first impact, after some, and after the epoch has moved.
+    for end in [1.0, 5.0, 9.0, 20.0, 40.0, 400.0] {
+        let mut first = Simulation::builder(Elastic, container.clone()).disks(disks.clone()).build()?;
+        first.run_until(end, &mut ())?;
+        let used = first.boundary().clone();
+        let mut second = Simulation::builder(Elastic, used).disks(disks.clone()).build()?;
+        assert_eq!(lid(&second.snapshot(), 20.0), (0.0, 0.0), "{end}");
+        second.run_until(end, &mut ())?;
+        assert_eq!(
+            (second.disks(), lid(&second.snapshot(), 20.0)),
+            (first.disks(), lid(&first.snapshot(), 20.0))
+        );
+    }
+    Ok(())
+}
+
 /// A checkpoint keeps the piston, also for a caller who would allow other walls.
 #[cfg(feature = "serde")]
 #[test]

@@ -22,7 +22,7 @@ impl Part {
         accept(!bricks.is_empty(), "number of bricks", "at least 1", 0.0)?;
         let (corners, travel) = (corners::corners(&bricks), Travel::default());
         let (conduct, kind) = (Conduct::Shared, Kind::WALL);
-        Ok(Self { bricks, corners, travel, conduct, kind, surface_speed: 0.0, start: 0.0, kinds: Vec::new() })
+        Ok(Self { bricks, corners, travel, conduct, kind, surface_speed: 0.0, start: 0.0, kinds: None })
     }
 
     /// Creates a closed polygon with the disks inside.
@@ -102,7 +102,8 @@ crate::gate::from_file! {
         bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64,
         #[serde(default)] only_for: Vec<Kind>
     } => {
-        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct).only_for(only_for) };
+        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct) };
+        let part = if only_for.is_empty() { part } else { part.only_for(only_for) };
         let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
         if let Some(super::Turning { about, angular_velocity, .. }) = travel.turning {
             part = part.with_rotation(about, angular_velocity)?;

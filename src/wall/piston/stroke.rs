@@ -17,6 +17,9 @@ const PARTS: f64 = 16.0;
 /// Largest speed at a stop that counts as zero, relative to the speed of the motion.
 const GRAZE: f64 = 1e-7;
 
+/// Rounding error of a time origin, relative to the origin.
+const ROUNDING: f64 = 1e-12;
+
 /// The motion of a piston since the last impact. Phases are offsets from the time origin, since a piston has
 /// no period that would keep the digits of late times.
 #[derive(Debug, Clone)]
@@ -87,15 +90,17 @@ impl Stroke {
 
     /// Returns the same motion with phases that count from this absolute time.
     ///
-    /// An earlier origin belongs to another run; the piston begins that run in its present state.
+    /// An origin before the last impact belongs to another run, which the piston begins in its initial state.
     pub(crate) fn at_origin(&self, origin: f64) -> Self {
-        match self.origin.map(|before| origin - before) {
-            Some(0.0) => self.clone(),
-            Some(by) if by > 0.0 => {
-                let WallState { displacement, velocity } = self.state(by);
-                Self::new(self.piston, Some(origin), 0.0, displacement, velocity)
-            }
-            _ => Self { origin: Some(origin), ..self.clone() },
+        let Some(before) = self.origin else { return Self { origin: Some(origin), ..self.clone() } };
+        let (by, rounding) = (origin - before, ROUNDING * (origin.abs() + before.abs()));
+        if by < self.pieces[0].start - rounding {
+            Self { origin: Some(origin), ..Self::from(self.piston) }
+        } else if by > 0.0 {
+            let WallState { displacement, velocity } = self.state(by);
+            Self::new(self.piston, Some(origin), 0.0, displacement, velocity)
+        } else {
+            Self { origin: Some(origin), ..self.clone() }
         }
     }
 
