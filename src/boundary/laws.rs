@@ -160,7 +160,8 @@ impl Random {
         let crossing = trial.length() / trial.speed;
         let late = self.between(-21.0, 3.0).max(0.0);
         let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
-        let time = self.between(0.0, if trial.is_struck { SOON * crossing } else { crossing });
+        let latest = if trial.is_struck { SOON * crossing } else { crossing };
+        let time = trial.earliest() + self.between(0.0, latest);
         trial.begin(origin)?;
         let Some(position) = self.place(trial, time) else { return Ok(None) };
         let speed = trial.speed * self.share();

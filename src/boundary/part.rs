@@ -329,6 +329,7 @@ impl Sighted {
 }
 
 #[cfg(feature = "serde")]
+#[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
 fn list<S: serde::Serializer>(kinds: &Option<Vec<Kind>>, serializer: S) -> Result<S::Ok, S::Error> {
     match kinds.as_deref() {
         Some([]) => Err(serde::ser::Error::custom("a part that is only for no kinds cannot be written")),

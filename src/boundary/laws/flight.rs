@@ -231,7 +231,8 @@ fn check_origin(
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
     // react keep no record of their past, so for them the other origin is later.
     let earlier = origin.min(LATEST * trial.length() / trial.speed);
-    let shift = 0.37 * if state.is_empty() { earlier } else { -start };
+    let known = trial.earliest();
+    let shift = if state.is_empty() { 0.37 * earlier } else { -known - 0.37 * (start - known) };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());

@@ -18,12 +18,13 @@ const NEAR: f64 = 0.5;
 struct Meeting {
     flight: Flight,
     touch: Touch,
+    around: Region,
     may_meet: bool,
     nearest: Option<Overlap>,
 }
 
 /// Checks that `may_meet` names the regions in which other disks touch walls that a blow sets in motion: the
-/// wall that is hit, and the other walls of its body.
+/// wall that is hit, and the other walls of its body. `may_touch` names these regions before the blow, too.
 pub(super) fn check_meetings(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let state = trial.boundary.state();
@@ -34,14 +35,15 @@ pub(super) fn check_meetings(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
     let met: Vec<_> =
         touches.into_iter().map(|(flight, touch)| meeting(trial, wall, flight, touch)).collect();
     if !trial.is_struck {
-        // Walls keep no record of what was before the blow.
-        let origin = trial.origin;
-        trial.set_origin(origin + time);
-        trial.states[1] = trial.boundary.state();
-        trial.set_origin(origin);
+        (trial.states[1], trial.struck_at) = (trial.boundary.state(), time);
     }
     trial.take_state(&state)?;
-    for Meeting { flight, touch: Touch { wall: other, time: then, .. }, may_meet, nearest } in met {
+    for Meeting { flight, touch: Touch { wall: other, time: then, .. }, around, may_meet, nearest } in met {
+        // Cells ask once, whatever the walls do later.
+        let may_touch = trial.boundary.may_touch(&around, trial.radius);
+        require!(PART, "may_touch", may_touch;
+            "after a blow on wall {wall} at {time:?}, a disk touches wall {other} in {around:?}, where it was denied \
+             before the blow, on {flight:?}");
         let without = near(trial, &flight, then);
         let is_named = may_meet || !is_another(trial, other, without, nearest);
         require!(PART, "may_meet", is_named;
@@ -86,7 +88,7 @@ fn meeting(trial: &Trial<'_>, wall: usize, flight: Flight, touch: Touch) -> Meet
     let (place, margin) = (flight.position(touch.time), DVec2::splat(trial.rounding()));
     let around = Region::new(place - margin, place + margin);
     let may_meet = trial.boundary.may_meet(wall, &around, trial.radius, touch.time);
-    Meeting { flight, touch, may_meet, nearest: near(trial, &flight, touch.time) }
+    Meeting { flight, touch, around, may_meet, nearest: near(trial, &flight, touch.time) }
 }
 
 fn near(trial: &Trial<'_>, flight: &Flight, time: f64) -> Option<Overlap> {

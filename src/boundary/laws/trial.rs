@@ -38,6 +38,8 @@ pub(super) struct Trial<'a> {
     pub(super) origin: f64,
     /// The initial state of the walls, and a state after a blow.
     pub(super) states: [Vec<f64>; 2],
+    /// Time of that blow, from any origin.
+    pub(super) struck_at: f64,
     /// True if flights begin in the second state.
     pub(super) is_struck: bool,
     /// Number of flights that graze a wall.
@@ -63,6 +65,7 @@ impl<'a> Trial<'a> {
             speed,
             origin: 0.0,
             states,
+            struck_at: 0.0,
             is_struck: false,
             grazes: 0,
             blows: 0,
@@ -98,6 +101,11 @@ impl<'a> Trial<'a> {
         let (low, high) = self.rectangle();
         let shares = [0.05, 0.35, 0.65, 0.95];
         shares.into_iter().flat_map(move |x| shares.map(move |y| low + DVec2::new(x, y) * (high - low)))
+    }
+
+    /// Returns the time from which the walls are known.
+    pub(super) fn earliest(&self) -> f64 {
+        if self.is_struck { self.struck_at } else { 0.0 }
     }
 
     pub(super) fn set_origin(&mut self, origin: f64) {

@@ -38,6 +38,17 @@ fn meetings(boundaries: &mut Boundaries) {
         "the floor meets only what it touches in the end",
         Altered { may_meet, ..sprung() },
     );
+    let may_touch = Box::new(|honest: &dyn Boundary, region: &Region, radius| {
+        let amplitude = honest.state().iter().map(|part| part * part).sum::<f64>().sqrt();
+        let is_beyond = region.min.y - radius > 2.0 + amplitude + 0.1;
+        let is_free = is_beyond && region.min.x > 1.0 && region.max.x < 9.0 && region.max.y < 11.0;
+        honest.may_touch(region, radius) && !is_free
+    });
+    boundaries.part(
+        "present swing",
+        "cells ask only about the present swing of the floor",
+        Altered { may_touch, ..sprung() },
+    );
     let carriage = || Altered::new(Sprung::with_ceiling());
     let may_meet = Box::new(|_: &dyn Boundary, asked: &Asked<'_>| {
         asked.answer && (asked.wall == 5 || asked.region.min.y < 5.5)
