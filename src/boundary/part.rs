@@ -56,8 +56,8 @@ pub struct Part {
     surface_speed: f64,
     /// Absolute time at which the motion has phase 0.
     start: f64,
-    /// The kinds of the disks that the part stops, in order, unless it stops all. Files have an empty list for
-    /// all.
+    /// The kinds of the disks that the part stops, in order, unless it stops all. Files have an empty list
+    /// for all.
     #[cfg_attr(feature = "serde", serde(rename = "only_for", serialize_with = "list"))]
     kinds: Option<Vec<Kind>>,
 }

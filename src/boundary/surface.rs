@@ -139,8 +139,9 @@ pub enum Response<'a> {
     Thermal(Thermal),
     /// The wall takes the disk out of the run.
     ///
-    /// Observers see a last collision, after which the disk has the velocity of the wall and no spin: the
-    /// wall receives all of the relative momentum. The spin is lost, also at a wall that turns freely.
+    /// Observers see a last collision, after which the disk has no spin, and moves with the wall: a wall
+    /// without a mass takes all of the relative momentum, and a wall with a mass as much as gives both the
+    /// same velocity. The spin is lost, also at a wall that turns freely.
     Absorbing,
 }
 

@@ -98,6 +98,14 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     (collision, [Kick::between(&first, &outcome.first), Kick::between(&second, &outcome.second)])
 }
 
+/// Returns a disk that a wall has captured. Both move on together, so a wall with a mass gains no energy.
+fn captured(arriving: &Body, surface: &Surface<'_>, mass: f64) -> Body {
+    let (against, normal) = (arriving.velocity - surface.velocity, surface.normal);
+    let [along, across] = [surface.mass, surface.tangential_mass].map(|wall| mass / (mass + wall));
+    let gained = along * against.dot(normal) * normal + across * against.dot(normal.perp()) * normal.perp();
+    Body { velocity: surface.velocity + gained, angular_velocity: 0.0 }
+}
+
 /// Computes the collision of a disk with a wall.
 #[inline]
 pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
@@ -128,7 +136,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
                 Response::Thermal(thermal) => {
                     emitted(&thermal, &arriving, surface, [mass, inertia, material.radius], generator)
                 }
-                _ => Body { angular_velocity: 0.0, ..*partner },
+                _ => captured(&arriving, surface, mass),
             };
             let kick = (leaving.velocity - arriving.velocity) * mass;
             let impulse = Impulse::new(kick.dot(surface.normal), kick.dot(surface.normal.perp()));

@@ -30,7 +30,8 @@ enum Form {
 ///
 /// Readers can go directly to any frame. A frame takes half as many bytes as in [`ExtendedXyz`]. Its numbers
 /// are in single precision, so it is meant for analysis: a run that starts from it does not continue with the
-/// same bits. The name of the file must not end in `.gz`.
+/// same bits. Numbers above 3.4e38 become infinite, and angular momenta below 1.2e-38 lose their digits or
+/// vanish. The name of the file must not end in `.gz`.
 ///
 /// | chunk | |
 /// |---|---|

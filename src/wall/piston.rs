@@ -25,8 +25,8 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall from a piston. A
 /// checkpoint keeps the present state of the wall; a file of the container keeps only its state at the start.
-/// Walls of a run that are used in another run begin there with their initial state, if that run starts before
-/// their last impact; at a later time, they continue.
+/// Walls of a run that are used in another run begin there with their initial state, if that run starts
+/// before their last impact; at a later time, they continue.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};

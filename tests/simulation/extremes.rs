@@ -177,6 +177,19 @@ fn many_extreme_systems_are_refused_or_run() {
     assert!(try_systems(1000..20_000) > 5000);
 }
 
+/// Far from the origin, positions have no digits for small disks.
+#[test]
+fn positions_that_are_too_coarse_are_refused() {
+    let at = |far: f64| {
+        let container = Container::closed(1e-4, 1e-4).unwrap().shifted(DVec2::splat(far)).unwrap();
+        let disk = Disk::new(DVec2::splat(far + 5e-5), 1e-6).unwrap();
+        Simulation::builder(Elastic, container).disks([disk]).build().map(drop)
+    };
+    assert!(at(1e3).is_ok());
+    let refused = at(1e8).unwrap_err().to_string();
+    assert!(refused.contains("spacing of numbers at the edges of the domain"), "{refused}");
+}
+
 /// Dust beside a giant needs no epochs as short as the dust is fine: places in that box have no such digits.
 #[test]
 fn dust_beside_a_giant_costs_no_more_than_other_disks() {

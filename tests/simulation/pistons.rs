@@ -245,6 +245,24 @@ fn a_new_run_begins_with_the_initial_state_of_used_walls() -> Outcome {
     Ok(())
 }
 
+/// A light lid that takes disks out moves on with them, and gains no energy.
+#[test]
+fn a_light_sink_gains_no_energy() -> Outcome {
+    for mass in [0.04, 1.0, 25.0] {
+        let piston = Piston::new(mass, [-30.0, 5.0])?;
+        let container =
+            Container::closed(10.0, 20.0)?.with_piston(Wall::Lid, piston)?.absorbing(Wall::Lid)?;
+        let disk =
+            Disk::new(DVec2::new(5.0, 10.0), 0.5)?.with_mass(1.0)?.with_velocity(DVec2::new(0.3, 1.0))?;
+        let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
+        run.run_until(12.0, &mut ())?;
+        let (_, velocity) = lid(&run.snapshot(), 20.0);
+        assert!((velocity + 1.0 / (1.0 + mass)).abs() < 1e-12, "{mass}: {velocity}");
+        assert!(run.disks().is_empty());
+    }
+    Ok(())
+}
+
 /// A checkpoint keeps the piston, also for a caller who would allow other walls.
 #[cfg(feature = "serde")]
 #[test]

@@ -119,11 +119,12 @@ fn check_same_areas(trial: &Trial<'_>, time: f64, later: f64, apart: f64) -> Res
     let (low, high) = trial.rectangle();
     let middle = 0.5 * (low + high);
     let corners = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)];
-    for region in corners.map(|corner| Region::new(corner.min(middle), corner.max(middle))) {
-        let [now, then] = [time, later].map(|time| trial.boundary.area(&region, 0.0, time));
+    let quarters = corners.map(|corner| Region::new(corner.min(middle), corner.max(middle)));
+    for (region, radius) in quarters.into_iter().flat_map(|region| [(region, 0.0), (region, trial.radius)]) {
+        let [now, then] = [time, later].map(|time| trial.boundary.area(&region, radius, time));
         let (Some(now), Some(then)) = (now, then) else { return Ok(()) };
         require!(PART, "wall_point", (now - then).abs() <= SLACK * region.area();
-            "the free area of {region:?} is {now:?} at {time:?} and {then:?} at {later:?}, but the points of \
+            "the area for disks of radius {radius:?} in {region:?} is {now:?} at {time:?} and {then:?} at {later:?}, but the points of \
              all walls are back, within {apart:?}");
     }
     Ok(())

@@ -121,7 +121,8 @@ impl Around<'_, '_> {
         let scale = speed.abs().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
         let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
-        // A step is the largest distance that the wall moves. No query is about a time before the walls are known.
+        // A step is the largest distance that the wall moves. No query is about a time before the walls are
+        // known.
         let depth = |step: f64| self.at(DVec2::ZERO, step / scale).0;
         let is_early = time - self.trial.earliest() < 2.0 * step / scale;
         let is_rate = is_early || self.has_slope(speed / scale, step, slack, depth);

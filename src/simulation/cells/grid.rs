@@ -107,8 +107,8 @@ impl Grid {
     }
 
     pub(in crate::simulation) fn place_of(&self, position: DVec2) -> Place {
-        // Nearly all edges are a pitch apart. Rows high above an open container are not, and rounding may put a
-        // position at an edge on its other side: there, the edges are searched.
+        // Nearly all edges are a pitch apart. Rows high above an open container are not, and rounding may put
+        // a position at an edge on its other side: there, the edges are searched.
         let along = |edges: &[f64], pitch: f64, x: f64| {
             let inner = &edges[1..edges.len() - 1];
             let first = inner.first().copied().unwrap_or(f64::INFINITY);

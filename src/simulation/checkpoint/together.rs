@@ -64,7 +64,9 @@ impl Checkpoint {
     ///
     /// # Errors
     /// If the file cannot be read, is not such a file, is of another version, was truncated or altered, or
-    /// has other observers. The error names the file.
+    /// has observers of another layout. The error names the file. Files hold no names: observers whose
+    /// numbers are laid out in the same way, such as two series of two columns, are not told apart. Read the
+    /// types that were written, in the same order.
     pub fn read_with<O: DeserializeOwned>(path: impl AsRef<Path>) -> Result<(Self, O), CheckpointError> {
         read(path.as_ref(), |bytes| decoded(opened(SEAL, bytes)?))
     }
