@@ -22,8 +22,8 @@ use crate::random::uniform;
 use crate::violation::require;
 use crate::{Flight, Kind, Violation};
 use area::check_areas;
-use flight::{SOON, check_flights};
-use trial::{PART, Trial};
+use flight::check_flights;
+use trial::{PART, SOON, Trial};
 
 /// Number of disks that fly in the check.
 const DISKS: usize = 400;

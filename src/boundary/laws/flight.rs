@@ -13,13 +13,6 @@ use crate::{Flight, Violation};
 /// Number of samples along a flight.
 const SAMPLES: u32 = 200;
 
-/// Longest flight, in units of the time that a disk takes to cross the domain.
-const LONGEST: f64 = 3.0;
-
-/// Longest wait for a flight after a blow, and longest flight then, in the same units: a free wall must not
-/// leave the domain, and the disks of the check do not hold it up.
-pub(super) const SOON: f64 = 0.1;
-
 /// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides when such a
 /// touch happens, and whether it happens.
 const GRAZING: f64 = 1e-2;
@@ -65,7 +58,7 @@ pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize
 
 /// Checks a flight, and returns its touch with a wall that reflects the disk.
 fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting>, Violation> {
-    let until = flight.time() + longest(trial, flight);
+    let until = flight.time() + trial.longest(flight);
     let found = trial.first_touch(flight, until)?;
     if let Some(touch) = found {
         check_touch(trial, flight, touch, until)?;
@@ -86,34 +79,6 @@ fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting
         trial.check_regions(meeting.touch, meeting.place)?;
     }
     Ok(meeting)
-}
-
-/// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or end at
-/// the latest.
-pub(super) fn longest(trial: &Trial<'_>, flight: &Flight) -> f64 {
-    let longest = if trial.is_struck { SOON } else { LONGEST } * trial.length() / trial.speed;
-    let (domain, start) = (trial.domain, flight.time());
-    let (place, velocity) = (flight.position(start), flight.velocity(start));
-    let pull = flight.acceleration();
-    let mut longest = longest;
-    if domain.periodic_sides {
-        let ahead = if velocity.x > 0.0 { domain.right - place.x } else { place.x - domain.left };
-        let nearer = (domain.right - place.x).min(place.x - domain.left);
-        let way = if pull.x == 0.0 { ahead } else { nearer };
-        longest = longest.min(shortest_wait(way, velocity.x, pull.x));
-    }
-    if domain.periodic_ends {
-        let way = (domain.top - place.y).min(place.y - domain.bottom);
-        longest = longest.min(shortest_wait(way, velocity.y, pull.y));
-    }
-    longest
-}
-
-/// Returns the time in which a flight moves no farther than `way`, whatever the direction of its
-/// acceleration. It solves v t + a t² / 2 = `way` for the speed v and the magnitude a of the acceleration.
-fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
-    let (way, speed) = (way.max(0.0), velocity.abs());
-    2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
 /// Returns whether the flight ends at a sink that takes a disk out before a touch, when its center arrives.

@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 
-use super::flight::longest;
 use super::trial::{PART, Trial};
 use crate::boundary::{Boundary, Impact, Overlap, Region, Touch};
 use crate::violation::require;
@@ -76,7 +75,7 @@ fn flights_about(trial: &Trial<'_>, time: f64, point: DVec2) -> Vec<Flight> {
 /// Returns the flights that end at a touch, with this touch.
 fn touches(trial: &Trial<'_>, flights: &[Flight]) -> Result<Vec<(Flight, Touch)>, Violation> {
     let touched = |flight: &Flight| {
-        let found = trial.first_touch(flight, flight.time() + longest(trial, flight));
+        let found = trial.first_touch(flight, flight.time() + trial.longest(flight));
         found.map(|touch| touch.map(|touch| (*flight, touch))).transpose()
     };
     flights.iter().filter_map(touched).collect()

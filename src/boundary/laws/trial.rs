@@ -12,6 +12,13 @@ pub(super) const PART: &str = "boundary";
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
 
+/// Longest flight, in units of the time that a disk takes to cross the domain.
+const LONGEST: f64 = 3.0;
+
+/// Longest wait for a flight after a blow, and longest flight then, in the same units: a free wall must not
+/// leave the domain, and the disks of the check do not hold it up.
+pub(super) const SOON: f64 = 0.1;
+
 /// Largest relative difference between velocities on both sides of a seam.
 const SAME: f64 = 5e-8;
 
@@ -206,6 +213,27 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
+    /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or end at
+    /// the latest.
+    pub(super) fn longest(&self, flight: &Flight) -> f64 {
+        let longest = if self.is_struck { SOON } else { LONGEST } * self.length() / self.speed;
+        let (domain, start) = (self.domain, flight.time());
+        let (place, velocity) = (flight.position(start), flight.velocity(start));
+        let pull = flight.acceleration();
+        let mut longest = longest;
+        if domain.periodic_sides {
+            let ahead = if velocity.x > 0.0 { domain.right - place.x } else { place.x - domain.left };
+            let nearer = (domain.right - place.x).min(place.x - domain.left);
+            let way = if pull.x == 0.0 { ahead } else { nearer };
+            longest = longest.min(shortest_wait(way, velocity.x, pull.x));
+        }
+        if domain.periodic_ends {
+            let way = (domain.top - place.y).min(place.y - domain.bottom);
+            longest = longest.min(shortest_wait(way, velocity.y, pull.y));
+        }
+        longest
+    }
+
     /// Checks that the domain and the number of walls have not changed.
     pub(super) fn check_constants(&self) -> Result<(), Violation> {
         let (before, now, walls) = (self.domain, self.boundary.domain(), self.boundary.wall_count());
@@ -274,6 +302,13 @@ impl<'a> Trial<'a> {
             ),
         )
     }
+}
+
+/// Returns the time in which a flight moves no farther than `way`, whatever the direction of its
+/// acceleration. It solves v t + a t² / 2 = `way` for the speed v and the magnitude a of the acceleration.
+fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
+    let (way, speed) = (way.max(0.0), velocity.abs());
+    2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
 /// Returns the remainder of a flight from this time on.
