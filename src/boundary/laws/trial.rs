@@ -213,8 +213,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or end at
-    /// the latest.
+    /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or
+    /// end at the latest.
     pub(super) fn longest(&self, flight: &Flight) -> f64 {
         let longest = if self.is_struck { SOON } else { LONGEST } * self.length() / self.speed;
         let (domain, start) = (self.domain, flight.time());
