@@ -116,7 +116,7 @@ pub fn check<B: Boundary + ?Sized>(
 fn check_disk(trial: &mut Trial<'_>, random: &mut Random, number: usize) -> Result<(), Violation> {
     trial.radius = trial.largest * SIZES[number % SIZES.len()];
     trial.kind = Kind::new(KINDS[number % KINDS.len()]);
-    trial.is_struck = trial.blows > 0 && number % 3 == 2;
+    trial.is_struck = trial.states[0] != trial.states[1] && number % 3 == 2;
     let Some((origin, flight)) = random.flight(trial)? else {
         // After a blow, a wall may have filled the room.
         let radius = trial.radius;

@@ -39,6 +39,10 @@ const SLACK: f64 = 2e-5;
 const RETURNS: u32 = 300;
 const THIRDS: u32 = 100;
 
+/// Share of the domain that is far from all simple fractions, so that it holds no whole number of equal
+/// teeth.
+const GOLDEN: f64 = 0.381_966;
+
 /// Share of the time between two snapshots after which points that come back are compared once more.
 const SHARE: f64 = 0.37;
 
@@ -113,14 +117,14 @@ fn least(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Checks that the areas in the four quarters of the domain are the same at two times. A tray that rocks
-/// takes on one side what it gives on the other.
+/// Checks that the areas in four parts of the domain are the same at two times. A tray that rocks takes on
+/// one side what it gives on the other, and teeth that slide do so in each of their periods.
 fn check_same_areas(trial: &Trial<'_>, time: f64, later: f64, apart: f64) -> Result<(), Violation> {
     let (low, high) = trial.rectangle();
-    let middle = 0.5 * (low + high);
+    let inside = low + GOLDEN * (high - low);
     let corners = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)];
-    let quarters = corners.map(|corner| Region::new(corner.min(middle), corner.max(middle)));
-    for (region, radius) in quarters.into_iter().flat_map(|region| [(region, 0.0), (region, trial.radius)]) {
+    let parts = corners.map(|corner| Region::new(corner.min(inside), corner.max(inside)));
+    for (region, radius) in parts.into_iter().flat_map(|region| [(region, 0.0), (region, trial.radius)]) {
         let [now, then] = [time, later].map(|time| trial.boundary.area(&region, radius, time));
         let (Some(now), Some(then)) = (now, then) else { return Ok(()) };
         require!(PART, "wall_point", (now - then).abs() <= SLACK * region.area();

@@ -118,7 +118,8 @@ impl Around<'_, '_> {
     fn check_velocity(&self, surface: &Surface<'_>) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
         let speed = surface.velocity.dot(surface.normal);
-        let scale = speed.abs().max(self.trial.speed);
+        // A fast wall turns its curved places past the disk, even where its speed along the normal is small.
+        let scale = surface.velocity.length().max(self.trial.speed);
         let step = NEAR * self.trial.radius;
         let slack = EXACT + 8.0 * f64::EPSILON * (time + self.trial.origin) * scale / step;
         // A step is the largest distance that the wall moves. No query is about a time before the walls are

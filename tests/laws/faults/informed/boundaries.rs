@@ -43,6 +43,17 @@ fn belt() -> Altered {
     Altered::new(Vessel::new(resting()).with("belt", belt.expect("a belt")).expect("a vessel"))
 }
 
+/// Four equal pegs that slide through a periodic box.
+fn teeth() -> Altered {
+    let slide = Sinusoidal::new(0.7, 2.0).expect("an amplitude");
+    let empty = Vessel::new(resting().with_periodic_sides().expect("periodic sides"));
+    Altered::new((0..4).fold(empty, |vessel, number| {
+        let place = DVec2::new(1.0 + 2.5 * f64::from(number), 6.0);
+        let peg = Part::peg(place, 0.8).and_then(|peg| peg.with_motion(DVec2::X, slide));
+        vessel.with(format!("tooth {number}"), peg.expect("a peg")).expect("a vessel")
+    }))
+}
+
 /// A box whose lid moves.
 fn lidded() -> Altered {
     let motion = Sinusoidal::new(0.3, 4.0).expect("an amplitude");
@@ -306,6 +317,8 @@ fn areas(boundaries: &mut Boundaries) {
     }
     let hinged = Altered { points: Box::new(|_| 0.0), ..lidded() };
     boundaries.part("hinge", "the points of the walls stay while the lid moves", hinged);
+    let stuck = Altered { points: Box::new(|_| 0.0), ..teeth() };
+    boundaries.part("hinge", "the points of equal teeth stay while the teeth slide", stuck);
     let hasty = Altered { points: Box::new(|time| 2.9 * time), ..lidded() };
     boundaries.part("hinge", "the points of the walls come back before the lid", hasty);
 }
