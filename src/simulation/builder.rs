@@ -21,8 +21,8 @@ use crate::{Disk, Gravity, ParameterError};
 /// of the disk would be found.
 const SLOWEST: f64 = 1e-100;
 
-/// Largest spacing of numbers in the domain, relative to the smallest radius. Coarser positions would turn
-/// the normals of collisions, without an overlap that the engine could notice.
+/// Largest spacing of numbers near the position of a disk, relative to its radius. Coarser positions would
+/// turn the normals of collisions, without an overlap that the engine could notice.
 const COARSEST: f64 = 1e-3;
 
 /// Largest number of walls that a boundary may have.
@@ -122,8 +122,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     /// - a disk moves at a speed below 1e-100 that is not 0, or the disks are so fast that times as late as
     ///   the start are too coarse for them;
     /// - there are too many disks or walls, two disks have the same id, or there are no ids left;
-    /// - the domain is not finite (only its top may be infinite), is too small for the disks, or is so far
-    ///   from the origin that positions in it are too coarse for them;
+    /// - the domain is not finite (only its top may be infinite), or is too small for the disks;
+    /// - a disk is so far from the origin that positions there are too coarse for its radius;
     /// - a disk is outside, overlaps a wall or another disk, or just fills a hollow of a wall; the error
     ///   names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
@@ -173,7 +173,6 @@ pub(super) fn fit<B: Boundary + ?Sized>(
 ) -> Result<(usize, Cells), BuildError> {
     let wall_count = count_walls(boundary)?;
     check_ids(disks)?;
-    check_places(&boundary.domain(), disks)?;
     check_inside(boundary, disks, offset)?;
     let cells = cells_around(boundary, disks)?;
     check_overlaps(boundary, disks, &cells)?;
@@ -185,22 +184,6 @@ pub(super) fn check_speeds(velocities: impl IntoIterator<Item = DVec2>) -> Resul
     let mut speeds = velocities.into_iter().map(|velocity| velocity.abs().max_element());
     let slow = speeds.find(|&speed| speed > 0.0 && speed < SLOWEST);
     slow.map_or(Ok(()), |speed| Err(ParameterError::new("speed of a disk", "0 or at least 1e-100", speed)))
-}
-
-/// Checks that positions in the domain are not too coarse for the disks.
-fn check_places(domain: &Domain, disks: &[Disk]) -> Result<(), ParameterError> {
-    let edges = [domain.left, domain.right, domain.bottom, domain.top].map(f64::abs);
-    let farthest = edges.into_iter().filter(|edge| edge.is_finite()).fold(0.0, f64::max);
-    let smallest = disks.iter().map(Disk::radius).fold(f64::INFINITY, f64::min);
-    let spacing = farthest * f64::EPSILON;
-    let requirement = "at most 1e-3 of the smallest radius: put the domain nearer to the origin";
-    accept(
-        spacing <= COARSEST * smallest,
-        "spacing of numbers at the edges of the domain",
-        requirement,
-        spacing,
-    )
-    .map(drop)
 }
 
 /// Checks that no two disks have the same id.
@@ -258,6 +241,8 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
+        let spacing = f64::EPSILON * position.abs().max_element();
+        accept(spacing <= COARSEST * radius, "spacing of positions", "at most 1e-3 of a radius", spacing)?;
         // A disk that is about to pass a periodic side may be beyond that side by rounding.
         if !domain.contains(position, TOUCHING * radius) {
             return Err(BuildError::Outside { disk, x: position.x, y: position.y, domain });

@@ -187,7 +187,7 @@ fn positions_that_are_too_coarse_are_refused() {
     };
     assert!(at(1e3).is_ok());
     let refused = at(1e8).unwrap_err().to_string();
-    assert!(refused.contains("spacing of numbers at the edges of the domain"), "{refused}");
+    assert!(refused.contains("spacing of positions"), "{refused}");
 }
 
 /// Dust beside a giant needs no epochs as short as the dust is fine: places in that box have no such digits.

@@ -107,17 +107,8 @@ impl Grid {
     }
 
     pub(in crate::simulation) fn place_of(&self, position: DVec2) -> Place {
-        // Nearly all edges are a pitch apart. Rows high above an open container are not, and rounding may put
-        // a position at an edge on its other side: there, the edges are searched.
-        let along = |edges: &[f64], pitch: f64, x: f64| {
-            let inner = &edges[1..edges.len() - 1];
-            let first = inner.first().copied().unwrap_or(f64::INFINITY);
-            let guess = (((x - first) / pitch + 1.0) as usize).min(inner.len());
-            let is_there = edges[guess] <= x && x < edges[guess + 1];
-            1 + if is_there { guess } else { inner.partition_point(|&edge| edge <= x) } as u32
-        };
         let DVec2 { x, y } = self.layout.pitch;
-        Place { column: along(&self.column_edges, x, position.x), row: along(&self.row_edges, y, position.y) }
+        Place { column: among(&self.column_edges, x, position.x), row: among(&self.row_edges, y, position.y) }
     }
 
     #[inline]
@@ -204,4 +195,15 @@ fn brought_back(line: u32, count: u32) -> (u32, i32) {
         line if line > count => (1, 1),
         line => (line, 0),
     }
+}
+
+/// Returns the number of the cell along one side of the grid, from the edges of the cells and their pitch.
+fn among(edges: &[f64], pitch: f64, position: f64) -> u32 {
+    // Nearly all edges are a pitch apart. Rows high above an open container are not, and rounding may put a
+    // position at an edge on its other side: there, the edges are searched.
+    let inner = &edges[1..edges.len() - 1];
+    let first = inner.first().copied().unwrap_or(f64::INFINITY);
+    let guess = (((position - first) / pitch + 1.0) as usize).min(inner.len());
+    let is_there = edges[guess] <= position && position < edges[guess + 1];
+    1 + if is_there { guess } else { inner.partition_point(|&edge| edge <= position) } as u32
 }
