@@ -216,11 +216,10 @@ impl<'a> Trial<'a> {
     /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or
     /// end at the latest.
     pub(super) fn longest(&self, flight: &Flight) -> f64 {
-        let longest = if self.is_struck { SOON } else { LONGEST } * self.length() / self.speed;
+        let mut longest = if self.is_struck { SOON } else { LONGEST } * self.length() / self.speed;
         let (domain, start) = (self.domain, flight.time());
         let (place, velocity) = (flight.position(start), flight.velocity(start));
         let pull = flight.acceleration();
-        let mut longest = longest;
         if domain.periodic_sides {
             let ahead = if velocity.x > 0.0 { domain.right - place.x } else { place.x - domain.left };
             let nearer = (domain.right - place.x).min(place.x - domain.left);
