@@ -68,7 +68,7 @@ mod smooth;
 mod speed_dependent;
 mod tangential_response;
 
-pub(crate) use body::{Body, Material, collide_bodies};
+pub(crate) use body::{Body, Material, after, collide_bodies, contact_of, momentum};
 pub use contact::Contact;
 pub use contact_duration::ContactDuration;
 pub use elastic::Elastic;

@@ -63,7 +63,12 @@ impl Body {
 
 /// Returns the contact of two bodies. The `normal` points from the second to the first.
 #[inline]
-fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material)) -> Contact {
+pub(crate) fn contact_of(
+    normal: DVec2,
+    time_since_last_collision: f64,
+    first: (&Body, &Material),
+    second: (&Body, &Material),
+) -> Contact {
     let approach = second.0.velocity - first.0.velocity;
     let closing = approach.dot(normal);
     // Bodies that touch may be parting, by rounding or because the caller did not check. A rule must not get
@@ -83,6 +88,7 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
             1.0 / (first.1.inverse_inertia + second.1.inverse_inertia),
             first.1.spin_response - second.1.spin_response,
         )
+        .with_time_since_last_collision(time_since_last_collision)
 }
 
 /// Returns `body` after an impulse along the normal and its perpendicular, and a couple. A tangential impulse
@@ -94,6 +100,18 @@ fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64, couple
     // result.
     let spin = if couple == 0.0 { spin } else { spin - couple * material.inverse_inertia };
     Body { velocity: body.velocity + kick * material.inverse_mass, angular_velocity: spin }
+}
+
+/// Returns the momentum that the first body receives.
+#[inline]
+pub(crate) fn momentum(normal: DVec2, impulse: &Impulse) -> DVec2 {
+    normal * impulse.normal() + normal.perp() * impulse.tangential()
+}
+
+/// Returns the first body after an impulse.
+#[inline]
+pub(crate) fn after(body: &Body, material: &Material, normal: DVec2, impulse: &Impulse) -> Body {
+    kicked(body, material, momentum(normal, impulse), impulse.tangential(), impulse.couple())
 }
 
 /// Two bodies after a collision, with the contact and the impulse.
@@ -113,12 +131,12 @@ pub(crate) fn collide_bodies<R: CollisionRule + ?Sized>(
     first: (&Body, &Material),
     second: (&Body, &Material),
 ) -> Outcome {
-    let contact = contact(normal, first, second).with_time_since_last_collision(time_since_last_collision);
+    let contact = contact_of(normal, time_since_last_collision, first, second);
     let impulse = rule.impulse(&contact);
-    let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
+    let back = -momentum(normal, &impulse);
     Outcome {
-        first: kicked(first.0, first.1, kick, impulse.tangential(), impulse.couple()),
-        second: kicked(second.0, second.1, -kick, impulse.tangential(), -impulse.couple()),
+        first: after(first.0, first.1, normal, &impulse),
+        second: kicked(second.0, second.1, back, impulse.tangential(), -impulse.couple()),
         contact,
         impulse,
     }

@@ -111,9 +111,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
         if self.scratch.found[0].len() < room {
-            for found in &mut self.scratch.found {
-                found.resize(room, 0);
-            }
+            self.enlarge_room(room);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn enlarge_room(&mut self, room: usize) {
+        for found in &mut self.scratch.found {
+            found.resize(room, 0);
         }
     }
 

@@ -8,7 +8,7 @@ use super::prediction::nearest_image;
 use super::state::{Bodies, Clock};
 use super::{FailedCollision, RunError};
 use crate::boundary::{Impact, Response, Surface, Thermal};
-use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, collide_bodies};
+use crate::collision::{Body, CollisionRule, Impulse, Material, after, collide_bodies, contact_of, momentum};
 use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
@@ -99,6 +99,7 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
 }
 
 /// Returns a disk that a wall has captured. Both move on together, so a wall with a mass gains no energy.
+#[inline]
 fn captured(arriving: &Body, surface: &Surface<'_>, mass: f64) -> Body {
     let (against, normal) = (arriving.velocity - surface.velocity, surface.normal);
     let [along, across] = [surface.mass, surface.tangential_mass].map(|wall| mass / (mass + wall));
@@ -125,32 +126,21 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let partner = &Body { velocity: surface.velocity, angular_velocity: spin_of(surface) };
     let masses = [surface.mass, surface.tangential_mass];
     let wall = &Material::of_wall(surface.kind, surface.radius, masses);
-    let against = |rule: &dyn CollisionRule| {
-        collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
+    let contact = contact_of(surface.normal, since, (&arriving, &material), (partner, wall));
+    let kicked_by = |impulse: Impulse| (after(&arriving, &material, surface.normal, &impulse), impulse);
+    // Thermal walls and sinks decide the motion, and the impulse follows from it.
+    let leading_to = |leaving: Body| {
+        let kick = (leaving.velocity - arriving.velocity) * mass;
+        (leaving, Impulse::new(kick.dot(surface.normal), kick.dot(surface.normal.perp())))
     };
-    let (leaving, contact, impulse) = match surface.response {
-        // Thermal walls and sinks decide the motion, and the impulse follows from it. The contact is the same
-        // under any rule.
-        Response::Thermal(_) | Response::Absorbing => {
-            let leaving = match surface.response {
-                Response::Thermal(thermal) => {
-                    emitted(&thermal, &arriving, surface, [mass, inertia, material.radius], generator)
-                }
-                _ => captured(&arriving, surface, mass),
-            };
-            let kick = (leaving.velocity - arriving.velocity) * mass;
-            let impulse = Impulse::new(kick.dot(surface.normal), kick.dot(surface.normal.perp()));
-            (leaving, against(&Elastic).contact, impulse)
+    let (leaving, impulse) = match surface.response {
+        Response::Thermal(thermal) => {
+            let properties = [mass, inertia, material.radius];
+            leading_to(emitted(&thermal, &arriving, surface, properties, generator))
         }
-        Response::Rule(own) => {
-            let outcome = against(own);
-            (outcome.first, outcome.contact, outcome.impulse)
-        }
-        Response::Shared => {
-            let outcome =
-                collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall));
-            (outcome.first, outcome.contact, outcome.impulse)
-        }
+        Response::Absorbing => leading_to(captured(&arriving, surface, mass)),
+        Response::Rule(own) => kicked_by(own.impulse(&contact)),
+        Response::Shared => kicked_by(rule.impulse(&contact)),
     };
     let collision = Collision {
         time: clock.time(),
@@ -229,8 +219,8 @@ pub(super) fn failed(collision: &Collision, wall: Option<String>) -> RunError {
 #[inline]
 pub(super) fn impact_of(collision: &Collision, wall: usize, offset: f64) -> Impact {
     let impulse = collision.impulse;
-    let momentum = -(collision.normal * impulse.normal() + collision.normal.perp() * impulse.tangential());
-    Impact::new(wall, momentum, collision.partner_position(), offset).with_couple(impulse.couple())
+    Impact::new(wall, -momentum(collision.normal, &impulse), collision.partner_position(), offset)
+        .with_couple(impulse.couple())
 }
 
 /// Returns the motion with which a disk leaves a thermal wall.

@@ -5,8 +5,11 @@
 //! indices are then out of date: their collision count does not match the disk that has this index now. The
 //! engine replaces them when they are due, as for any partner that has collided since.
 
+use glam::DVec2;
+
 use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
+use super::prediction::nearest_image;
 use super::{Inlet, Simulation};
 use crate::boundary::{Boundary, Probe};
 use crate::collision::CollisionRule;
@@ -103,10 +106,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (position, radius, now) = (disk.position(), disk.radius(), self.clock.now);
         let found = &mut self.scratch.found[0];
         let count = self.cells.near(position, 2.0 * radius, found);
-        let domain = self.boundary.domain();
+        let periods = self.cells.grid().periods();
         let is_free = |other: usize| {
-            let apart = domain.separation(position, self.bodies.position(other, now)).length();
-            apart >= radius + self.bodies.radius(other)
+            let apart = self.bodies.position(other, now) - position;
+            let apart = DVec2::new(nearest_image(apart.x, periods.x), nearest_image(apart.y, periods.y));
+            apart.length() >= radius + self.bodies.radius(other)
         };
         found[..count].iter().all(|&other| is_free(other as usize))
             && self.boundary.overlap(&Probe::of(disk, now)).is_none()
