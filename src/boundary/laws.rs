@@ -8,6 +8,7 @@ mod flight;
 mod meetings;
 mod pair;
 mod reaction;
+mod seen;
 mod surface;
 mod trial;
 
@@ -108,8 +109,7 @@ pub fn check<B: Boundary + ?Sized>(
         check_disk(&mut trial, &mut random, number).map_err(|violation| trial.told(violation))?;
     }
     trial.is_struck = false;
-    trial.begin(0.0)?;
-    trial.check_names()
+    trial.begin(0.0)
 }
 
 /// Checks the flights of one disk, and some areas.

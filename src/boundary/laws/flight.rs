@@ -4,9 +4,10 @@ use glam::DVec2;
 
 use super::LATEST;
 use super::reaction::check_reaction;
+use super::seen::{Seen, name};
 use super::surface::check_surface;
-use super::trial::{PART, Trial, in_words, restarted};
-use crate::boundary::{Boundary, Overlap, Response, Surface, Touch};
+use super::trial::{PART, Trial, restarted};
+use crate::boundary::{Boundary, Overlap, Response, Touch};
 use crate::violation::require;
 use crate::{Flight, Violation};
 
@@ -17,14 +18,8 @@ const SAMPLES: u32 = 200;
 /// touch happens, and whether it happens.
 const GRAZING: f64 = 1e-2;
 
-/// Largest relative error of a velocity with another time origin.
-const SAME: f64 = 1e-9;
-
 /// Closing speeds of flights that graze a wall, as fractions of the speed along it.
 const GRAZES: [f64; 4] = [3e-2, 3e-3, 3e-4, 3e-5];
-
-/// Number of contacts in which the rule of a wall is compared.
-const CONTACTS: usize = 20;
 
 /// A touch, and how the disk meets the wall.
 struct Meeting {
@@ -142,7 +137,7 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     let is_closed = trial.depth(place, trial.rounding(), time).is_some();
     require!(PART, "no early touch", is_closed; "the gap to wall {wall} is open at {time:?}, on {flight:?}");
     check_surface(trial, touch, place)?;
-    trial.check_seam_velocities(touch, place)?;
+    trial.check_seams(place, time)?;
     let surface = trial.boundary.surface(wall, place, time);
     let velocity = flight.velocity(time);
     let rate = (velocity - surface.velocity).dot(surface.normal);
@@ -173,7 +168,10 @@ fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result
     let soon = time + slack(trial, meeting);
     for start in [*flight, restarted(flight, time)] {
         let found = trial.first_touch(&start, soon)?;
-        let is_found = found.is_some_and(|again| (time - slack(trial, meeting)..=soon).contains(&again.time));
+        let is_same = |other| other == wall || name(trial, meeting.touch, meeting.place).is_none();
+        let is_found = found.is_some_and(|again| {
+            (time - slack(trial, meeting)..=soon).contains(&again.time) && is_same(again.wall)
+        });
         require!(PART, "no missed touch", is_found;
             "wall {wall} is touched at {time:?}, but a search until {soon:?} finds {found:?}, on {start:?}");
     }
@@ -201,22 +199,15 @@ fn check_origin(
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());
-    let response = |trial: &Trial<'_>, meeting: &Meeting, shift: f64| {
+    let seen = |trial: &Trial<'_>, meeting: &Meeting, shift: f64| {
         let Touch { wall, time, .. } = meeting.touch;
-        let Surface { response, .. } = trial.boundary.surface(wall, meeting.place, time + shift);
-        // Only rules are compared as text: a temperature that varies with time has a rounding error.
-        match response {
-            Response::Thermal(thermal) => {
-                (format!("Thermal, slip {}", thermal.slip()), thermal.temperature())
-            }
-            other => (in_words(&Surface::new(DVec2::Y, DVec2::ZERO).with_response(other), CONTACTS), 1.0),
-        }
+        Seen::of(trial, Touch::new(time + shift, wall), meeting.place)
     };
-    let before = meeting.map(|meeting| (seen(trial, meeting, 0.0), response(trial, meeting, 0.0)));
+    let before = meeting.map(|meeting| seen(trial, meeting, 0.0));
     trial.set_origin(origin - shift);
     let found = trial.first_touch(&shifted, until + shift)?;
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
-    let after = meeting.map(|meeting| (seen(trial, meeting, shift), response(trial, meeting, shift)));
+    let after = meeting.map(|meeting| seen(trial, meeting, shift));
     trial.set_origin(origin);
     trial.take_state(&state)?;
     let other = other?;
@@ -227,46 +218,18 @@ fn check_origin(
         (None, Some(one)) => one.is_grazing || until - later(one) < 2.0 * slack(trial, one),
         (Some(one), Some(other)) => {
             let apart = (one.touch.time - later(other)).abs();
-            one.is_grazing || other.is_grazing || apart <= slack(trial, one)
+            let is_same = one.touch.wall == other.touch.wall || name(trial, one.touch, one.place).is_none();
+            one.is_grazing || other.is_grazing || apart <= slack(trial, one) && is_same
         }
     };
-    let (time, other) = (meeting.map(|one| one.touch.time), other.as_ref().map(later));
+    let (one, other) = (meeting.map(|one| one.touch), other.map(|other| other.touch));
     require!(PART, "time origin", agree;
-        "an origin {shift:?} before {origin:?} moves a touch at {time:?} to {other:?}: {flight:?}");
-    let Some(((before, response), (after, other))) = before.zip(after) else { return Ok(()) };
-    let is_same = is_same(trial, &before, &after);
+        "an origin {shift:?} before {origin:?} changes the touch {one:?} to {other:?}: {flight:?}");
+    let is_same =
+        before.as_ref().zip(after.as_ref()).is_none_or(|(before, after)| before.agrees(after, trial));
     require!(PART, "time origin", is_same;
-        "an origin {shift:?} before {origin:?} changes the surface {before:?} to {after:?}: {flight:?}");
-    let late = 1.0 + trial.origin * trial.speed / trial.length();
-    let is_same = response.0 == other.0 && (response.1 - other.1).abs() <= SAME * late * response.1;
-    require!(PART, "time origin", is_same;
-        "an origin {shift:?} before {origin:?} changes the response {response:?} to {other:?}: {flight:?}");
+        "an origin {shift:?} before {origin:?} changes {before:?} to {after:?}: {flight:?}");
     Ok(())
-}
-
-/// Returns the surface at a touch as seen from an origin that is earlier by a shift, without its response.
-fn seen(trial: &Trial<'_>, meeting: &Meeting, shift: f64) -> Surface<'static> {
-    let Touch { time, wall, .. } = meeting.touch;
-    let surface = trial.boundary.surface(wall, meeting.place, time + shift);
-    let bare = Surface::new(surface.normal, surface.velocity).with_kind(surface.kind);
-    bare.with_radius(surface.radius).with_mass(surface.mass).with_tangential_mass(surface.tangential_mass)
-}
-
-/// Returns whether two surfaces are the same up to the rounding error of late times, which shifts a wall that
-/// moves.
-fn is_same(trial: &Trial<'_>, one: &Surface<'_>, other: &Surface<'_>) -> bool {
-    let late = 1.0 + trial.origin * trial.speed / trial.length();
-    let slack = SAME * (one.velocity.length() + trial.speed * late);
-    // The difference of two infinite numbers is NaN.
-    let is_near = |one: f64, other: f64| {
-        one == other || (one - other).abs() <= SAME * late * one.abs().min(other.abs())
-    };
-    one.normal.distance(other.normal) <= 100.0 * SAME * late
-        && one.velocity.distance(other.velocity) <= slack
-        && is_near(one.radius, other.radius)
-        && is_near(one.mass, other.mass)
-        && is_near(one.tangential_mass, other.tangential_mass)
-        && one.kind == other.kind
 }
 
 /// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding error.

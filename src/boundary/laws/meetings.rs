@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::seen::in_words;
 use super::trial::{PART, Trial};
 use crate::boundary::{Boundary, Impact, Overlap, Region, Touch};
 use crate::violation::require;
@@ -70,6 +71,20 @@ fn flights_about(trial: &Trial<'_>, time: f64, point: DVec2) -> Vec<Flight> {
         Flight::new(time, place, velocity, DVec2::ZERO, trial.radius).with_kind(trial.kind)
     };
     trial.places().filter(is_free).enumerate().map(flight).collect()
+}
+
+/// Returns the touches of disks all over the domain, with the surfaces there.
+pub(super) fn touches_about(
+    trial: &Trial<'_>,
+    touch: Touch,
+    place: DVec2,
+) -> Result<Vec<(Touch, String)>, Violation> {
+    let found = touches(trial, &flights_about(trial, touch.time, place))?;
+    let seen = |(flight, touch): (Flight, Touch)| {
+        let surface = trial.boundary.surface(touch.wall, flight.position(touch.time), touch.time);
+        (touch, in_words(&surface, 1))
+    };
+    Ok(found.into_iter().map(seen).collect())
 }
 
 /// Returns the flights that end at a touch, with this touch.

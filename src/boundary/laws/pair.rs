@@ -4,7 +4,8 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::trial::{PART, Trial, in_words};
+use super::seen::in_words;
+use super::trial::{PART, Trial};
 use super::{KINDS, Random};
 use crate::boundary::{Boundary, FirstTouch, Region};
 use crate::fingerprint::check_pair;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::meetings::check_meetings;
+use super::meetings::{check_meetings, touches_about};
 use super::trial::{PART, Trial};
 use crate::Violation;
 use crate::boundary::{Boundary, Impact, Reaction, Surface, Touch};
@@ -18,6 +18,9 @@ const SLOW: f64 = 1e-5;
 /// Largest error of a velocity after an impact, relative to the change and to the typical speed.
 const EXACT: f64 = 1e-8;
 const ROUNDING: f64 = 1e-12;
+
+/// Where the walls are at a time.
+type View = (Vec<(usize, f64)>, Vec<Option<DVec2>>);
 
 /// Checks that the wall reacts to an impact according to its masses, and that setting its state restores it.
 pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
@@ -35,6 +38,7 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
         check_blow(trial, touch, place, [-share, sign * share, 0.0])?;
         check_blow(trial, touch, place, [0.5 * share, 0.0, sign * share])?;
         let (changed, after) = (trial.boundary.state(), answers(trial, touch, place));
+        let seen = touches_about(trial, touch, place)?;
         check_state(trial, &state)?;
         for (state, expected) in [(&state, before), (&changed, after), (&state, before)] {
             trial.take_state(state)?;
@@ -42,6 +46,11 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
             require!(PART, "state", found == expected;
                 "wall {wall} is {found:?} at {time:?} when its state {state:?} is set, and was {expected:?}");
         }
+        trial.take_state(&changed)?;
+        let found = touches_about(trial, touch, place)?;
+        require!(PART, "state", found == seen;
+            "when the state {changed:?} of wall {wall} is set at {time:?}, disks touch {found:?}, and touched {seen:?} before");
+        trial.take_state(&state)?;
     }
     Ok(())
 }
@@ -62,7 +71,8 @@ fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2)
     let Touch { wall, time, .. } = touch;
     let (state, before) = (trial.boundary.state(), answers(trial, touch, place));
     let has_others = !state.is_empty();
-    let gaps_before = if has_others { gaps(trial, time) } else { Vec::new() };
+    let times = if has_others { &[time, time + 0.1 * trial.length() / trial.speed][..] } else { &[] };
+    let views: Vec<_> = times.iter().map(|&time| view(trial, time)).collect();
     let impulse = trial.speed * (trial.length() * normal.perp() - trial.length() * normal);
     let blow = Impact::new(wall, impulse, place - trial.radius * normal, time);
     trial.boundary.react(&blow.with_couple(trial.speed * trial.length()));
@@ -75,24 +85,31 @@ fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2)
     require!(PART, "reaction", is_same;
         "a blow on wall {wall} at {time:?}, whose masses are infinite, changes its velocity, angular velocity and depths \
          from {before:?} to {found:?}");
-    if !has_others {
-        return Ok(());
-    }
-    let moved = gaps(trial, time)
-        .iter()
-        .zip(gaps_before)
-        .map(|(now, before)| (now - before).abs())
-        .fold(0.0, f64::max);
+    let moved = times.iter().zip(&views).map(|(&time, before)| moved(before, &view(trial, time)));
+    let moved = moved.fold(0.0, f64::max);
     require!(PART, "reaction", moved <= trial.rounding();
         "a blow on wall {wall} at {time:?}, whose masses are infinite, moves other walls by {moved:?}");
     trial.take_state(&state)
 }
 
-/// Returns the distances from the walls at places all over the domain, at a time and soon after it.
-fn gaps(trial: &Trial<'_>, time: f64) -> Vec<f64> {
-    let times = [time, time + 0.1 * trial.length() / trial.speed];
-    let depth = |(place, time)| trial.depth(place, trial.length(), time).map_or(0.0, |found| found.depth);
-    trial.places().flat_map(|place| times.map(|time| (place, time))).map(depth).collect()
+/// Returns the nearest walls and their depths at places all over the domain, and the points of all walls.
+fn view(trial: &Trial<'_>, time: f64) -> View {
+    let nearest = |place| {
+        let found = trial.depth(place, trial.length(), time);
+        found.map_or((trial.wall_count, 0.0), |found| (found.with, found.depth))
+    };
+    let points = (0..trial.wall_count).map(|wall| trial.boundary.wall_point(wall, time));
+    (trial.places().map(nearest).collect(), points.collect())
+}
+
+/// Returns how far walls are from where they were in an earlier view; infinity if other walls are there.
+fn moved(before: &View, now: &View) -> f64 {
+    let way = |(&(was, from), &(is, to)): (&(usize, f64), &(usize, f64))| {
+        if was == is { (to - from).abs() } else { f64::INFINITY }
+    };
+    let ways = before.0.iter().zip(&now.0).map(way);
+    let points = before.1.iter().zip(&now.1);
+    ways.chain(points.filter_map(|(from, to)| Some(from.as_ref()?.distance((*to)?)))).fold(0.0, f64::max)
 }
 
 /// Returns numbers that show the present and the later motion of a wall: its velocity, its angular velocity,
@@ -124,8 +141,7 @@ fn check_blow(
     let arm = if radius.is_finite() { radius } else { trial.radius };
     let couple = couple * trial.speed * tangential * arm;
     let point = place - trial.radius * normal;
-    let depth = |trial: &Trial<'_>| trial.depth(place, trial.radius, time).map_or(0.0, |found| found.depth);
-    let depth_before = depth(trial);
+    let before = view(trial, time);
     let reaction = trial.boundary.react(&Impact::new(wall, impulse, point, time).with_couple(couple));
     let struck = trial.boundary.surface(wall, place, time);
     let gained = struck.velocity - velocity;
@@ -141,9 +157,9 @@ fn check_blow(
          {masses:?}, the velocity {found:?} along normal and tangent, not {expected:?}");
     let is_told = reaction == Reaction::Moved || gained.length() <= slack;
     require!(PART, "reaction", is_told; "wall {wall} answers {reaction:?} to a blow, and gains {gained:?}");
-    let moved = depth(trial) - depth_before;
-    require!(PART, "reaction", moved.abs() <= trial.rounding();
-        "a blow moves wall {wall} by {moved:?} at once");
+    let moved = moved(&before, &view(trial, time));
+    require!(PART, "reaction", moved <= trial.rounding();
+        "a blow on wall {wall} at {time:?} moves walls by {moved:?} at once");
     Ok(())
 }
 

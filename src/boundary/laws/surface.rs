@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::trial::{PART, Trial, in_words};
+use super::seen::{check_name, in_words};
+use super::trial::{PART, Trial};
 use crate::Violation;
 use crate::boundary::{Boundary, Response, Surface, Touch};
 use crate::violation::require;
@@ -37,11 +38,14 @@ const EXACT: f64 = 5e-8;
 const SAME: f64 = 1e-6;
 
 /// Checks the surface that a disk touches at this position.
-pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
+pub(super) fn check_surface(trial: &Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let surface = trial.boundary.surface(wall, place, time);
-    let words = in_words(&surface, CONTACTS);
-    let again = in_words(&trial.boundary.surface(wall, place, time), CONTACTS);
+    let found = || {
+        let overlap = trial.depth(place, WIDE * trial.radius, time);
+        format!("{} in {overlap:?}", in_words(&trial.boundary.surface(wall, place, time), CONTACTS))
+    };
+    let (words, again) = (found(), found());
     require!(PART, "repeatable", again == words; "the surface {words} is {again} when asked for again");
     let (normal, velocity, radius) = (surface.normal, surface.velocity, surface.radius);
     let is_unit = normal.is_finite() && (normal.length_squared() - 1.0).abs() <= UNIT;
@@ -55,6 +59,7 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
     let are_possible = radius != 0.0 && !radius.is_nan() && has_masses && is_guided;
     require!(PART, "surface", are_possible;
         "wall {wall} has the radius {radius:?} and the masses {masses:?}");
+    check_name(trial, touch, place)?;
     let around = Around { trial, wall, place, time };
     let step = FAR * trial.radius;
     let goes_in = around.at(-step * normal, 0.0).0 - around.at(DVec2::ZERO, 0.0).0 >= (1.0 - SLOPE) * step;
@@ -71,8 +76,6 @@ pub(super) fn check_surface(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -
         around.check_point(&surface)?;
         around.check_turning(&surface)?;
     }
-    let [touched, named] = &mut trial.touches[wall];
-    (*touched, *named) = (*touched + 1, *named + u32::from(is_named));
     Ok(())
 }
 

@@ -2,10 +2,9 @@
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch};
-use crate::collision::laws::hostile_contacts;
+use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Touch};
 use crate::violation::require;
-use crate::{Fingerprint, Flight, Kind, Violation};
+use crate::{Flight, Kind, Violation};
 
 pub(super) const PART: &str = "boundary";
 
@@ -19,7 +18,10 @@ const LONGEST: f64 = 3.0;
 /// leave the domain, and the disks of the check do not hold it up.
 pub(super) const SOON: f64 = 0.1;
 
-/// Largest relative difference between velocities on both sides of a seam.
+/// Largest depth, relative to the radius, at which the velocities on both sides of a seam are compared.
+const SHALLOW: f64 = 0.7;
+
+/// Largest relative difference between these velocities.
 const SAME: f64 = 5e-8;
 
 /// Largest number of searches that together follow one flight.
@@ -28,9 +30,6 @@ const MOST_SEARCHES: u32 = 10_000;
 /// Sizes of the regions around a touch, relative to the radius. The smallest region is a point, up to
 /// rounding.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
-
-/// Number of touches of a wall after which at least one overlap must have named the wall.
-const TOUCHES: u32 = 8;
 
 /// A boundary under test, and the numbers of the test.
 pub(super) struct Trial<'a> {
@@ -53,15 +52,12 @@ pub(super) struct Trial<'a> {
     pub(super) grazes: usize,
     /// Number of blows after which other disks were sent to the walls.
     pub(super) blows: usize,
-    /// For each wall, the number of its touches, and the number of touches at which an overlap named the
-    /// wall.
-    pub(super) touches: Vec<[u32; 2]>,
 }
 
 impl<'a> Trial<'a> {
     pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
-        let (touches, states) = (vec![[0; 2]; wall_count], [boundary.state(), boundary.state()]);
+        let states = [boundary.state(), boundary.state()];
         Self {
             boundary,
             domain,
@@ -76,7 +72,6 @@ impl<'a> Trial<'a> {
             is_struck: false,
             grazes: 0,
             blows: 0,
-            touches,
         }
     }
 
@@ -182,34 +177,31 @@ impl<'a> Trial<'a> {
         seams.into_iter().filter(|(is_seam, _)| *is_seam).map(|(_, places)| places)
     }
 
-    /// Checks that a disk finds the same walls on both sides of each seam.
+    /// Checks that a disk finds the same walls on both sides of each seam, with the same velocities.
     pub(super) fn check_seams(&self, place: DVec2, time: f64) -> Result<(), Violation> {
         for places in self.seams(place) {
-            let [here, there] =
-                places.map(|place| self.depth(place, 0.0, time).map_or(0.0, |found| found.depth));
+            let found = places.map(|place| self.depth(place, 0.0, time));
+            let [here, there] = found.map(|found| found.map_or(0.0, |found| found.depth));
             // Deep inside a wall, depths need not be continuous.
             let is_same = (here.min(self.radius) - there.min(self.radius)).abs() <= 2.0 * self.rounding();
             require!(PART, "periodic images", is_same;
                 "a disk of radius {:?} at {:?} is {here:?} deep in a wall at {time:?}, but {there:?} at its image {:?}",
                 self.radius, places[0], places[1]);
+            let [Some(one), Some(other)] = found else { continue };
+            // A smaller disk touches the wall there. Two walls may meet at a seam.
+            if here < SHALLOW * self.radius && one.with == other.with && one.with < self.wall_count {
+                self.check_velocities(one.with, places, time)?;
+            }
         }
         Ok(())
     }
 
-    /// Checks that a wall that disks touch on both sides of a seam has the same velocity there.
-    pub(super) fn check_seam_velocities(&self, touch: Touch, place: DVec2) -> Result<(), Violation> {
-        let Touch { wall, time, .. } = touch;
-        let is_touched = |place: &DVec2| {
-            let found = self.depth(*place, self.rounding(), time);
-            found.is_some_and(|found| found.with == wall && found.depth <= 2.0 * self.rounding())
-        };
-        for places in self.seams(place).filter(|places| places.iter().all(is_touched)) {
-            let [here, there] = places.map(|place| self.boundary.surface(wall, place, time).velocity);
-            let is_same = here.distance(there) <= SAME * (here.length() + self.speed);
-            require!(PART, "periodic images", is_same;
-                "wall {wall} moves at {here:?} at {:?}, time {time:?}, but at {there:?} at its image {:?}",
-                places[0], places[1]);
-        }
+    fn check_velocities(&self, wall: usize, places: [DVec2; 2], time: f64) -> Result<(), Violation> {
+        let [here, there] = places.map(|place| self.boundary.surface(wall, place, time).velocity);
+        let is_same = here.distance(there) <= SAME * (here.length() + self.speed);
+        require!(PART, "periodic images", is_same;
+            "wall {wall} moves at {here:?} at {:?}, time {time:?}, but at {there:?} at its image {:?}",
+            places[0], places[1]);
         Ok(())
     }
 
@@ -240,16 +232,6 @@ impl<'a> Trial<'a> {
         let count = self.wall_count;
         require!(PART, "constant walls", walls == count;
             "there were {count} walls, and now there are {walls}");
-        Ok(())
-    }
-
-    /// Checks that each wall that was touched often has been named by at least one overlap. At a single
-    /// touch, another wall may be equally deep.
-    pub(super) fn check_names(&self) -> Result<(), Violation> {
-        let unnamed = self.touches.iter().position(|&[touched, named]| touched >= TOUCHES && named == 0);
-        let wall = unnamed.unwrap_or_default();
-        require!(PART, "overlapped wall", unnamed.is_none();
-            "disks touch wall {wall}, but overlap others there");
         Ok(())
     }
 
@@ -314,15 +296,4 @@ fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
 pub(super) fn restarted(flight: &Flight, time: f64) -> Flight {
     let (place, velocity) = (flight.position(time), flight.velocity(time));
     Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
-}
-
-/// Returns all data of a surface as text; a rule is represented by a digest of its impulses in this number of
-/// contacts, since the impulses would fill a page.
-pub(super) fn in_words(surface: &Surface<'_>, contacts: usize) -> String {
-    let Response::Rule(rule) = surface.response else { return format!("{surface:?}") };
-    let impulses = hostile_contacts().take(contacts).map(|contact| rule.impulse(&contact));
-    let digest = impulses.fold(Fingerprint::of("impulses"), |digest, impulse| {
-        digest.number(impulse.normal()).number(impulse.tangential()).number(impulse.couple())
-    });
-    format!("{surface:?} with impulses of the digest {digest}")
 }
