@@ -130,8 +130,9 @@ use area::Curves;
 ///    angular velocity is the rate $`\Omega`$ at which these velocities turn the surface: the velocity along
 ///    the normal is larger by $`-\Omega d`$ at a point at a small distance $`d`$ along `normal.perp()`.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise, it gives the wall into which the
-///    disk reaches deepest, and the depth, which is positive. If several walls are equally deep, it gives any
-///    of them. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
+///    disk reaches deepest, and the depth, which is positive. If several walls are equally deep, it gives
+///    any of them; where walls lie in each other, `first_touch` names the same one, or one with the same
+///    surface. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
 ///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
 ///    overlaps none, up to the distance that the surfaces close in 16 roundings of the absolute time. On a
 ///    periodic side or end, the overlap is the same for both images of the disk: a wall at one side acts on

@@ -46,28 +46,31 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 /// random flights at about this speed and from rest.
 ///
 /// Each of four hundred disks, of the kinds 0 to 3, 7 and 300, flies from a free position, with or without
-/// gravity, at various times and speeds. Each wall that it touches reflects it, for up to four flights in a
-/// row. After some touches, it also grazes the wall. The check requires of each flight:
+/// gravity, at various speeds, at times up to a hundred times the time in which it crosses the domain, and
+/// seldom later. Each wall that it touches reflects it, for up to four flights in a row. After some touches,
+/// it also grazes the wall. The check requires of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again immediately if it
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
+///   Overlaps name the wall of the touch, or another wall with the same surface there: the check does not
+///   tell such walls apart.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along the normal is
 ///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
 ///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
 ///   to infinity at the edges of the domain. After a blow, `may_meet` of the wall that is hit also holds
 ///   where other disks touch walls that the blow moves.
-/// - With another time origin, the same flight touches at the same absolute time, and finds the same surface
-///   with the same response.
-/// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and `state`
-///   and `set_state` restore it. An impact on a wall whose normal and tangential masses are infinite changes
-///   neither the motion of its surface nor a gap, now or later. Other walls may move with the one that is
-///   hit, as parts of one body do. A stop that takes the impulse of a wall, as a
+/// - With another time origin, the same flight touches the same wall at the same absolute time, and finds the
+///   same surface with the same response.
+/// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and does not
+///   jump. `state` and `set_state` restore all walls. An impact on a wall whose normal and tangential masses
+///   are infinite changes neither the motion of its surface nor a gap, now or later. Other walls may move
+///   with the one that is hit, as parts of one body do. A stop that takes the impulse of a wall, as a
 ///   [`Piston`](crate::wall::Piston) has it, is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
-///   a periodic seam, a disk overlaps the same wall, and a wall that it touches on both sides has the same
+///   a periodic seam, a disk is equally deep in a wall, and a wall that it meets on both sides has the same
 ///   velocity there.
 ///
 /// If the boundary knows its free `area`, the check computes the same area from the gaps to the walls, which

@@ -171,6 +171,7 @@ fn honest_parts_pass() {
         judged(blind::motions::honest(), check_motion),
         judged(informed::motions::honest(), check_motion),
         judged(blind::boundaries::honest(), check_boundary),
+        judged(informed::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
         judged_drivings(blind::drivings::honest),
         judged_drivings(informed::drivings::honest),

@@ -55,8 +55,10 @@ pub(super) fn check_surface(trial: &Trial<'_>, touch: Touch, place: DVec2) -> Re
         "the velocity {velocity:?} of wall {wall} at {time:?}");
     let masses = [surface.mass, surface.tangential_mass];
     let is_guided = masses[1] == f64::INFINITY || !matches!(surface.response, Response::Thermal(_));
+    require!(PART, "surface", is_guided;
+        "wall {wall} is thermal, and has the tangential mass {:?}; thermal walls are guided", masses[1]);
     let has_masses = masses.iter().all(|&mass| mass > 0.0);
-    let are_possible = radius != 0.0 && !radius.is_nan() && has_masses && is_guided;
+    let are_possible = radius != 0.0 && !radius.is_nan() && has_masses;
     require!(PART, "surface", are_possible;
         "wall {wall} has the radius {radius:?} and the masses {masses:?}");
     check_name(trial, touch, place)?;

@@ -81,10 +81,11 @@ pub enum BoundaryFault {
         /// Time from the touch to the start of the flight; negative for a touch after the start.
         early_by: f64,
     },
-    /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
-    /// radius is zero or NaN.
+    /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, whose
+    /// radius is zero or NaN, or whose masses are not positive; or a thermal surface with a tangential mass.
     #[error(
-        "the surface of wall {wall} has the normal ({}, {}), which must be a unit vector, and the velocity {}",
+        "the surface of wall {wall} has the normal ({}, {}), which must be a unit vector, and the velocity {}; \
+         its radius may not be 0, its masses must be positive, and only walls that are not thermal have a tangential mass",
         Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
     )]
     Surface {

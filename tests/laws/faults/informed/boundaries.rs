@@ -1,6 +1,7 @@
 //! Boundaries that break their contract where a check may not look.
 
 mod acting;
+mod halves;
 
 use granular_edmd::boundary::{
     Boundary, FirstTouch, Obstacles, Overlap, Part, Probe, Region, Surface, Touch, Vessel, Wall,
@@ -73,7 +74,12 @@ pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
         regions,
         origins,
         acting::plant,
+        halves::plant,
     ])
+}
+
+pub(crate) fn honest() -> Vec<Planted<Walled>> {
+    List::grown(&[|boundaries: &mut Boundaries| boundaries.plant("halves of a drum", halves::honest())])
 }
 
 fn velocities(boundaries: &mut Boundaries) {

@@ -209,6 +209,14 @@ fn seams(boundaries: &mut Boundaries) {
         surface.velocity.x = 0.1 * position.x;
     });
     boundaries.part("seam", "a belt stretches up to a seam", Altered { surface, ..Altered::new(walls) });
+    let walls = Container::open(10.0).expect("a box").with_periodic_sides().expect("periodic sides");
+    let pegs = Obstacles::new(walls, [Disk::new(DVec2::new(0.0, 6.0), 1.5).expect("a radius")]);
+    let surface = Box::new(|surface: &mut Surface<'_>, position: DVec2, _| {
+        if surface.radius.is_finite() {
+            surface.velocity = if position.x < 5.0 { 0.2 } else { -0.2 } * surface.normal.perp();
+        }
+    });
+    boundaries.part("seam", "a peg turns backward at its image", Altered { surface, ..Altered::new(pegs) });
 }
 
 fn responses(boundaries: &mut Boundaries) {
