@@ -159,7 +159,7 @@ fn check_blow(
     require!(PART, "reaction", is_told; "wall {wall} answers {reaction:?} to a blow, and gains {gained:?}");
     let moved = moved(&before, &view(trial, time));
     require!(PART, "reaction", moved <= trial.rounding();
-        "a blow on wall {wall} at {time:?} moves walls by {moved:?} at once");
+        "a blow on wall {wall} at {time:?} moves walls at once, by {moved:?} (infinity if other walls are there)");
     Ok(())
 }
 
