@@ -6,7 +6,7 @@ use std::path::Path;
 use granular_edmd::Disk;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
-use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
 use granular_edmd::simulation::{Driving, Limits, RunEnd, RunError, Simulation};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -95,7 +95,8 @@ impl Riders {
 /// Runs until a limit.
 ///
 /// `is_under_way` is true if an earlier slice has begun the run. The observer sees one start and one end,
-/// however many slices there are. So does the companion, which each process makes anew.
+/// however many slices there are, and an end and a start at each kick of a driving. So does the companion,
+/// which each process makes anew.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
     limits: &Limits<'_>,
@@ -103,12 +104,17 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     observer: &mut O,
     is_under_way: &mut bool,
 ) -> Result<RunEnd, RunError> {
-    let mut sliced = Sliced { observer, is_under_way };
-    let driving = riders.driving.as_deref_mut();
+    let mut driving = riders.driving.as_deref_mut();
+    let kicks = driving.as_mut().map(|driving| {
+        let times = driving.times();
+        times.start_at(simulation.time());
+        *times
+    });
+    let mut sliced = Sliced { observer, is_under_way, kicks };
     let ended = match &mut riders.companion {
         None => run_to(simulation, limits, driving, &mut sliced),
         Some(companion) => {
-            let mut other = Sliced { observer: companion, is_under_way: &mut riders.is_under_way };
+            let mut other = Sliced { observer: companion, is_under_way: &mut riders.is_under_way, kicks };
             // A single additional event loop serves all companions.
             let both: &mut dyn Observer = &mut (&mut sliced, &mut other);
             let ended = run_to(simulation, limits, driving, both);
@@ -130,17 +136,18 @@ fn run_to<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
     }
 }
 
-/// A wrapper that shows its observer the start of the first slice only, and the end of none.
+/// A wrapper that hides from its observer that a run is cut into slices.
 struct Sliced<'a, O> {
     observer: &'a mut O,
     is_under_way: &'a mut bool,
+    /// The clock of the driving, with the kicks that the observer has not yet seen.
+    kicks: Option<SampleTimes>,
 }
 
 impl<O: Observer> Sliced<'_, O> {
     /// Reports the end of the run to the observer, unless a slice has merely used up its wall-clock time.
     fn end(self, ended: Result<RunEnd, RunError>, moment: &Snapshot<'_>) -> Result<RunEnd, RunError> {
-        *self.is_under_way = matches!(ended, Ok(RunEnd::WallClock));
-        if *self.is_under_way {
+        if matches!(ended, Ok(RunEnd::WallClock)) || !std::mem::take(self.is_under_way) {
             return ended;
         }
         self.observer.on_end(moment);
@@ -154,9 +161,21 @@ impl<O: Observer> Sliced<'_, O> {
 
 impl<O: Observer> Observer for Sliced<'_, O> {
     fn on_start(&mut self, start: &Snapshot<'_>) {
-        // A driven run starts anew after each kick.
         if !std::mem::replace(self.is_under_way, true) {
             self.observer.on_start(start);
+        }
+    }
+
+    fn on_end(&mut self, moment: &Snapshot<'_>) {
+        // The run reaches the time of a kick up to a rounding.
+        let is_due = |kicks: &&mut SampleTimes| {
+            let next = kicks.upcoming();
+            moment.time() >= next - 8.0 * f64::EPSILON * next.abs()
+        };
+        if let Some(kicks) = self.kicks.as_mut().filter(is_due) {
+            kicks.advance_past(kicks.upcoming());
+            *self.is_under_way = false;
+            self.observer.on_end(moment);
         }
     }
 

@@ -36,11 +36,34 @@ struct Gas {
     noise: f64,
 }
 
+/// The energy that kicks have brought in, and the energy before the next kick.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+struct Heating {
+    gained: f64,
+    before: Option<f64>,
+    kicks: u64,
+}
+
+fn energy_of(snapshot: &Snapshot<'_>) -> f64 {
+    snapshot.disks().iter().map(Disk::translational_energy).sum()
+}
+
+impl Observer for Heating {
+    fn on_start(&mut self, snapshot: &Snapshot<'_>) {
+        let gained = self.before.map_or(0.0, |before| energy_of(snapshot) - before);
+        self.gained += gained;
+        self.kicks += u64::from(gained != 0.0);
+    }
+    fn on_end(&mut self, snapshot: &Snapshot<'_>) {
+        self.before = Some(energy_of(snapshot));
+    }
+}
+
 impl Experiment for Gas {
     type Rule = Smooth;
     type Boundary = Container;
-    type Observer = ();
-    type Sample = f64;
+    type Observer = Heating;
+    type Sample = [f64; 3];
 
     fn revision() -> Fingerprint {
         Fingerprint::of("Gas")
@@ -55,14 +78,17 @@ impl Experiment for Gas {
         let disks = initial::lattice(&self.boundary()?, 40, 0.5)?;
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
-    fn observer(&self) -> Result<(), ExperimentError> {
-        Ok(())
+    fn observer(&self) -> Result<Heating, ExperimentError> {
+        Ok(Heating::default())
     }
-    fn sample(&self, snapshot: &Snapshot<'_>, (): &mut ()) -> f64 {
-        snapshot.mean(Disk::translational_energy)
+    fn sample(&self, snapshot: &Snapshot<'_>, heating: &mut Heating) -> [f64; 3] {
+        [snapshot.mean(Disk::translational_energy), heating.gained, heating.kicks as f64]
     }
     fn columns() -> Vec<Column<Self>> {
-        vec![Column::sampled("energy", "energy", |energy| *energy)]
+        vec![
+            Column::sampled("energy", "energy", |[energy, ..]: &[f64; 3]| *energy),
+            Column::of_sample("heat", "energy", |[_, heat, _]: &[f64; 3]| *heat),
+        ]
     }
     fn driving(&self, seed: u64) -> Result<Option<Box<dyn SavedDriving>>, ExperimentError> {
         if self.noise == 0.0 {
@@ -78,10 +104,26 @@ fn a_driven_gas_goes_on_with_its_noise() -> Result<(), AnyError> {
     let plan = plan.with_ramp(Ramp::new("noise", [0.0, 0.5], Course::Up)?)?;
     let plan = plan.with_axis(Axis::new("restitution", [0.8, 0.9])?)?;
     let (_scratch, study) = done_twice("driven-gas", &plan);
-    let energy = |ramp, value| study.record(ramp, value).unwrap().unwrap().mean(|energy| *energy).mean();
+    let energy = |ramp, value| study.record(ramp, value).unwrap().unwrap().mean(|sample| sample[0]).mean();
     // Without noise the gas cools; with it, the energy does not depend on the start.
     assert!(energy(0, 0) < 0.3 && energy(0, 1) > 2.0 * energy(0, 0), "{} {}", energy(0, 0), energy(0, 1));
     assert!(energy(1, 1) > energy(0, 1));
+    Ok(())
+}
+
+#[test]
+fn observers_of_a_driven_study_see_each_kick() -> Result<(), AnyError> {
+    let plan = Plan::new(Gas { restitution: 1.0, noise: 0.5 }, Protocol::new(2, 6, 2)?, 1)?;
+    let (_scratch, study) = done_twice("kicks", &plan);
+    let record = study.record(0, 0)?.ok_or("no record")?;
+    let [first_energy, first_heat, first_kicks] = record.samples()[0];
+    for (&[energy, heat, kicks], time) in record.samples().iter().zip(record.times()) {
+        // Kicks alone bring energy into an elastic gas.
+        let gained = 40.0 * (energy - first_energy);
+        assert!((heat - first_heat - gained).abs() < 1e-9 * (1.0 + gained), "{heat} {gained}");
+        let between = (time / 0.15).floor() - (record.times()[0] / 0.15).floor();
+        assert!((kicks - first_kicks - between).abs() <= 1.0, "{kicks} of {between}");
+    }
     Ok(())
 }
 
@@ -318,8 +360,8 @@ impl Experiment for Counted {
     fn observer(&self) -> Result<(), ExperimentError> {
         Ok(())
     }
-    fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut ()) -> f64 {
-        self.0.sample(snapshot, observer)
+    fn sample(&self, snapshot: &Snapshot<'_>, (): &mut ()) -> f64 {
+        energy_of(snapshot)
     }
     fn columns() -> Vec<Column<Self>> {
         Vec::new()
