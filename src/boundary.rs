@@ -134,9 +134,10 @@ use area::Curves;
 ///    any of them; where walls lie in each other, `first_touch` names the same one, or one with the same
 ///    surface. It agrees with `first_touch` for disks of each kind: at a touch, a disk that is larger by
 ///    $`10^{-9}`$ of the size of the domain overlaps the wall, and a disk that is smaller by the same amount
-///    overlaps none, up to the distance that the surfaces close in 16 roundings of the absolute time. On a
-///    periodic side or end, the overlap is the same for both images of the disk: a wall at one side acts on
-///    disks at the other.
+///    overlaps none, up to the distance that the surfaces close in 16 roundings of the absolute time. A
+///    smaller disk that touches the wall at the same point overlaps as much: a wall that lets some disks pass
+///    chooses them by their kind, not by their size. On a periodic side or end, the overlap is the same for
+///    both images of the disk: a wall at one side acts on disks at the other.
 /// 7. Another origin changes only the numerical values of times: the same flight touches the same wall at the
 ///    same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.

@@ -38,9 +38,11 @@ const PLACES: usize = 10_000;
 /// Largest time origin of a flight, in units of the time that a disk takes to cross the domain.
 const LATEST: f64 = 100.0;
 
-/// Kinds of the disks, and their sizes relative to the given radius. The check cycles through both lists.
+/// Kinds of the disks, through which the check cycles.
 const KINDS: [u16; 8] = [0, 1, 0, 2, 0, 3, 300, 7];
-const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
+
+/// Smallest size of the disks, relative to the given radius.
+const SMALLEST: f64 = 0.3;
 
 /// Checks that a boundary keeps its contract with disks of this radius and of radii down to 0.3 times it, on
 /// random flights at about this speed and from rest.
@@ -55,7 +57,7 @@ const SIZES: [f64; 5] = [1.0, 1.0, 1.0, 0.7, 0.3];
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again immediately if it
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
 ///   Overlaps name the wall of the touch, or another wall with the same surface there: the check does not
-///   tell such walls apart.
+///   tell such walls apart. A smaller disk touches the wall at the same point.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along the normal is
 ///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
 ///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
@@ -117,7 +119,8 @@ pub fn check<B: Boundary + ?Sized>(
 
 /// Checks the flights of one disk, and some areas.
 fn check_disk(trial: &mut Trial<'_>, random: &mut Random, number: usize) -> Result<(), Violation> {
-    trial.radius = trial.largest * SIZES[number % SIZES.len()];
+    let sizes = [1.0, 1.0, random.between(SMALLEST, 1.0), 0.7, SMALLEST];
+    trial.radius = trial.largest * sizes[number % sizes.len()];
     trial.kind = Kind::new(KINDS[number % KINDS.len()]);
     trial.is_struck = trial.states[0] != trial.states[1] && number % 3 == 2;
     let Some((origin, flight)) = random.flight(trial)? else {

@@ -66,8 +66,10 @@ impl MeanSquaredDisplacement {
     /// D = \frac{\langle r^2(t)\rangle - \langle r^2(t/2)\rangle}{4\,(t - t/2)} .
     /// ```
     ///
-    /// The longest lag $`t`$ should be many times the mean free time. In two dimensions, the slope keeps
-    /// growing slowly with $`t`$ (Alder and Wainwright 1970), so report $`t`$ together with the coefficient.
+    /// Both displacements end at the same samples, so the difference of the means in [`Self::iter`], which
+    /// has more samples of $`t/2`$, differs within the error. The longest lag $`t`$ should be many times the
+    /// mean free time. In two dimensions, the slope keeps growing slowly with $`t`$ (Alder and Wainwright
+    /// 1970), so report $`t`$ together with the coefficient.
     pub fn diffusion_coefficient(&self) -> Estimate {
         self.diffusion.estimate()
     }

@@ -22,17 +22,17 @@ const LARGEST: f64 = 1e100;
 ///    $`\epsilon_B`$ itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
 /// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
 ///    error from blocks of a quarter of the size by at most one and a half times its uncertainty;
-/// 3. for all larger blocks, the error exceeds $`\epsilon_B`$ by at most twice its own uncertainty;
+/// 3. no error from larger blocks exceeds $`\epsilon_B`$ by more than twice the uncertainty of that error;
 /// 4. the samples at the end that fill no block change the mean by at most $`\epsilon_B`$.
 ///
 /// The first condition suffices for a series with one correlation time. The other conditions detect a second,
 /// longer correlation time with a small share of the variance, such as heat that slowly comes and goes in a
-/// gas whose collisions are otherwise independent. Sizes with fewer than eight blocks are not considered.
+/// gas whose collisions are otherwise independent. They do not consider sizes with fewer than eight blocks.
 ///
-/// An error is [converged](Estimate::is_converged) if there are such blocks, and if the largest error of any
-/// blocks leaves at least 120 independent samples, $`n_i`$. The error is then multiplied by $`1 + 60/n_i`$,
-/// because errors that are small by chance pass this test more often than others. If an error is not
-/// converged, it is the largest that was found.
+/// An error is [converged](Estimate::is_converged) if there are such blocks, and if the largest error from
+/// eight or more blocks leaves at least 120 independent samples, $`n_i`$. The error is then multiplied by
+/// $`1 + 60/n_i`$, because errors that are small by chance pass this test more often than others. An error
+/// that is not converged is the largest that was found, even from two blocks.
 ///
 /// The method was tried on 4000 Gaussian series of $`n`$ samples with one correlation time ($`\tau`$ samples
 /// are worth one), and on series with two times (70 % and 30 % of the variance, the second time $`\tau_2`$ 30

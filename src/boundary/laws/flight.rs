@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use super::LATEST;
 use super::reaction::check_reaction;
 use super::seen::{Seen, name};
 use super::surface::check_surface;
 use super::trial::{PART, Trial, restarted};
+use super::{LATEST, SMALLEST};
 use crate::boundary::{Boundary, Overlap, Response, Touch};
 use crate::violation::require;
 use crate::{Flight, Violation};
@@ -139,6 +139,12 @@ fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<M
     check_surface(trial, touch, place)?;
     trial.check_seams(place, time)?;
     let surface = trial.boundary.surface(wall, place, time);
+    let small = SMALLEST * trial.largest;
+    let nearer = place - (trial.radius - small) * surface.normal;
+    let is_closed = trial.depth(nearer, small - trial.radius + 2.0 * trial.rounding(), time).is_some();
+    require!(PART, "sizes", is_closed;
+        "a disk of radius {:?} at {place:?}, {time:?}, touches wall {wall}, but one of radius {small:?} at the same point does \
+         not: walls tell disks apart by their kinds, not by their sizes", trial.radius);
     let velocity = flight.velocity(time);
     let rate = (velocity - surface.velocity).dot(surface.normal);
     let speed = velocity.length() + surface.velocity.length();

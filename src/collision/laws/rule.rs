@@ -109,6 +109,9 @@ impl Promises {
 
     /// Returns the same promises for disks of these kinds only; the default is all kinds.
     ///
+    /// Name the kinds on which a rule depends: all contacts are then between these kinds. Otherwise, most
+    /// pairs of kinds meet in one ordinary contact only, which does not show a fault at other speeds.
+    ///
     /// ```
     /// use granular_edmd::Kind;
     /// use granular_edmd::collision::laws::{Promises, check};
