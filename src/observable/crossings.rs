@@ -20,8 +20,8 @@ use crate::{Disk, ParameterError};
 /// is found exactly, even if a disk turns back between two samples. A center on the line counts as on the
 /// left, so a disk that turns back there has crossed the line twice or not at all. An interval counts only if
 /// it was watched from its start to its end. In an [`OfKind`](super::OfKind), only disks of one kind count. A
-/// run ends with an error if disks change other than by the collisions that the observer receives: in a
-/// [`BetweenKinds`](super::BetweenKinds), which hides other collisions, or under the driving of a study.
+/// run ends with an error if disks change other than by the collisions that the observer receives, as in a
+/// [`BetweenKinds`](super::BetweenKinds), which hides other collisions.
 ///
 /// A disk that a wall [absorbs](crate::boundary::Part::absorbing_centers) at the segment has not crossed it:
 /// count such disks with [`Arrivals`](super::Arrivals).

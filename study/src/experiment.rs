@@ -187,7 +187,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the driving of a value, which kicks all disks at set times, or `None`.
     ///
     /// Each value has a separate driving with a separate seed. The driving begins with the value and is saved
-    /// with it.
+    /// with it. Observers see the end and the start of a run at each kick, as in
+    /// [`run_driven`](granular_edmd::Simulation::run_driven).
     ///
     /// # Errors
     /// If these parameters do not give one.
