@@ -55,8 +55,10 @@ pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize
 fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting>, Violation> {
     let until = flight.time() + trial.longest(flight);
     let found = trial.first_touch(flight, until)?;
-    if let Some(touch) = found {
-        check_touch(trial, flight, touch, until)?;
+    if let Some(Touch { time, .. }) = found {
+        let is_inside = time >= flight.time() && time <= until;
+        require!(PART, "touch time", is_inside;
+            "a touch at {time:?} is not on the flight until {until:?}: {flight:?}");
     }
     check_way(trial, flight, found.map_or(until, |touch| touch.time), found)?;
     if let Some(touch) = found.filter(|&touch| is_sink_for_centers(trial, flight, touch)) {
@@ -82,21 +84,6 @@ fn is_sink_for_centers(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool
     let surface = trial.boundary.surface(touch.wall, place, touch.time);
     let is_open = trial.depth(place, trial.rounding(), touch.time).is_none();
     matches!(surface.response, Response::Absorbing) && is_open
-}
-
-fn check_touch(
-    trial: &Trial<'_>,
-    flight: &Flight,
-    Touch { time, wall, .. }: Touch,
-    until: f64,
-) -> Result<(), Violation> {
-    let is_inside = time >= flight.time() && time <= until;
-    require!(PART, "touch time", is_inside;
-        "a touch at {time:?} is not on the flight until {until:?}: {flight:?}");
-    let count = trial.wall_count;
-    require!(PART, "touched wall", wall < count;
-        "wall {wall} is touched, but there are {count}, on {flight:?}");
-    Ok(())
 }
 
 /// Returns the distance by which a gap closes during the rounding error of an absolute time. The phase of a

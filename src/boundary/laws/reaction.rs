@@ -31,6 +31,7 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
         return check_fixed(trial, touch, place, surface.normal);
     }
     check_meetings(trial, touch, place)?;
+    let original = touches_about(trial, touch, place)?;
     check_stop(trial, touch, place)?;
     for (number, share) in BLOWS.into_iter().enumerate() {
         let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
@@ -46,11 +47,12 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
             require!(PART, "state", found == expected;
                 "wall {wall} is {found:?} at {time:?} when its state {state:?} is set, and was {expected:?}");
         }
-        trial.take_state(&changed)?;
-        let found = touches_about(trial, touch, place)?;
-        require!(PART, "state", found == seen;
-            "when the state {changed:?} of wall {wall} is set at {time:?}, disks touch {found:?}, and touched {seen:?} before");
-        trial.take_state(&state)?;
+        for (state, expected) in [(&changed, &seen), (&state, &original)] {
+            trial.take_state(state)?;
+            let found = touches_about(trial, touch, place)?;
+            require!(PART, "state", found == *expected;
+                "when the state {state:?} of wall {wall} is set at {time:?}, disks touch {found:?}, and touched {expected:?} before");
+        }
     }
     Ok(())
 }
@@ -73,6 +75,7 @@ fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2)
     let has_others = !state.is_empty();
     let times = if has_others { &[time, time + 0.1 * trial.length() / trial.speed][..] } else { &[] };
     let views: Vec<_> = times.iter().map(|&time| view(trial, time)).collect();
+    let original = touches_about(trial, touch, place)?;
     let impulse = trial.speed * (trial.length() * normal.perp() - trial.length() * normal);
     let blow = Impact::new(wall, impulse, place - trial.radius * normal, time);
     trial.boundary.react(&blow.with_couple(trial.speed * trial.length()));
@@ -89,7 +92,12 @@ fn check_fixed(trial: &mut Trial<'_>, touch: Touch, place: DVec2, normal: DVec2)
     let moved = moved.fold(0.0, f64::max);
     require!(PART, "reaction", moved <= trial.rounding();
         "a blow on wall {wall} at {time:?}, whose masses are infinite, moves other walls by {moved:?}");
-    trial.take_state(&state)
+    trial.take_state(&state)?;
+    let found = touches_about(trial, touch, place)?;
+    require!(PART, "state", found == original;
+        "after a blow on wall {wall} at {time:?}, the state {state:?} does not restore the walls: disks touch {found:?}, and \
+         touched {original:?} before");
+    Ok(())
 }
 
 /// Returns the nearest walls and their depths at places all over the domain, and the points of all walls.

@@ -215,9 +215,10 @@ impl Around<'_, '_> {
         };
         // On a wall that is more curved than the disk, only small steps see the wall as smooth.
         for widest in STEPS.map(|step| step * size) {
-            let (wide, narrow) = (bend(widest), bend(0.5 * widest));
+            let [wide, narrow, least] = [1.0, 0.5, 0.25].map(|share| bend(share * widest));
             let slack = EXACT / size + 256.0 * f64::EPSILON * self.trial.extent() / (widest * widest);
-            if (wide - narrow).abs() > slack {
+            // Near the end of a tip, two of the steps may agree by chance.
+            if (wide - narrow).abs() > slack || (narrow - least).abs() > 4.0 * slack {
                 continue;
             }
             let is_close = |expected: f64| (narrow - expected).abs() <= slack;

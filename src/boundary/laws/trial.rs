@@ -150,7 +150,12 @@ impl<'a> Trial<'a> {
         let mut rest = *flight;
         for _ in 0..MOST_SEARCHES {
             let open = match self.boundary.first_touch(&rest, until) {
-                FirstTouch::At(touch) => return Ok(Some(touch)),
+                FirstTouch::At(touch) => {
+                    let (wall, count) = (touch.wall, self.wall_count);
+                    require!(PART, "touched wall", wall < count;
+                        "wall {wall} is touched, but there are {count}, on {flight:?}");
+                    return Ok(Some(touch));
+                }
                 FirstTouch::NotBefore(open) if open >= until => return Ok(None),
                 FirstTouch::NotBefore(open) => open,
             };

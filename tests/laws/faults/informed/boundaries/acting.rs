@@ -171,7 +171,46 @@ fn states(boundaries: &mut Boundaries) {
     boundaries.part("empty state", "an empty state sets the floor at rest", Altered { restored, ..sprung() });
     let restored = Box::new(|state: &[f64]| Some(state.iter().map(|number| number.abs()).collect()));
     boundaries.part("sign of a state", "a state is set without signs", Altered { restored, ..rotor() });
+    let worn: [(&str, Wear, fn() -> Altered); 3] = [
+        (
+            "the floor grows heavier with each blow",
+            |floor, blows| floor.mass *= 1.01_f64.powf(f64::from(blows)),
+            sprung,
+        ),
+        (
+            "the kind of the floor changes with each blow",
+            |floor, blows| floor.kind = Kind::new(blows as u16),
+            sprung,
+        ),
+        (
+            "the kind of a fixed floor changes with each blow",
+            |floor, blows| floor.kind = Kind::new(blows as u16),
+            resting_floor,
+        ),
+    ];
+    for (name, change, honest) in worn {
+        let blows = Rc::new(Cell::new(0));
+        let hits = Rc::clone(&blows);
+        let react = Box::new(move |honest: &mut dyn Boundary, impact: &Impact| {
+            hits.set(hits.get() + 1);
+            honest.react(impact)
+        });
+        let surface = Box::new(move |surface: &mut Surface<'_>, _, _| change(surface, blows.get()));
+        boundaries.part(
+            "wear",
+            format!("{name}, and the state does not say so"),
+            Altered { surface, react, ..honest() },
+        );
+    }
 }
+
+/// A change of a surface by a number of blows.
+type Wear = fn(&mut Surface<'_>, u32);
+
+fn resting_floor() -> Altered {
+    Altered::new(resting())
+}
+
 fn sinks(boundaries: &mut Boundaries) {
     let bar = Part::polyline([DVec2::new(3.0, 6.0), DVec2::new(7.0, 6.0)]).expect("a bar").absorbing();
     let sink = || Altered::new(Vessel::new(resting()).with("sink", bar.clone()).expect("a vessel"));
