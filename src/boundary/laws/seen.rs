@@ -46,21 +46,31 @@ impl Seen {
     /// Returns whether both are the same up to the rounding error of late times, which shifts a wall that
     /// moves.
     pub(super) fn agrees(&self, other: &Self, trial: &Trial<'_>) -> bool {
-        let late = 1.0 + trial.origin * trial.speed / trial.length();
-        let (one, two) = (&self.surface, &other.surface);
+        is_near(self.surface.radius, other.surface.radius, trial) && self.acts_as(other, trial)
+    }
+
+    /// Returns whether both are the same except for their radii, as a tip and the side that ends there.
+    fn acts_as(&self, other: &Self, trial: &Trial<'_>) -> bool {
+        let (one, two, late) = (&self.surface, &other.surface, lateness(trial));
         let slack = SAME * (one.velocity.length() + trial.speed * late);
-        // The difference of two infinite numbers is NaN.
-        let is_near =
-            |one: f64, two: f64| one == two || (one - two).abs() <= SAME * late * one.abs().min(two.abs());
         one.normal.distance(two.normal) <= 100.0 * SAME * late
             && one.velocity.distance(two.velocity) <= slack
-            && is_near(one.radius, two.radius)
-            && is_near(one.mass, two.mass)
-            && is_near(one.tangential_mass, two.tangential_mass)
+            && is_near(one.mass, two.mass, trial)
+            && is_near(one.tangential_mass, two.tangential_mass, trial)
             && one.kind == two.kind
             && self.response == other.response
-            && is_near(self.temperature, other.temperature)
+            && is_near(self.temperature, other.temperature, trial)
     }
+}
+
+/// Returns the factor by which rounding errors grow at the present time origin.
+fn lateness(trial: &Trial<'_>) -> f64 {
+    1.0 + trial.origin * trial.speed / trial.length()
+}
+
+fn is_near(one: f64, two: f64, trial: &Trial<'_>) -> bool {
+    // The difference of two infinite numbers is NaN.
+    one == two || (one - two).abs() <= SAME * lateness(trial) * one.abs().min(two.abs())
 }
 
 /// Returns the wall that overlaps name at a touch and on both sides of it. Where two walls meet, there is no
@@ -78,7 +88,7 @@ pub(super) fn name(trial: &Trial<'_>, Touch { wall, time, .. }: Touch, place: DV
 pub(super) fn check_name(trial: &Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
     let Some(named) = name(trial, touch, place).filter(|&named| named != touch.wall) else { return Ok(()) };
     let seen = |wall| Seen::of(trial, Touch::new(touch.time, wall), place);
-    let is_same = named < trial.wall_count && seen(named).agrees(&seen(touch.wall), trial);
+    let is_same = named < trial.wall_count && seen(named).acts_as(&seen(touch.wall), trial);
     require!(PART, "overlapped wall", is_same;
         "a disk at {place:?} touches wall {} at {:?}, but overlaps wall {named} there", touch.wall, touch.time);
     Ok(())
