@@ -84,8 +84,8 @@ pub enum BoundaryFault {
     /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, whose
     /// radius is zero or NaN, or whose masses are not positive; or a thermal surface with a tangential mass.
     #[error(
-        "the surface of wall {wall} has the normal ({}, {}), which must be a unit vector, and the velocity {}; \
-         its radius may not be 0, its masses must be positive, and only walls that are not thermal have a tangential mass",
+        "the surface of wall {wall} needs a unit normal, a radius other than 0, positive masses, and no tangential mass if it is \
+         thermal; it has the normal ({}, {}) and the velocity {}",
         Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
     )]
     Surface {
