@@ -39,10 +39,6 @@ const SLACK: f64 = 2e-5;
 const RETURNS: u32 = 300;
 const THIRDS: u32 = 100;
 
-/// Largest number of such returns that are compared: areas of vessels take long, and a point that comes back
-/// too early does so each time.
-const COMPARED: usize = 1;
-
 /// Share of the domain that is far from all simple fractions, so that it holds no whole number of equal
 /// teeth.
 const GOLDEN: f64 = 0.381_966;
@@ -83,12 +79,12 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
 fn check_points(trial: &Trial<'_>, time: f64, later: f64) -> Result<(), Violation> {
     let apart = |time, later| distance(trial, time, later);
     let between = time + SHARE * (later - time);
-    // Points that come back only once, as on their way back, do no harm.
-    let farthest = |wait| apart(time, time + wait).max(apart(between, between + wait));
-    let waits = std::iter::once(later - time).chain(returns(time, later, apart));
-    let back = waits.map(|wait| (wait, farthest(wait))).filter(|&(_, apart)| apart <= trial.rounding());
-    for (wait, apart) in back.take(COMPARED) {
-        check_same_areas(trial, time, time + wait, apart)?;
+    for wait in std::iter::once(later - time).chain(returns(time, later, apart)) {
+        // Points that come back only once, as on their way back, do no harm.
+        let farthest = apart(time, time + wait).max(apart(between, between + wait));
+        if farthest <= trial.rounding() {
+            check_same_areas(trial, time, time + wait, farthest)?;
+        }
     }
     Ok(())
 }

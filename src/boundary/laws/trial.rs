@@ -186,7 +186,7 @@ impl<'a> Trial<'a> {
     /// Checks that a disk finds the same walls on both sides of each seam, with the same velocities.
     pub(super) fn check_seams(&self, place: DVec2, time: f64) -> Result<(), Violation> {
         for places in self.seams(place) {
-            let found = places.map(|place| self.depth(place, 0.0, time));
+            let found = places.map(|place| self.depth(place, self.rounding(), time));
             let [here, there] = found.map(|found| found.map_or(0.0, |found| found.depth));
             // Deep inside a wall, depths need not be continuous.
             let is_same = (here.min(self.radius) - there.min(self.radius)).abs() <= 2.0 * self.rounding();
