@@ -79,11 +79,15 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
 fn check_points(trial: &Trial<'_>, time: f64, later: f64) -> Result<(), Violation> {
     let apart = |time, later| distance(trial, time, later);
     let between = time + SHARE * (later - time);
+    let now = areas(trial, time);
+    if now.is_empty() {
+        return Ok(());
+    }
     for wait in std::iter::once(later - time).chain(returns(time, later, apart)) {
         // Points that come back only once, as on their way back, do no harm.
         let farthest = apart(time, time + wait).max(apart(between, between + wait));
         if farthest <= trial.rounding() {
-            check_same_areas(trial, time, time + wait, farthest)?;
+            check_same_areas(trial, &now, time, time + wait, farthest)?;
         }
     }
     Ok(())
@@ -117,21 +121,41 @@ fn least(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Checks that the areas in four parts of the domain are the same at two times. A tray that rocks takes on
-/// one side what it gives on the other, and teeth that slide do so in each of their periods.
-fn check_same_areas(trial: &Trial<'_>, time: f64, later: f64, apart: f64) -> Result<(), Violation> {
+/// Checks that the areas in the parts of the domain are the same at a later time.
+fn check_same_areas(
+    trial: &Trial<'_>,
+    now: &[PartArea],
+    time: f64,
+    later: f64,
+    apart: f64,
+) -> Result<(), Violation> {
+    for (now, then) in now.iter().zip(areas(trial, later)) {
+        let PartArea { region, radius, area } = now;
+        require!(PART, "wall_point", (area - then.area).abs() <= SLACK * region.area();
+            "the area for disks of radius {radius:?} in {region:?} is {area:?} at {time:?} and {:?} at {later:?}, but the points of \
+             all walls are back, within {apart:?}", then.area);
+    }
+    Ok(())
+}
+
+/// The area for disks of this radius in a part of the domain.
+struct PartArea {
+    region: Region,
+    radius: f64,
+    area: f64,
+}
+
+/// Returns the areas in four parts of the domain, as far as they are known. A tray that rocks takes on one
+/// side what it gives on the other, and teeth that slide do so in each of their periods.
+fn areas(trial: &Trial<'_>, time: f64) -> Vec<PartArea> {
     let (low, high) = trial.rectangle();
     let inside = low + GOLDEN * (high - low);
     let corners = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)];
     let parts = corners.map(|corner| Region::new(corner.min(inside), corner.max(inside)));
-    for (region, radius) in parts.into_iter().flat_map(|region| [(region, 0.0), (region, trial.radius)]) {
-        let [now, then] = [time, later].map(|time| trial.boundary.area(&region, radius, time));
-        let (Some(now), Some(then)) = (now, then) else { return Ok(()) };
-        require!(PART, "wall_point", (now - then).abs() <= SLACK * region.area();
-            "the area for disks of radius {radius:?} in {region:?} is {now:?} at {time:?} and {then:?} at {later:?}, but the points of \
-             all walls are back, within {apart:?}");
-    }
-    Ok(())
+    let both = parts.into_iter().flat_map(|region| [(region, 0.0), (region, trial.radius)]);
+    let area = |region, radius| trial.boundary.area(&region, radius, time);
+    both.map_while(|(region, radius)| Some(PartArea { region, radius, area: area(region, radius)? }))
+        .collect()
 }
 
 fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Result<(), Violation> {
