@@ -144,8 +144,11 @@ use area::Curves;
 /// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
 ///    wall changes by the impulse along the normal divided by the [`mass`](Surface::mass), and by the impulse
 ///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
-///    radius R with a tangential mass counts as the impulse C/R along the surface. No wall jumps. The result
-///    is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
+///    radius R with a tangential mass counts as the impulse C/R along the surface. Elsewhere, walls answer as
+///    bodies do: the speed that a blow here gives to a surface there, along some direction, is the speed that
+///    the same blow there, along this direction, gives here along its own. A blow along a surface without
+///    friction is exempt. No wall jumps. The result is [`Reaction::Moved`] if the velocity changes, which
+///    needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
 ///     wall that moves with it as a part of one body, at a time up to `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results

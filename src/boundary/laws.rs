@@ -4,6 +4,7 @@
 //! [`check_fingerprints`] compares two boundaries.
 
 mod area;
+mod body;
 mod flight;
 mod meetings;
 mod pair;
@@ -69,8 +70,8 @@ const SMALLEST: f64 = 0.3;
 /// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and does not
 ///   jump. `state` and `set_state` restore all walls. An impact on a wall whose normal and tangential masses
 ///   are infinite changes neither the motion of its surface nor a gap, now or later. Other walls may move
-///   with the one that is hit, as parts of one body do. A stop that takes the impulse of a wall, as a
-///   [`Piston`](crate::wall::Piston) has it, is refused.
+///   with the one that is hit, as parts of one body do; a blow on them then moves this one as much. A stop
+///   that takes the impulse of a wall, as a [`Piston`](crate::wall::Piston) has it, is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
 ///   a periodic seam, a disk is equally deep in a wall, and a wall that it meets on both sides has the same
 ///   velocity there.

@@ -92,7 +92,8 @@ impl<'a> Surface<'a> {
     /// Returns the same surface for a wall of this mass, which is guided along its normal.
     ///
     /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary receives
-    /// the opposite impulse in [`react`](super::Boundary::react).
+    /// the opposite impulse in [`react`](super::Boundary::react). A peg that floats also moves along its
+    /// surface: unless that is smooth, it needs a [tangential mass](Self::with_tangential_mass), too.
     #[must_use]
     #[inline]
     pub const fn with_mass(self, mass: f64) -> Self {

@@ -14,7 +14,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. Each lag uses the disks that are
 /// present at both of its ends. If the periods of the domain change, time jumps, or disks are put elsewhere
-/// between two runs, the observer begins with new origins. The errors come from blocks of origins.
+/// between two runs, the observer begins with new origins. The result is the mean over origins of the means
+/// over disks; the errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///

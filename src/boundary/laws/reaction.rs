@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::body::check_body;
 use super::meetings::{check_meetings, touches_about};
 use super::seen::in_words;
 use super::trial::{PART, Trial};
@@ -55,7 +56,7 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
                 "when the state {state:?} of wall {wall} is set at {time:?}, disks touch {found:?}, and touched {expected:?} before");
         }
     }
-    Ok(())
+    check_body(trial, touch, place)
 }
 
 /// Checks a blow that leaves a wall almost at rest: its motion must not stick.

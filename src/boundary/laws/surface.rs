@@ -74,7 +74,7 @@ pub(super) fn check_surface(trial: &Trial<'_>, touch: Touch, place: DVec2) -> Re
     if is_named {
         around.check_normal(&surface)?;
         around.check_velocity(&surface)?;
-        around.check_radius(normal, radius)?;
+        around.check_radius(&surface)?;
         around.check_point(&surface)?;
         around.check_turning(&surface)?;
     }
@@ -106,12 +106,17 @@ impl Around<'_, '_> {
         slopes.iter().any(|found| (0.5 * found / step - slope).abs() <= slack)
     }
 
+    /// Returns how far a wall that slides may have come since the origin. Far from its place, it lacks
+    /// digits.
+    fn travel(&self, surface: &Surface<'_>) -> f64 {
+        surface.velocity.length() * self.time
+    }
+
     /// Checks that the normal is the gradient of the gap.
     fn check_normal(&self, surface: &Surface<'_>) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
         let (normal, step) = (surface.normal, NEAR * self.trial.radius);
-        // A wall that slides fast has come far since the origin, and lacks digits there.
-        let slack = EXACT + 16.0 * f64::EPSILON * surface.velocity.length() * time / step;
+        let slack = EXACT + 16.0 * f64::EPSILON * self.travel(surface) / step;
         let along = |direction: DVec2| move |step: f64| self.at(step * direction, 0.0).0;
         let is_gradient = self.has_slope(-1.0, step, slack, along(normal))
             && self.has_slope(0.0, step, slack, along(normal.perp()));
@@ -205,8 +210,10 @@ impl Around<'_, '_> {
 
     /// Checks that the radius agrees with the curvature, if the wall is smooth near the touch. At a corner or
     /// a tip, the radius may have any value.
-    fn check_radius(&self, normal: DVec2, radius: f64) -> Result<(), Violation> {
+    fn check_radius(&self, surface: &Surface<'_>) -> Result<(), Violation> {
         let Self { wall, place, time, .. } = self;
+        let Surface { normal, radius, .. } = *surface;
+        let far = self.trial.extent() + self.travel(surface);
         let size = self.trial.radius;
         let bend = |step: f64| {
             let depth = |count: f64| self.at(count * step * normal.perp(), 0.0).0;
@@ -216,7 +223,7 @@ impl Around<'_, '_> {
         // On a wall that is more curved than the disk, only small steps see the wall as smooth.
         for widest in STEPS.map(|step| step * size) {
             let [wide, narrow, least] = [1.0, 0.5, 0.25].map(|share| bend(share * widest));
-            let slack = EXACT / size + 256.0 * f64::EPSILON * self.trial.extent() / (widest * widest);
+            let slack = EXACT / size + 256.0 * f64::EPSILON * far / (widest * widest);
             // Near the end of a tip, two of the steps may agree by chance.
             if (wide - narrow).abs() > slack || (narrow - least).abs() > 4.0 * slack {
                 continue;

@@ -1,6 +1,7 @@
 //! Boundaries that break their contract where a check may not look.
 
 mod acting;
+mod floating;
 mod halves;
 
 use granular_edmd::boundary::{
@@ -75,11 +76,15 @@ pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
         origins,
         acting::plant,
         halves::plant,
+        floating::plant,
     ])
 }
 
 pub(crate) fn honest() -> Vec<Planted<Walled>> {
-    List::grown(&[|boundaries: &mut Boundaries| boundaries.plant("halves of a drum", halves::honest())])
+    List::grown(&[
+        |boundaries: &mut Boundaries| boundaries.plant("halves of a drum", halves::honest()),
+        floating::honest,
+    ])
 }
 
 fn velocities(boundaries: &mut Boundaries) {
