@@ -150,6 +150,10 @@ impl Accumulator for Fields {
         self.grid.check_against(&start.domain())?;
         check_area(&start.domain().region(), self.grid.cells(), start)
     }
+
+    fn prepare(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
+        self.shares.check(snapshot, self.grid.cells())
+    }
 }
 
 impl Table for Fields {

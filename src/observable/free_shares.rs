@@ -14,7 +14,8 @@ use crate::quantity::accept;
 #[derive(Debug, Clone, Default)]
 pub(super) struct FreeShares {
     walls: Mark,
-    points: Vec<DVec2>,
+    time: f64,
+    points: Option<Vec<DVec2>>,
     shares: Vec<f64>,
 }
 
@@ -24,13 +25,25 @@ impl FreeShares {
     pub(super) fn of(&mut self, snapshot: &Snapshot<'_>, regions: impl Iterator<Item = Region>) -> &[f64] {
         let walls = 0..snapshot.wall_count();
         let points: Option<Vec<DVec2>> = walls.map(|wall| snapshot.wall_point(wall)).collect();
-        let stays = self.walls.is_same(snapshot.walls_mark()) && points.as_ref() == Some(&self.points);
-        if !stays {
-            self.walls = if points.is_some() { snapshot.walls_mark() } else { Mark::default() };
-            self.points = points.unwrap_or_default();
+        let stays = self.time == snapshot.time() || points.is_some() && points == self.points;
+        if !(stays && self.walls.is_same(snapshot.walls_mark())) {
+            (self.walls, self.points) = (snapshot.walls_mark(), points);
             self.shares = regions.map(|region| snapshot.free_share(&region).unwrap_or(f64::NAN)).collect();
         }
+        self.time = snapshot.time();
         &self.shares
+    }
+
+    /// Checks that all shares are known at the time of a snapshot.
+    ///
+    /// # Errors
+    /// If one is unknown. The error says what to use instead.
+    pub(super) fn check(
+        &mut self,
+        snapshot: &Snapshot<'_>,
+        regions: impl Iterator<Item = Region>,
+    ) -> Result<(), ParameterError> {
+        known(!self.of(snapshot, regions).iter().any(|share| share.is_nan()))
     }
 }
 
@@ -44,7 +57,10 @@ pub(super) fn check_area(
     start: &Snapshot<'_>,
 ) -> Result<(), ParameterError> {
     let is_known = |region: &Region| start.free_share(region).is_some();
-    let all_are_known = is_known(region) || parts.into_iter().all(|part| is_known(&part));
+    known(is_known(region) || parts.into_iter().all(|part| is_known(&part)))
+}
+
+fn known(all_are_known: bool) -> Result<(), ParameterError> {
     let requirement = "known: implement Boundary::area, let parts with an inside stop all kinds of disks, or \
                        measure in a region that no wall enters";
     accept(all_are_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)

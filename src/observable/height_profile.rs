@@ -187,6 +187,10 @@ impl Accumulator for HeightProfile {
         let domain = start.domain();
         check_area(&domain.region(), layers(self.bins, &domain), start)
     }
+
+    fn prepare(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
+        self.shares.check(snapshot, layers(self.bins, &snapshot.domain()))
+    }
 }
 
 impl Table for HeightProfile {

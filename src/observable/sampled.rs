@@ -57,6 +57,13 @@ pub trait Accumulator {
         let _ = start;
         Ok(())
     }
+
+    // Only the library's own accumulators have something to look up before a snapshot.
+    #[doc(hidden)]
+    fn prepare(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
+        let _ = snapshot;
+        Ok(())
+    }
 }
 
 /// An observer that gives an [`Accumulator`] snapshots at set times.
@@ -128,7 +135,10 @@ impl<A: Accumulator> Observer for Sampled<A> {
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        self.accumulator.add(snapshot);
+        match self.accumulator.prepare(snapshot) {
+            Ok(()) => self.accumulator.add(snapshot),
+            Err(fault) => self.fault = Some(fault),
+        }
         self.sample_times.advance_past(snapshot.time());
     }
 

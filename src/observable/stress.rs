@@ -157,10 +157,12 @@ impl Stress {
         self.domain.map_or_else(|| share(DVec2::ZERO), |domain| domain.images().map(share).sum())
     }
 
-    /// Returns the free area at the time of a snapshot.
-    fn area(&mut self, snapshot: &Snapshot<'_>) -> f64 {
+    /// Returns the free area at the time of a snapshot, or `None`, with a fault, if it is not known.
+    fn area(&mut self, snapshot: &Snapshot<'_>) -> Option<f64> {
         let region = self.region.unwrap_or(snapshot.domain().region());
-        region.area() * self.shares.of(snapshot, std::iter::once(region))[0]
+        self.fault = self.shares.check(snapshot, std::iter::once(region)).err();
+        let share = self.shares.of(snapshot, std::iter::once(region))[0];
+        self.fault.is_none().then_some(region.area() * share)
     }
 
     /// Checks that the area of a run's domain is finite and known.
@@ -221,7 +223,7 @@ impl Observer for Stress {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let transferred = std::mem::take(&mut self.transferred);
         let Some(duration) = self.stretch.finish(snapshot.time()) else { return };
-        let area = self.area(snapshot);
+        let Some(area) = self.area(snapshot) else { return };
         let collisional = transferred.map(|sum| sum / (area * duration));
         let mut kinetic = [0.0; 4];
         let domain = snapshot.domain();

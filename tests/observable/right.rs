@@ -7,8 +7,9 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, EnergyChange, EnergyChangeProfile, Fields, Grid, HeightProfile,
-    MeanSquaredDisplacement, Observable, PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress,
-    Temperatures, TemperaturesAboutFlow, TimeCorrelation, TransportCoefficients, WallStress, measured_by,
+    MeanSquaredDisplacement, Observable, Observer, PairCorrelation, SampleTimes, Sampled, Series, Snapshot,
+    Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, TransportCoefficients, WallStress,
+    measured_by,
 };
 use granular_edmd::replay::Replay;
 use granular_edmd::simulation::{Inlet, RunError};
@@ -139,42 +140,57 @@ fn the_layer_that_a_floor_sweeps_has_the_area_that_is_left() -> Result<(), Failu
     Ok(())
 }
 
-/// A boundary that does not know its area.
+/// A boundary that knows its area only in some regions, at some times.
 #[derive(Clone)]
-struct Silent(Vessel);
+struct Silent {
+    vessel: Vessel,
+    origin: f64,
+    knows: fn(&Region, f64) -> bool,
+}
+
+impl Silent {
+    fn drum(knows: fn(&Region, f64) -> bool) -> Result<Self, Failure> {
+        let vessel = Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
+        Ok(Self { vessel, origin: 0.0, knows })
+    }
+}
 
 impl Boundary for Silent {
     fn domain(&self) -> granular_edmd::boundary::Domain {
-        self.0.domain()
+        self.vessel.domain()
     }
     fn wall_count(&self) -> usize {
-        self.0.wall_count()
+        self.vessel.wall_count()
     }
     fn set_time_origin(&mut self, origin: f64) {
-        self.0.set_time_origin(origin);
+        self.origin = origin;
+        self.vessel.set_time_origin(origin);
     }
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        self.0.may_touch(region, radius)
+        self.vessel.may_touch(region, radius)
     }
     fn first_touch(
         &self,
         flight: &granular_edmd::Flight,
         until: f64,
     ) -> granular_edmd::boundary::FirstTouch<granular_edmd::boundary::Touch> {
-        self.0.first_touch(flight, until)
+        self.vessel.first_touch(flight, until)
     }
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> granular_edmd::boundary::Surface<'_> {
-        self.0.surface(wall, position, time)
+        self.vessel.surface(wall, position, time)
     }
     fn overlap(&self, probe: &Probe) -> Option<granular_edmd::boundary::Overlap> {
-        self.0.overlap(probe)
+        self.vessel.overlap(probe)
+    }
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        self.vessel.area(region, radius, time).filter(|_| (self.knows)(region, self.origin + time))
     }
 }
 
 #[test]
 fn an_unknown_area_is_refused_by_name() -> Result<(), Failure> {
-    let drum = Silent(Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?);
-    let refusal = |observer: &mut dyn granular_edmd::observable::Observer| {
+    let drum = Silent::drum(|_, _| false)?;
+    let refusal = |observer: &mut dyn Observer| {
         let failed = gas(&drum, 10.0).ok().and_then(|mut run| run.run_until(5.0, observer).err());
         told(failed)
     };
@@ -188,9 +204,39 @@ fn an_unknown_area_is_refused_by_name() -> Result<(), Failure> {
     ] {
         assert!(message.contains("Boundary::area"), "{message:?}");
     }
+    // The whole is known, and its parts are not.
+    let coarse = Silent::drum(|region, _| region.max.distance(region.min) > 28.0)?;
+    let (whole, mut fields) = (Region::new(DVec2::splat(-10.0), DVec2::splat(10.0)), None);
+    for observer in [
+        &mut Sampled::new(HeightProfile::new(-10.0, 10.0, 4)?, times()?) as &mut dyn Observer,
+        fields.insert(Sampled::new(Fields::new(Grid::new(whole, 2, 2)?), times()?)),
+    ] {
+        let message = told(gas(&coarse, 10.0)?.run_until(5.0, observer).err());
+        assert!(message.contains("Boundary::area"), "{message:?}");
+    }
+    assert_eq!(fields.map(|fields| fields.samples()), Some(0));
     // Where no wall can be, all is free.
     assert_eq!(refusal(&mut Stress::new(times()?).within(inside)?), "");
     assert_eq!(refusal(&mut Sampled::new(Fields::new(Grid::new(inside, 2, 2)?), times()?)), "");
+    Ok(())
+}
+
+/// What was measured before stays.
+#[test]
+fn an_area_that_becomes_unknown_ends_the_run() -> Result<(), Failure> {
+    let drum = Silent::drum(|_, time| time < 2.5)?;
+    let whole = Region::new(DVec2::splat(-10.0), DVec2::splat(10.0));
+    let times = SampleTimes::every(1.0)?;
+    let mut fields = Sampled::new(Fields::new(Grid::new(whole, 1, 1)?), times);
+    let mut profile = Sampled::new(HeightProfile::new(-10.0, 10.0, 1)?, times);
+    let mut stress = Stress::new(times);
+    for observer in [&mut fields as &mut dyn Observer, &mut profile, &mut stress] {
+        let message = told(gas(&drum, 10.0)?.run_until(5.0, observer).err());
+        assert!(message.contains("Boundary::area"), "{message:?}");
+    }
+    assert_eq!([fields.samples(), profile.samples(), stress.samples()], [2; 3]);
+    assert!(fields.iter().all(|cell| cell.packing_fraction.is_finite()));
+    assert!(stress.tensor().pressure.mean().is_finite());
     Ok(())
 }
 
