@@ -254,9 +254,12 @@ pub trait Boundary {
     /// Returns the number of walls; their indices are less than this number.
     fn wall_count(&self) -> usize;
 
-    /// Returns the name of a wall, for messages.
+    /// Returns the name of a wall, for messages and for measurements.
     ///
-    /// For an index without a wall, the name may be a number.
+    /// If other walls are set, a measurement at a wall notices by the name alone that its index now means
+    /// another wall. The default name is the index and shows no such change, so walls whose indices may
+    /// change need names that say what they are, such as "floor". For an index without a wall, the name may
+    /// be a number.
     fn wall_name(&self, wall: usize) -> Cow<'_, str> {
         Cow::Owned(format!("wall {wall}"))
     }
@@ -265,8 +268,8 @@ pub trait Boundary {
     /// The point is no hinge: it moves whenever the wall moves so that the free [`area`](Self::area) changes,
     /// and if its motion has a period, the area has it, too.
     ///
-    /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped.
-    /// The default is `None`.
+    /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped
+    /// to a place where no wall was. The default is `None`.
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None

@@ -194,20 +194,30 @@ impl<'a> Snapshot<'a> {
     /// Returns the area of the part of `region` in which the center of a disk of this radius is free, or
     /// `None` if the boundary does not know the area.
     ///
-    /// With a radius of 0, the result is the area that matter can fill.
+    /// With a radius of 0, the result is the area that matter can fill. A part of the region beyond the
+    /// domain has no area.
     pub fn area(&self, region: &Region, radius: f64) -> Option<f64> {
-        self.walls.and_then(|walls| walls.boundary.area(region, radius, walls.time))
+        self.area_inside(&self.inside(region), radius)
+    }
+
+    /// Returns the part of a region in the domain. On a torus, the rest are images.
+    fn inside(&self, region: &Region) -> Region {
+        region.within(&self.domain.region())
+    }
+
+    fn area_inside(&self, inside: &Region, radius: f64) -> Option<f64> {
+        let Walls { boundary, time } = self.walls?;
+        if inside.min.cmplt(inside.max).all() { boundary.area(inside, radius, time) } else { Some(0.0) }
     }
 
     /// Returns the share of a region that matter can fill, or `None` if the share is not known. A snapshot
-    /// without walls counts every region as free.
+    /// without walls counts all of the domain as free.
     pub(crate) fn free_share(&self, region: &Region) -> Option<f64> {
         /// Smallest share that counts as completely free, up to rounding.
         const WHOLE: f64 = 1.0 - 1e-12;
-        let Some(Walls { boundary, time }) = self.walls else { return Some(1.0) };
-        let Some(area) = boundary.area(region, 0.0, time) else {
-            return self.is_clear(region).then_some(1.0);
-        };
+        let inside = self.inside(region);
+        let is_clear = || self.walls.is_none() || self.is_clear(&inside);
+        let area = self.area_inside(&inside, 0.0).or_else(|| is_clear().then(|| inside.area()))?;
         let share = area / region.area();
         Some(if share > WHOLE { 1.0 } else { share })
     }

@@ -24,7 +24,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// cannot hit it again immediately, so the values of short intervals are anticorrelated, and their errors are
 /// up to three times too large. Choose intervals with many collisions.
 ///
-/// A run ends with an error if an index names no wall, or another wall than before.
+/// A run ends with an error if an index names no wall, or a wall with another
+/// [name](crate::boundary::Boundary::wall_name) than before.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};

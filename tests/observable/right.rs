@@ -221,6 +221,31 @@ fn an_unknown_area_is_refused_by_name() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Boundaries are asked for areas inside the domain only, so a seam needs no care of theirs.
+#[test]
+fn measures_that_reach_beyond_a_seam_are_cut_there() -> Result<(), Failure> {
+    let plain = Container::periodic(9.0, 6.0)?;
+    let inside = |region: &Region, _| {
+        let Region { min, max, .. } = *region;
+        min.cmpge(DVec2::ZERO).all() && max.cmple(DVec2::new(9.0, 6.0)).all()
+    };
+    let torus = Silent { vessel: Vessel::new(plain.clone()), origin: 0.0, knows: inside };
+    let wide = Region::new(DVec2::new(-3.0, -2.0), DVec2::new(12.0, 8.0));
+    let start = disk(2.0, 3.0)?.with_velocity(DVec2::new(0.3, 0.77))?;
+    let profile = Sampled::new(HeightProfile::new(-1.0, 8.0, 3)?, times()?);
+    let fields = Sampled::new(Fields::new(Grid::new(wide, 2, 2)?), times()?);
+    let (mut found, mut expected) = ((profile.clone(), fields.clone()), (profile, fields));
+    let mut run = Simulation::builder(Elastic, torus).disks([start]).build()?;
+    run.run_until(50.0, &mut (&mut found.0, &mut found.1))?;
+    let mut run = Simulation::builder(Elastic, plain).disks([start]).build()?;
+    run.run_until(50.0, &mut (&mut expected.0, &mut expected.1))?;
+    assert_eq!(found, expected);
+    // Each of the four cells has a fourth of the area, 54.
+    let densities: f64 = found.1.iter().map(|cell| cell.number_density).sum();
+    assert!((densities * 54.0 / 4.0 - 1.0).abs() < 1e-12, "{densities}");
+    Ok(())
+}
+
 /// What was measured before stays.
 #[test]
 fn an_area_that_becomes_unknown_ends_the_run() -> Result<(), Failure> {
