@@ -173,12 +173,15 @@ use area::Curves;
 /// [`laws::check`] tests promises 1 to 12, except that points lie on walls, and
 /// [`laws::check_fingerprints`] tests 13; `docs/validation.md` says which planted faults they find. The
 /// engine notices many faults, too.
+///
 /// At each collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than
 /// 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a disk that
 /// has left the domain by more than its radius (noticed within some collisions of each disk), and a disk that
 /// overlaps a wall at the end of a search that found no touch. A missed touch with a thin wall that disks
 /// meet from both sides goes unnoticed. A touch with a wall that the disk is leaving comes again immediately,
 /// until the run fails for lack of progress. A velocity or a normal that is not finite is an error.
+/// A run does not compare reactions. If a wall has a mass and takes no impulse, as with the default of
+/// [`react`](Self::react), or takes a wrong one, energies are wrong without an error. The checks find this.
 ///
 /// ```
 /// use std::borrow::Cow;
