@@ -67,7 +67,7 @@ pub(super) fn check_body(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> R
     let time = touch.time;
     let here = Spot::new(trial, touch, place, trial.radius);
     let (low, high) = trial.rectangle();
-    let step = NEAR * trial.radius * trial.boundary.surface(touch.wall, place, time).normal.perp();
+    let step = NEAR * trial.radius * here.directions[0].perp();
     let beside = [place - step, place + step].into_iter();
     let is_inside = |place: &DVec2| place.clamp(low, high) == *place;
     let places = beside.chain(trial.places()).filter(is_inside);
