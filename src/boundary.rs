@@ -180,8 +180,10 @@ use area::Curves;
 /// overlaps a wall at the end of a search that found no touch. A missed touch with a thin wall that disks
 /// meet from both sides goes unnoticed. A touch with a wall that the disk is leaving comes again immediately,
 /// until the run fails for lack of progress. A velocity or a normal that is not finite is an error.
-/// A run does not compare reactions. If a wall has a mass and takes no impulse, as with the default of
-/// [`react`](Self::react), or takes a wrong one, energies are wrong without an error. The checks find this.
+///
+/// After each impulse on a wall with a mass, its velocity must be the one that the impulse gives, to 1e-6 of
+/// the speeds, or a stop must have held it: less, and in the other direction. A run does not notice what an
+/// impulse does to other walls of a body, nor that a wall at rest with a [`state`](Self::state) never moves.
 ///
 /// ```
 /// use std::borrow::Cow;

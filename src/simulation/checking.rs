@@ -13,9 +13,9 @@ use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::forecasting::HORIZON;
 use super::state::{FARTHEST, Forecast};
-use crate::boundary::{Boundary, FirstTouch, Overlap, Probe};
+use crate::boundary::{Boundary, FirstTouch, Overlap, Probe, Reaction};
 use crate::collision::{CollisionRule, Material};
-use crate::observable::Partner;
+use crate::observable::{Collision, Partner};
 use crate::scheduler::EventScheduler;
 
 /// Largest gap at a collision with a wall, relative to the radius. It is a power of two (9e-10), so that the
@@ -28,6 +28,9 @@ const DEEP: f64 = 1e-6;
 
 /// Number of times that the search for a wall doubles its reach, in order to report the distance of the wall.
 const MOST_DOUBLINGS: usize = 100;
+
+/// Largest error of a wall's velocity after a collision, relative to the speeds.
+const INEXACT: f64 = 1e-6;
 
 /// Largest error of a position, relative to the coordinates.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
@@ -49,6 +52,39 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
             None => self.check_gap(disk, wall, &probe),
         }
+    }
+
+    /// Checks that a wall with a mass has taken the impulse of a collision, given its velocity before.
+    ///
+    /// At a stop, the wall may instead be held, or bounce: its speed is then between zero and the opposite of
+    /// the speed that the impulse gives. Rounding hides what the impulse does to a very heavy wall.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn check_reaction(
+        &self,
+        collision: &Collision,
+        wall: usize,
+        before: DVec2,
+        reaction: Reaction,
+    ) -> Outcome<()> {
+        let [left, expected] = collision.velocities;
+        let found = self.boundary.surface(wall, collision.position, self.clock.now).velocity;
+        let slack = INEXACT * (before.length() + expected.length() + left.length());
+        let is_near = |velocity: DVec2, other: DVec2| velocity.distance(other) <= slack;
+        // A wall without a state cannot have a stop at which it would be held: no impulse ever moves it.
+        let is_told = reaction == Reaction::Moved
+            || is_near(found, before) && (is_near(expected, before) || !self.boundary.state().is_empty());
+        let takes_it_along = |direction: DVec2| {
+            let (found, expected) = (found.dot(direction), expected.dot(direction));
+            let is_stopped = found * expected <= 0.0 && found.abs() <= expected.abs();
+            is_stopped || (found - expected).abs() <= slack
+        };
+        let normal = collision.normal;
+        if is_told && takes_it_along(normal) && takes_it_along(normal.perp()) {
+            return Ok(());
+        }
+        let fault = BoundaryFault::Reaction { wall, expected, found };
+        Err(self.boundary_fault(collision.disk, fault).into())
     }
 
     /// Returns a probe of the disk as it is now, for queries to the boundary.

@@ -11,7 +11,9 @@
 use glam::DVec2;
 
 use super::errors::{BoundaryFault, Outcome};
-use super::resolution::{Kick, failed, impact_of, is_parting, is_possible, resolve_pair, resolve_wall};
+use super::resolution::{
+    Kick, failed, has_mass, impact_of, is_parting, is_possible, resolve_pair, resolve_wall,
+};
 use super::state::{Clock, Earliest, Exit, Forecast};
 use super::{Event, Simulation};
 use crate::boundary::{Boundary, Reaction, Response};
@@ -151,12 +153,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let name = self.name_of(Partner::Wall(wall));
             return Err(failed(&collision, name).into());
         }
+        let before = has_mass(&surface).then_some(surface.velocity);
         let is_plain = matches!(surface.response, Response::Shared | Response::Rule(_));
         self.ledger.has_source |= !is_plain || surface.velocity != DVec2::ZERO;
         // The removal comes before the check of the touch, since disks may lie deep in the wall of a sink for
         // centers.
         if let Response::Absorbing = surface.response {
-            return Ok(self.absorb(&collision, disk, wall, observer));
+            return self.absorb(&collision, disk, wall, before, observer);
         }
         self.check_touch(disk, wall)?;
         if !self.is_tame(&kick) {
@@ -176,6 +179,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk);
         if reaction == Reaction::Moved {
             self.end_flights_that_may_meet(wall);
+        }
+        if let Some(before) = before {
+            self.check_reaction(&collision, wall, before, reaction)?;
         }
         Ok(Event::WallCollision { disk, wall })
     }
@@ -207,8 +213,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         collision: &Collision,
         disk: usize,
         wall: usize,
+        before: Option<DVec2>,
         observer: &mut O,
-    ) -> Event {
+    ) -> Outcome<Event> {
         self.counters.wall_collisions += 1;
         self.counters.removals += 1;
         self.ledger.count(collision.time, self.len());
@@ -221,7 +228,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if reaction == Reaction::Moved {
             self.end_flights_that_may_meet(wall);
         }
-        Event::WallCollision { disk, wall }
+        if let Some(before) = before {
+            self.check_reaction(collision, wall, before, reaction)?;
+        }
+        Ok(Event::WallCollision { disk, wall })
     }
 
     #[inline]

@@ -172,9 +172,15 @@ fn spin_of(surface: &Surface<'_>) -> f64 {
     }
 }
 
+/// Returns whether an impulse changes the velocity of a surface.
+#[inline]
+pub(super) fn has_mass(surface: &Surface<'_>) -> bool {
+    surface.mass != f64::INFINITY || surface.tangential_mass != f64::INFINITY
+}
+
 /// Returns the velocity of a wall's surface after an impulse, which changes only a wall with a mass.
 fn velocity_after(surface: &Surface<'_>, impulse: &Impulse) -> DVec2 {
-    if surface.mass == f64::INFINITY && surface.tangential_mass == f64::INFINITY {
+    if !has_mass(surface) {
         return surface.velocity;
     }
     // A couple on a wall of this radius acts like an impulse along the surface.

@@ -26,6 +26,7 @@ mod parting;
 mod periodic;
 mod pistons;
 mod population;
+mod reactions;
 mod replays;
 mod rest;
 #[cfg(feature = "serde")]

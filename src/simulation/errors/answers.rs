@@ -96,6 +96,21 @@ pub enum BoundaryFault {
         /// The velocity of the surface.
         velocity: DVec2,
     },
+    /// A wall with a mass that did not take the impulse of a disk, or moved without
+    /// [`Reaction::Moved`](crate::boundary::Reaction::Moved).
+    #[error(
+        "wall {wall} has a mass; after the impulse of the disk, its velocity should be {} and is {}; `react` must apply \
+         the impulse and answer `Reaction::Moved`, or the surface have no mass: see boundary::laws::check",
+        RoundedVector(*.expected), RoundedVector(*.found)
+    )]
+    Reaction {
+        /// The wall.
+        wall: usize,
+        /// The velocity that the impulse and the masses give.
+        expected: DVec2,
+        /// The velocity of the surface after the reaction.
+        found: DVec2,
+    },
     /// A disk outside the domain: the boundary missed its touch with a wall.
     #[error("no touch, but the disk is at ({}, {}), outside the domain; see boundary::laws::check", Rounded(*.x), Rounded(*.y))]
     Outside {

@@ -1,0 +1,167 @@
+//! Walls with a mass that do not take what disks give them: each run ends at the first such blow.
+
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Response, Surface,
+    Touch, Wall,
+};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::simulation::{BoundaryFault, RunError};
+use granular_edmd::wall::Piston;
+use granular_edmd::{Disk, Flight, ParameterError, Simulation, initial};
+
+/// Index of the right side of a closed container.
+const RIGHT: usize = 2;
+
+type Answer = fn(&mut Container, &Impact) -> Reaction;
+
+/// A box with a piston for its right side, which takes impacts in its own way.
+struct Deaf {
+    honest: Container,
+    answer: Answer,
+    has_state: bool,
+    is_sink: bool,
+}
+
+impl Deaf {
+    fn new(velocity: f64, answer: Answer) -> Self {
+        let piston = Piston::new(4.0, [-50.0, 5.0]).unwrap().with_start(0.0, velocity).unwrap();
+        let honest = Container::closed(12.0, 10.0).unwrap().with_piston(Wall::Right, piston).unwrap();
+        Self { honest, answer, has_state: true, is_sink: false }
+    }
+}
+
+impl Boundary for Deaf {
+    fn domain(&self) -> Domain {
+        self.honest.domain()
+    }
+    fn interior(&self) -> Domain {
+        self.honest.interior()
+    }
+    fn wall_count(&self) -> usize {
+        self.honest.wall_count()
+    }
+    fn set_time_origin(&mut self, origin: f64) {
+        self.honest.set_time_origin(origin);
+    }
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        self.honest.may_touch(region, radius)
+    }
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        self.honest.first_touch(flight, until)
+    }
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let surface = self.honest.surface(wall, position, time);
+        if self.is_sink { surface.with_response(Response::Absorbing) } else { surface }
+    }
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        self.honest.overlap(probe)
+    }
+    fn react(&mut self, impact: &Impact) -> Reaction {
+        (self.answer)(&mut self.honest, impact)
+    }
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
+        self.honest.may_meet(wall, region, radius, until)
+    }
+    fn state(&self) -> Vec<f64> {
+        if self.has_state { self.honest.state() } else { Vec::new() }
+    }
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
+        self.honest.set_state(state)
+    }
+}
+
+fn run_of(deaf: Deaf) -> Result<Simulation<Elastic, Deaf>, Box<dyn std::error::Error>> {
+    let disks = initial::lattice(&Container::closed(5.0, 9.0)?, 12, 0.5)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 3)?;
+    Ok(Simulation::builder(Elastic, deaf).disks(disks).build()?)
+}
+
+/// Returns the impact with a share of its impulse.
+fn weaker(share: f64, impact: &Impact) -> Impact {
+    Impact::new(impact.wall, share * impact.impulse, impact.point, impact.time)
+}
+
+#[test]
+fn an_impulse_that_is_not_taken_is_named() -> Result<(), Box<dyn std::error::Error>> {
+    let answers: [Answer; 6] = [
+        |_, _| Reaction::None,
+        |_, _| Reaction::Moved,
+        |honest, impact| {
+            honest.react(impact);
+            Reaction::None
+        },
+        |honest, impact| honest.react(&weaker(-1.0, impact)),
+        |honest, impact| honest.react(&weaker(1.001, impact)),
+        |honest, impact| honest.react(&weaker(0.9, impact)),
+    ];
+    for (number, answer) in answers.into_iter().enumerate() {
+        for is_sink in [false, true] {
+            let mut run = run_of(Deaf { is_sink, ..Deaf::new(0.3, answer) })?;
+            let error = run.run_until(50.0, &mut ()).err().ok_or(format!("{number} {is_sink}: Ok"))?;
+            let RunError::Boundary { fault: BoundaryFault::Reaction { wall, expected, found, .. }, .. } =
+                error
+            else {
+                panic!("{number} {is_sink}: {error}")
+            };
+            assert_eq!(wall, RIGHT);
+            let is_moved = expected.distance(found) < 1e-12;
+            assert_eq!(is_moved, number == 2, "{number}: {expected} {found}");
+            assert!(error.to_string().contains("`react` must"), "{error}");
+        }
+    }
+    Ok(())
+}
+
+/// The run goes on from the state in which the error was noticed.
+#[test]
+fn the_state_is_whole_after_an_impulse_is_lost() -> Result<(), Box<dyn std::error::Error>> {
+    let mut run = run_of(Deaf::new(-0.1, |_, _| Reaction::None))?;
+    for blow in 0..20 {
+        let before = run.time();
+        let error = run.run_until(1e4, &mut ()).unwrap_err();
+        assert!(matches!(error, RunError::Boundary { .. }) && run.time() > before, "{blow}: {error}");
+        assert!(run.disks().iter().all(|disk| run.boundary().overlap(&probe(disk, run.time())).is_none()));
+    }
+    Ok(())
+}
+
+fn probe(disk: &Disk, time: f64) -> Probe {
+    Probe::new(disk.position(), disk.radius() * (1.0 - 1e-9), time)
+}
+
+/// A wall at rest may be held by a stop, unless nothing that it keeps can change.
+#[test]
+fn a_wall_at_rest_needs_a_state() -> Result<(), Box<dyn std::error::Error>> {
+    let mut kept = run_of(Deaf::new(0.0, |_, _| Reaction::None))?;
+    kept.run_until(50.0, &mut ())?;
+    let mut run = run_of(Deaf { has_state: false, ..Deaf::new(0.0, |_, _| Reaction::None) })?;
+    let error = run.run_until(50.0, &mut ()).unwrap_err();
+    assert!(matches!(error, RunError::Boundary { fault: BoundaryFault::Reaction { .. }, .. }), "{error}");
+    Ok(())
+}
+
+#[test]
+fn a_piston_that_takes_impulses_is_right() -> Result<(), Box<dyn std::error::Error>> {
+    for velocity in [0.3, 0.0, -0.1] {
+        for is_sink in [false, true] {
+            let mut run = run_of(Deaf { is_sink, ..Deaf::new(velocity, Container::react) })?;
+            run.run_until(200.0, &mut ())?;
+        }
+    }
+    Ok(())
+}
+
+/// A piston that is pressed on its stop does not move when a disk hits it.
+#[test]
+fn a_stop_may_hold_a_piston() -> Result<(), Box<dyn std::error::Error>> {
+    for force in [50.0, -50.0] {
+        let piston = Piston::new(0.5, [0.0, 3.0])?.with_force(force)?;
+        let walls = Container::closed(8.0, 9.0)?.with_piston(Wall::Lid, piston)?;
+        let disks = initial::with_maxwellian_velocities(initial::lattice(&walls, 9, 0.5)?, 1.0, 3)?;
+        let mut run = Simulation::builder(Elastic, walls).disks(disks).build()?;
+        run.run_until(300.0, &mut ())?;
+        assert!(run.counters().wall_collisions > 100, "{force}: {:?}", run.counters());
+    }
+    Ok(())
+}
