@@ -146,9 +146,9 @@ use area::Curves;
 ///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
 ///    radius R with a tangential mass counts as the impulse C/R along the surface. Elsewhere, walls answer as
 ///    bodies do: the speed that a blow here gives to a surface there, along some direction, is the speed that
-///    the same blow there, along this direction, gives here along its own. A blow along a surface without
-///    friction is exempt. No wall jumps. The result is [`Reaction::Moved`] if the velocity changes, which
-///    needs a finite mass.
+///    the same blow there, along this direction, gives here along its own. A surface without friction may
+///    move along itself, too; a blow along it is exempt. No wall jumps. The result is [`Reaction::Moved`] if
+///    the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
 ///     wall that moves with it as a part of one body, at a time up to `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
@@ -182,8 +182,9 @@ use area::Curves;
 /// until the run fails for lack of progress. A velocity or a normal that is not finite is an error.
 ///
 /// After each impulse on a wall with a mass, its velocity must be the one that the impulse gives, to 1e-6 of
-/// the speeds, or a stop must have held it: less, and in the other direction. A run does not notice what an
-/// impulse does to other walls of a body, nor that a wall at rest with a [`state`](Self::state) never moves.
+/// the speeds, or the lower, opposite one of a wall that a stop holds, and it must still touch the disk. A run
+/// does not notice what an impulse does to other walls of a body, nor that a wall that keeps a
+/// [`state`](Self::state) never leaves its rest, or stops or turns around without a stop.
 ///
 /// ```
 /// use std::borrow::Cow;

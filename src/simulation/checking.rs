@@ -54,37 +54,57 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Checks that a wall with a mass has taken the impulse of a collision, given its velocity before.
+    /// Puts the velocity of a wall after its reaction into the collision, and returns the velocity that the
+    /// impulse gives if no stop holds the wall.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn see_wall(&self, wall: usize, collision: &mut Collision) -> DVec2 {
+        let found = self.boundary.surface(wall, collision.position, self.clock.now).velocity;
+        std::mem::replace(&mut collision.velocities[1], found)
+    }
+
+    /// Checks that a wall with a mass has taken the impulse of a collision, given its velocity before, and
+    /// the expected one after.
     ///
-    /// At a stop, the wall may instead be held, or bounce: its speed is then between zero and the opposite of
-    /// the speed that the impulse gives. Rounding hides what the impulse does to a very heavy wall.
+    /// Rounding hides what the impulse does to a very heavy wall.
     #[cold]
     #[inline(never)]
     pub(super) fn check_reaction(
         &self,
         collision: &Collision,
         wall: usize,
-        before: DVec2,
+        [before, expected]: [DVec2; 2],
         reaction: Reaction,
     ) -> Outcome<()> {
-        let [left, expected] = collision.velocities;
-        let found = self.boundary.surface(wall, collision.position, self.clock.now).velocity;
+        let ([left, found], impulse, normal) = (collision.velocities, collision.impulse, collision.normal);
         let slack = INEXACT * (before.length() + expected.length() + left.length());
-        let is_near = |velocity: DVec2, other: DVec2| velocity.distance(other) <= slack;
-        // A wall without a state cannot have a stop at which it would be held: no impulse ever moves it.
-        let is_told = reaction == Reaction::Moved
-            || is_near(found, before) && (is_near(expected, before) || !self.boundary.state().is_empty());
-        let takes_it_along = |direction: DVec2| {
+        let is_at = |velocity: DVec2, direction| (found - velocity).dot(direction).abs() <= slack;
+        // At a stop, the wall may be held or bounce, which needs a state. It then has less than the expected
+        // speed, in the other direction.
+        let is_held = |direction| {
             let (found, expected) = (found.dot(direction), expected.dot(direction));
-            let is_stopped = found * expected <= 0.0 && found.abs() <= expected.abs();
-            is_stopped || (found - expected).abs() <= slack
+            found * expected <= 0.0 && found.abs() <= expected.abs() && !self.boundary.state().is_empty()
         };
-        let normal = collision.normal;
-        if is_told && takes_it_along(normal) && takes_it_along(normal.perp()) {
+        let across = normal.perp();
+        // A guide at a slant moves a wall along its surface, too. No disk feels it if there is no friction.
+        let is_smooth = impulse.tangential() == 0.0 && impulse.couple() == 0.0;
+        // A wall that takes the impulse along its normal is not held.
+        let is_right_across =
+            is_smooth || is_at(expected, across) || is_at(before, normal) && is_held(across);
+        let is_told = reaction == Reaction::Moved || found.distance(before) <= slack;
+        if is_told && is_right_across && (is_at(expected, normal) || is_held(normal)) {
             return Ok(());
         }
         let fault = BoundaryFault::Reaction { wall, expected, found };
         Err(self.boundary_fault(collision.disk, fault).into())
+    }
+
+    /// Checks that a wall has not jumped away from a disk that it touches, or into the disk.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn check_place(&self, disk: usize, wall: usize) -> Outcome<()> {
+        self.check_gap(disk, wall, &self.probe(disk))?;
+        self.check_passed(disk)
     }
 
     /// Returns a probe of the disk as it is now, for queries to the boundary.

@@ -159,7 +159,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // The removal comes before the check of the touch, since disks may lie deep in the wall of a sink for
         // centers.
         if let Response::Absorbing = surface.response {
-            return self.absorb(&collision, disk, wall, before, observer);
+            return self.absorb(&mut collision, disk, wall, before, observer);
         }
         self.check_touch(disk, wall)?;
         if !self.is_tame(&kick) {
@@ -171,6 +171,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // The wall reacts before the disk's next flight is predicted, since the prediction needs the new
         // motion of the wall.
         let reaction = self.boundary.react(&impact_of(&collision, wall, self.clock.now));
+        let velocities = before.map(|before| [before, self.see_wall(wall, &mut collision)]);
         self.find_next(disk);
         if parts {
             self.leave_wall(disk, wall, &mut collision);
@@ -180,8 +181,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if reaction == Reaction::Moved {
             self.end_flights_that_may_meet(wall);
         }
-        if let Some(before) = before {
-            self.check_reaction(&collision, wall, before, reaction)?;
+        if let Some(velocities) = velocities {
+            self.check_reaction(&collision, wall, velocities, reaction)?;
+            self.check_place(disk, wall)?;
         }
         Ok(Event::WallCollision { disk, wall })
     }
@@ -210,7 +212,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(never)]
     fn absorb<O: Observer + ?Sized>(
         &mut self,
-        collision: &Collision,
+        collision: &mut Collision,
         disk: usize,
         wall: usize,
         before: Option<DVec2>,
@@ -220,6 +222,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.removals += 1;
         self.ledger.count(collision.time, self.len());
         let reaction = self.boundary.react(&impact_of(collision, wall, self.clock.now));
+        let velocities = before.map(|before| [before, self.see_wall(wall, collision)]);
         observer.on_collision(collision);
         let gone = self.bodies.disk(disk, self.clock.now);
         observer.on_remove(&gone, collision.time);
@@ -228,8 +231,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if reaction == Reaction::Moved {
             self.end_flights_that_may_meet(wall);
         }
-        if let Some(before) = before {
-            self.check_reaction(collision, wall, before, reaction)?;
+        if let Some(velocities) = velocities {
+            self.check_reaction(collision, wall, velocities, reaction)?;
         }
         Ok(Event::WallCollision { disk, wall })
     }

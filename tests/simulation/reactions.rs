@@ -2,32 +2,39 @@
 
 use granular_edmd::boundary::{
     Boundary, Container, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Response, Surface,
-    Touch, Wall,
+    Touch, Wall, laws,
 };
-use granular_edmd::collision::Elastic;
+use granular_edmd::collision::{Elastic, Rough};
 use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Collision, Partner, on_collision};
 use granular_edmd::simulation::{BoundaryFault, RunError};
 use granular_edmd::wall::Piston;
 use granular_edmd::{Disk, Flight, ParameterError, Simulation, initial};
+
+/// The mass of the piston.
+const MASS: f64 = 4.0;
 
 /// Index of the right side of a closed container.
 const RIGHT: usize = 2;
 
 type Answer = fn(&mut Container, &Impact) -> Reaction;
 
+/// The surface that the piston shows, given its own.
+type Look = fn(Surface<'_>) -> Surface<'_>;
+
 /// A box with a piston for its right side, which takes impacts in its own way.
 struct Deaf {
     honest: Container,
     answer: Answer,
+    look: Look,
     has_state: bool,
-    is_sink: bool,
 }
 
 impl Deaf {
     fn new(velocity: f64, answer: Answer) -> Self {
-        let piston = Piston::new(4.0, [-50.0, 5.0]).unwrap().with_start(0.0, velocity).unwrap();
+        let piston = Piston::new(MASS, [-50.0, 5.0]).unwrap().with_start(0.0, velocity).unwrap();
         let honest = Container::closed(12.0, 10.0).unwrap().with_piston(Wall::Right, piston).unwrap();
-        Self { honest, answer, has_state: true, is_sink: false }
+        Self { honest, answer, look: plain, has_state: true }
     }
 }
 
@@ -52,7 +59,7 @@ impl Boundary for Deaf {
     }
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
         let surface = self.honest.surface(wall, position, time);
-        if self.is_sink { surface.with_response(Response::Absorbing) } else { surface }
+        if wall == RIGHT { (self.look)(surface) } else { surface }
     }
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         self.honest.overlap(probe)
@@ -71,10 +78,25 @@ impl Boundary for Deaf {
     }
 }
 
-fn run_of(deaf: Deaf) -> Result<Simulation<Elastic, Deaf>, Box<dyn std::error::Error>> {
+fn plain(own: Surface<'_>) -> Surface<'_> {
+    own
+}
+
+fn sink(own: Surface<'_>) -> Surface<'_> {
+    own.with_response(Response::Absorbing)
+}
+
+fn slanted(own: Surface<'_>) -> Surface<'_> {
+    let along = 0.7 * own.velocity.dot(own.normal) * own.normal.perp();
+    let mass = own.mass;
+    Surface::new(own.normal, own.velocity + along).with_mass(mass).with_response(Response::Rule(&Elastic))
+}
+
+/// Returns a run of rough disks that keep their energy.
+fn run_of(deaf: Deaf) -> Result<Simulation<Rough, Deaf>, Box<dyn std::error::Error>> {
     let disks = initial::lattice(&Container::closed(5.0, 9.0)?, 12, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 3)?;
-    Ok(Simulation::builder(Elastic, deaf).disks(disks).build()?)
+    Ok(Simulation::builder(Rough::from_restitution(1.0, 1.0)?, deaf).disks(disks).build()?)
 }
 
 /// Returns the impact with a share of its impulse.
@@ -96,13 +118,13 @@ fn an_impulse_that_is_not_taken_is_named() -> Result<(), Box<dyn std::error::Err
         |honest, impact| honest.react(&weaker(0.9, impact)),
     ];
     for (number, answer) in answers.into_iter().enumerate() {
-        for is_sink in [false, true] {
-            let mut run = run_of(Deaf { is_sink, ..Deaf::new(0.3, answer) })?;
-            let error = run.run_until(50.0, &mut ()).err().ok_or(format!("{number} {is_sink}: Ok"))?;
+        for look in [plain as Look, sink] {
+            let mut run = run_of(Deaf { look, ..Deaf::new(0.3, answer) })?;
+            let error = run.run_until(50.0, &mut ()).err().ok_or(format!("{number}: Ok"))?;
             let RunError::Boundary { fault: BoundaryFault::Reaction { wall, expected, found, .. }, .. } =
                 error
             else {
-                panic!("{number} {is_sink}: {error}")
+                panic!("{number}: {error}")
             };
             assert_eq!(wall, RIGHT);
             let is_moved = expected.distance(found) < 1e-12;
@@ -141,15 +163,73 @@ fn a_wall_at_rest_needs_a_state() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// The impulse along the normal is taken, and the one along the surface is not.
 #[test]
-fn a_piston_that_takes_impulses_is_right() -> Result<(), Box<dyn std::error::Error>> {
+fn half_of_an_impulse_is_not_enough() -> Result<(), Box<dyn std::error::Error>> {
+    for (velocity, has_state) in [(0.3, true), (0.0, true), (0.0, false)] {
+        let look: Look = |own| own.with_tangential_mass(5.0);
+        let mut run = run_of(Deaf { look, has_state, ..Deaf::new(velocity, Container::react) })?;
+        let error = run.run_until(50.0, &mut ()).err().ok_or(format!("{velocity} {has_state}: Ok"))?;
+        assert!(matches!(error, RunError::Boundary { fault: BoundaryFault::Reaction { .. }, .. }), "{error}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_jump_at_an_impulse_is_named() -> Result<(), Box<dyn std::error::Error>> {
+    fn jump(by: f64, honest: &mut Container, impact: &Impact) -> Reaction {
+        let reaction = honest.react(impact);
+        let mut state = honest.state();
+        state[1] += by;
+        honest.set_state(&state).unwrap();
+        reaction
+    }
+    let jumps: [Answer; 2] =
+        [|honest, impact| jump(-1e-4, honest, impact), |honest, impact| jump(1e-4, honest, impact)];
+    for answer in jumps {
+        let error = run_of(Deaf::new(0.3, answer))?.run_until(50.0, &mut ()).unwrap_err();
+        assert!(
+            matches!(error, RunError::FalseContact { partner: Partner::Wall(RIGHT), depth, .. }
+            if (depth.abs() - 1e-4).abs() < 1e-8),
+            "{error}"
+        );
+    }
+    Ok(())
+}
+
+/// Pistons, as walls, as sinks, and on a guide at a slant, which moves them along their surfaces, too.
+#[test]
+fn pistons_that_take_impulses_are_right() -> Result<(), Box<dyn std::error::Error>> {
     for velocity in [0.3, 0.0, -0.1] {
-        for is_sink in [false, true] {
-            let mut run = run_of(Deaf { is_sink, ..Deaf::new(velocity, Container::react) })?;
-            run.run_until(200.0, &mut ())?;
+        for (look, keeps_energy) in [(plain as Look, true), (sink, false), (slanted, true)] {
+            let mut deaf = Deaf { look, ..Deaf::new(velocity, Container::react) };
+            let mut run = run_of(Deaf { look, ..Deaf::new(velocity, Container::react) })?;
+            let before = energy(&run);
+            let mut told = None;
+            while run.time() < 20.0 {
+                let mut seen = on_collision(|collision: &Collision| {
+                    told =
+                        Some(collision.velocities[1].x).filter(|_| collision.partner == Partner::Wall(RIGHT));
+                });
+                run.step_until(20.0, &mut seen)?;
+                let error = told.take().map_or(0.0, |told| told + speed(&run));
+                assert!(error.abs() < 1e-14, "{error}");
+            }
+            assert!(!keeps_energy || (energy(&run) / before - 1.0).abs() < 1e-12);
+            laws::check(&mut deaf, 0.5, 1.0, 5)?;
         }
     }
     Ok(())
+}
+
+/// Returns the speed of the piston along its normal.
+fn speed(run: &Simulation<Rough, Deaf>) -> f64 {
+    run.boundary().honest.state()[2]
+}
+
+fn energy(run: &Simulation<Rough, Deaf>) -> f64 {
+    let energy = |disk: &Disk| disk.translational_energy() + disk.rotational_energy();
+    run.disks().iter().map(energy).sum::<f64>() + 0.5 * MASS * speed(run) * speed(run)
 }
 
 /// A piston that is pressed on its stop does not move when a disk hits it.

@@ -54,7 +54,7 @@ impl Spot {
 }
 
 /// Returns whether disks may push a wall along its surface. The rule of the disks is not known.
-fn has_friction(surface: &Surface<'_>) -> bool {
+pub(super) fn has_friction(surface: &Surface<'_>) -> bool {
     match surface.response {
         Response::Thermal(thermal) => !thermal.slip(),
         Response::Rule(rule) => hostile_contacts().any(|contact| rule.impulse(&contact).tangential() != 0.0),
