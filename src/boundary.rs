@@ -182,8 +182,8 @@ use area::Curves;
 /// until the run fails for lack of progress. A velocity or a normal that is not finite is an error.
 ///
 /// After each impulse on a wall with a mass, its velocity must be the one that the impulse gives, to 1e-6 of
-/// the speeds, or the lower, opposite one of a wall that a stop holds, and it must still touch the disk. A run
-/// does not notice what an impulse does to other walls of a body, nor that a wall that keeps a
+/// the speeds, or the lower, opposite one of a wall that a stop holds, and it must still touch the disk. A
+/// run does not notice what an impulse does to other walls of a body, nor that a wall that keeps a
 /// [`state`](Self::state) never leaves its rest, or stops or turns around without a stop.
 ///
 /// ```

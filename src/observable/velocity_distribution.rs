@@ -27,9 +27,9 @@ use crate::{Disk, ParameterError};
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity. For each mean velocity
-/// that is subtracted, the temperature in the unit of velocity counts one disk fewer. A gas of few disks whose
-/// total momentum is zero, such as a gas at rest in a periodic box, needs one of them: the momentum leaves one
-/// disk fewer free, and the cumulants in the frame of the container would differ from 0.
+/// that is subtracted, the temperature in the unit of velocity counts one disk fewer. A gas of few disks
+/// whose total momentum is zero, such as a gas at rest in a periodic box, needs one of them: the momentum
+/// leaves one disk fewer free, and the cumulants in the frame of the container would differ from 0.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
