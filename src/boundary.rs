@@ -399,7 +399,8 @@ pub trait Boundary {
     /// velocities, and everything else that impacts have changed.
     ///
     /// A checkpoint keeps these numbers, since the boundary that the caller gives to a resumed run begins
-    /// anew. The default is empty.
+    /// anew. All later results must be the same bits, so a wall that is not at rest between two impacts keeps
+    /// the time of the last one and its motion then, which no rounding has carried on. The default is empty.
     fn state(&self) -> Vec<f64> {
         Vec::new()
     }

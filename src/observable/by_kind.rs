@@ -7,7 +7,8 @@ use crate::{Disk, Kind};
 ///
 /// The snapshots that it passes on hold only these disks, in unchanged order. It also passes on the
 /// collisions in which a disk of the kind takes part. The snapshots at the start and at the end of a run hold
-/// only disks of the kind, too.
+/// only disks of the kind, too. Collisions keep the indices of the whole run, which are not those of these
+/// snapshots: [`Collision::ids`] name the same disks in both.
 ///
 /// In a collision with a disk of another kind, only one disk of the kind takes part. A rate per disk, such as
 /// [`rate_per_disk`](super::CollisionCounts::rate_per_disk), counts both partners as disks of the kind, and

@@ -39,7 +39,8 @@ pub enum Partner {
 pub struct Collision {
     /// Absolute time of the collision. A run until this time includes the collision.
     pub time: f64,
-    /// Index of the disk.
+    /// Index of the disk among all disks of the run, at this time. In a snapshot of some of the disks, or of
+    /// another time if disks come and go, its index may be another one; its [id](Self::ids) is the same.
     pub disk: usize,
     /// [Ids](crate::Disk::id) of the disk and of its partner; 0 for a wall.
     pub ids: [u64; 2],
