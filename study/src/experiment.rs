@@ -147,7 +147,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// If the parameters do not give walls.
     fn boundary(&self) -> Result<Self::Boundary, ExperimentError>;
 
-    /// Returns the disks at the start.
+    /// Returns the disks at the start. [`build`](Self::build) derives the seed from the seed of the ramp.
     ///
     /// A plan can ask for any number of disks: refuse a number that does not fit into memory before you
     /// allocate a vector for it.
@@ -253,7 +253,10 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Vec::new()
     }
 
-    /// Builds the simulation at the start of a ramp.
+    /// Builds the simulation at the start of a ramp from the seed of the ramp.
+    ///
+    /// The disks and the thermal walls have separate seeds, which follow from this one. To repeat a run of a
+    /// study, build it with the seed of its [`Record`]; disks made with this seed itself would be others.
     ///
     /// # Errors
     /// If the rule, the walls, the disks or the simulation cannot be made.

@@ -161,8 +161,8 @@ impl<E: Experiment> Table<E> {
     /// Creates a table from its name, the names and units of its columns, and a function that returns the
     /// rows of each record.
     ///
-    /// A row should have a number for each column: missing numbers become NaN, and surplus numbers are
-    /// ignored.
+    /// A row should have a number for each column: missing numbers become NaN, an empty cell of the file, and
+    /// surplus numbers are ignored.
     pub fn new(
         name: impl Into<String>,
         columns: impl IntoIterator<Item: Into<Heading>>,
