@@ -146,9 +146,9 @@ use area::Curves;
 ///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
 ///    radius R with a tangential mass counts as the impulse C/R along the surface. Elsewhere, walls answer as
 ///    bodies do: the speed that a blow here gives to a surface there, along some direction, is the speed that
-///    the same blow there, along this direction, gives here along its own. A surface without friction may
-///    move along itself, too; a blow along it is exempt. No wall jumps. The result is [`Reaction::Moved`] if
-///    the velocity changes, which needs a finite mass.
+///    the same blow there, along this direction, gives here along its own. A blow along a surface without
+///    friction is exempt; without a tangential mass, such a surface may also move along itself. No wall
+///    jumps. The result is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
 ///     wall that moves with it as a part of one body, at a time up to `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
@@ -399,8 +399,9 @@ pub trait Boundary {
     /// velocities, and everything else that impacts have changed.
     ///
     /// A checkpoint keeps these numbers, since the boundary that the caller gives to a resumed run begins
-    /// anew. All later results must be the same bits, so a wall that is not at rest between two impacts keeps
-    /// the time of the last one and its motion then, which no rounding has carried on. The default is empty.
+    /// anew. All later results must be the same bits. A motion that is carried on to the origin would be
+    /// rounded: return the time of the last impact instead, and the position and velocity at that time. The
+    /// default is empty.
     fn state(&self) -> Vec<f64> {
         Vec::new()
     }

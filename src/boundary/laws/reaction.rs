@@ -148,8 +148,10 @@ fn check_blow(
 ) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let surface = trial.boundary.surface(wall, place, time);
-    // A guide at a slant moves a wall along its surface, too, which only friction would feel.
-    let friction = if has_friction(&surface) { 1.0 } else { 0.0 };
+    // A guide at a slant moves a wall along its surface, too, which only friction would feel. A wall that
+    // states a tangential mass is not guided.
+    let is_felt = surface.tangential_mass.is_finite() || has_friction(&surface);
+    let friction = if is_felt { 1.0 } else { 0.0 };
     let (across, couple) = (friction * across, friction * couple);
     let (normal, tangent, velocity) = (surface.normal, surface.normal.perp(), surface.velocity);
     let (radius, masses) = (surface.radius, [surface.mass, surface.tangential_mass]);
