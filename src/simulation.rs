@@ -30,6 +30,7 @@ mod checking;
 mod checkpoint;
 mod closed_sinks;
 mod driving;
+mod engine;
 mod epoch;
 mod errors;
 mod event_loop;
@@ -37,6 +38,8 @@ mod events;
 mod exchange;
 mod forecasting;
 mod inlet;
+#[cfg(debug_assertions)]
+mod lending;
 mod limits;
 mod lookahead;
 mod mapping;
@@ -61,18 +64,14 @@ pub use inlet::Inlet;
 pub use limits::Limits;
 pub use warnings::Warning;
 
-use rand_xoshiro::Xoshiro256PlusPlus;
-
 use crate::boundary::{Boundary, Container, Overlap, Probe};
 use crate::collision::{CollisionRule, Frictional};
-use crate::instructions::Instructions;
-use crate::observable::{Mark, Observable, Partner, Snapshot};
+use crate::observable::{Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
-use cells::Cells;
-use lookahead::Lookahead;
-use state::{Bodies, Clock, Ledger};
+use engine::{Engine, Parts};
+use state::Clock;
 
 /// A system of disks that advances from event to event.
 ///
@@ -100,25 +99,8 @@ use state::{Bodies, Clock, Ledger};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Simulation<R = Frictional, B = Container, S = BySize> {
-    rule: R,
-    boundary: B,
-    /// Number of walls of the boundary. The results of the boundary are checked against this number.
-    wall_count: usize,
-    scheduler: S,
-    bodies: Bodies,
-    cells: Cells,
-    clock: Clock,
-    generator: Xoshiro256PlusPlus,
-    counters: Counters,
-    lookahead: Lookahead,
-    /// Processor instructions that predictions may use. The results are the same with any of them, bit for
-    /// bit.
-    instructions: Instructions,
-    scratch: Scratch,
-    inlets: Vec<Inlet>,
-    ledger: Ledger,
-    /// Marks of this run and of its walls.
-    marks: [Mark; 2],
+    parts: Parts<R, B, S>,
+    engine: Engine,
 }
 
 /// A rule that is chosen when the program runs.
@@ -164,50 +146,37 @@ const _: () = {
     is_sent_and_shared::<BuildError>();
 };
 
-/// Buffers that are used again and again.
-#[derive(Debug, Clone, Default)]
-struct Scratch {
-    /// Buffers for the neighbors of one disk, or of both disks of a collision.
-    found: [Vec<u32>; 2],
-    /// Times of the next events of all disks.
-    due: Vec<f64>,
-    /// Number of disks for which the scheduler has room.
-    seats: usize,
-    /// Number of events and time at which all disks were last checked after a run.
-    checked: Option<(u64, f64)>,
-}
-
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the present absolute time.
     pub fn time(&self) -> f64 {
-        self.clock.time()
+        self.engine.clock.time()
     }
 
     /// Returns the number of disks.
     pub fn len(&self) -> usize {
-        self.bodies.len()
+        self.engine.bodies.len()
     }
 
     /// Returns whether there are no disks.
     pub fn is_empty(&self) -> bool {
-        self.bodies.len() == 0
+        self.engine.bodies.len() == 0
     }
 
     /// Returns a disk as it is now, or `None` if there is no such disk.
     pub fn disk(&self, disk: usize) -> Option<Disk> {
-        (disk < self.len()).then(|| self.bodies.disk(disk, self.clock.now))
+        (disk < self.len()).then(|| self.engine.bodies.disk(disk, self.engine.clock.now))
     }
 
     /// Returns the index of the disk with this [id](Disk::id), or `None` if it is not in the run.
     ///
     /// The call examines all disks.
     pub fn index_of(&self, id: u64) -> Option<usize> {
-        (0..self.len()).find(|&disk| self.bodies.id(disk) == id)
+        (0..self.len()).find(|&disk| self.engine.bodies.id(disk) == id)
     }
 
     /// Returns all disks as they are now.
     pub fn disks(&self) -> Vec<Disk> {
-        self.bodies.disks(self.clock.now)
+        self.engine.bodies.disks(self.engine.clock.now)
     }
 
     /// Returns the disk or wall that another disk would overlap most deeply now, and the depth, or `None` if
@@ -227,12 +196,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn overlap(&self, disk: &Disk) -> Option<Overlap<Partner>> {
-        let (position, domain) = (disk.position(), self.boundary.domain());
+        let (position, domain) = (disk.position(), self.parts.boundary.domain());
         let with_disk = |other: usize| {
-            let apart = domain.separation(position, self.bodies.position(other, self.clock.now)).length();
-            Overlap::new(Partner::Disk(other), disk.radius() + self.bodies.radius(other) - apart)
+            let apart = domain
+                .separation(position, self.engine.bodies.position(other, self.engine.clock.now))
+                .length();
+            Overlap::new(Partner::Disk(other), disk.radius() + self.engine.bodies.radius(other) - apart)
         };
-        let wall = self.boundary.overlap(&Probe::of(disk, self.clock.now));
+        let wall = self.parts.boundary.overlap(&Probe::of(disk, self.engine.clock.now));
         let wall = wall.map(|overlap| Overlap::new(Partner::Wall(overlap.with), overlap.depth));
         Overlap::deepest((0..self.len()).map(with_disk).chain(wall))
     }
@@ -250,35 +221,35 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the present state with the requested time. [`Self::time`] may differ from that time by
     /// rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
-        let Self { bodies, boundary, marks, .. } = self;
-        Snapshot::of_run(time, self.clock.now, bodies, boundary, bodies.gravity, *marks)
+        let Engine { bodies, clock, marks, .. } = &self.engine;
+        Snapshot::of_run(time, clock.now, bodies, &self.parts.boundary, bodies.gravity, *marks)
     }
 
     /// Returns the numbers of events since the simulation was built.
     pub const fn counters(&self) -> &Counters {
-        &self.counters
+        &self.engine.counters
     }
 
     /// Returns the rule between the disks.
     pub const fn rule(&self) -> &R {
-        &self.rule
+        &self.parts.rule
     }
 
     /// Returns the boundary.
     pub const fn boundary(&self) -> &B {
-        &self.boundary
+        &self.parts.boundary
     }
 
     /// Returns gravity.
     pub const fn gravity(&self) -> Gravity {
-        self.bodies.gravity
+        self.engine.bodies.gravity
     }
 
     /// Replaces the rule from now on.
     ///
     /// The predictions stay valid, since a rule decides the outcome of a collision and not its time.
     pub fn set_rule(&mut self, rule: R) {
-        self.rule = rule;
+        self.parts.rule = rule;
     }
 
     /// Sets gravity from now on.
@@ -291,14 +262,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// that times as late as the present are too coarse. The simulation then stays unchanged.
     pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
         let gravity = gravity.into().checked()?;
-        let epoch_length = self.bodies.epoch_length_under(gravity);
-        let is_coarse = Clock { epoch_length, ..self.clock }.coarseness(self.clock.now).is_some();
+        let epoch_length = self.engine.bodies.epoch_length_under(gravity);
+        let is_coarse =
+            Clock { epoch_length, ..self.engine.clock }.coarseness(self.engine.clock.now).is_some();
         let requirement = "so small that the run can still tell times apart";
         accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity.larger())?;
-        self.shift_epoch(self.clock.exact_offset());
-        self.bodies.set_gravity(gravity, self.clock.now);
-        self.balance_anew(&self.boundary.domain());
-        self.clock.epoch_length = self.bodies.epoch_length();
+        self.shift_epoch(self.engine.clock.exact_offset());
+        self.engine.bodies.set_gravity(gravity, self.engine.clock.now);
+        self.engine.balance_anew(&self.parts.boundary.domain());
+        self.engine.clock.epoch_length = self.engine.bodies.epoch_length();
         self.predict_all();
         Ok(())
     }
@@ -313,8 +285,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation
     /// then stays unchanged.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
-        (self.wall_count, self.cells) = self.admit(&mut boundary)?;
-        self.boundary = boundary;
+        (self.engine.wall_count, self.engine.cells) = self.admit(&mut boundary)?;
+        self.parts.boundary = boundary;
         self.predict_all();
         Ok(())
     }

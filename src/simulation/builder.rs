@@ -5,14 +5,12 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cells::{CellSize, Cells};
-use super::lookahead::Lookahead;
+use super::engine::{Engine, Parts};
 use super::state::{Bodies, Clock, Identities, Ledger};
-use super::{BuildError, Counters, Scratch, Simulation};
+use super::{BuildError, Simulation};
 use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
-use crate::instructions::Instructions;
-use crate::observable::Mark;
 use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
@@ -142,22 +140,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         }
         let energy = bodies.energy(0.0, &boundary.domain())[0];
         let ledger = Ledger::new(self.start_time, energy);
+        let generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
         let mut simulation = Simulation {
-            rule: self.rule,
-            boundary,
-            wall_count,
-            scheduler: self.scheduler,
-            bodies,
-            cells,
-            clock,
-            generator: Xoshiro256PlusPlus::seed_from_u64(self.seed),
-            counters: Counters::default(),
-            lookahead: Lookahead::default(),
-            instructions: Instructions::detected(),
-            scratch: Scratch::default(),
-            inlets: Vec::new(),
-            ledger,
-            marks: [Mark::new(), Mark::new()],
+            parts: Parts { rule: self.rule, boundary, scheduler: self.scheduler },
+            engine: Engine::new(wall_count, bodies, cells, clock, generator, ledger),
         };
         simulation.predict_all();
         Ok(simulation)
@@ -166,8 +152,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
 /// Returns the number of walls and the neighbor cells, if the disks fit into the boundary at this time
 /// offset.
-pub(super) fn fit<B: Boundary + ?Sized>(
-    boundary: &B,
+pub(super) fn fit(
+    boundary: &dyn Boundary,
     disks: &[Disk],
     offset: f64,
 ) -> Result<(usize, Cells), BuildError> {
@@ -207,14 +193,14 @@ pub(super) fn check_epoch(clock: &Clock, offset: f64) -> Result<(), BuildError> 
 }
 
 /// Returns the number of walls, or an error if there are too many for the engine.
-pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, BuildError> {
+pub(super) fn count_walls(boundary: &dyn Boundary) -> Result<usize, BuildError> {
     let count = boundary.wall_count();
     accept(count <= MOST_WALLS, "number of walls", "at most 2^16", count as f64)?;
     Ok(count)
 }
 
 /// Returns neighbor cells that suit these disks.
-pub(super) fn cells_around<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
+pub(super) fn cells_around(boundary: &dyn Boundary, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
     let is_bounded = domain.width().is_finite() && domain.bottom.is_finite();
@@ -237,7 +223,7 @@ pub(super) fn too_small(domain: &Domain, diameter: f64) -> BuildError {
 }
 
 /// Checks that all disks are inside the domain and none overlaps a wall at this time offset.
-fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64) -> Result<(), BuildError> {
+fn check_inside(boundary: &dyn Boundary, disks: &[Disk], offset: f64) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
@@ -262,11 +248,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
 }
 
 /// Checks that no two disks overlap.
-fn check_overlaps<B: Boundary + ?Sized>(
-    boundary: &B,
-    disks: &[Disk],
-    cells: &Cells,
-) -> Result<(), BuildError> {
+fn check_overlaps(boundary: &dyn Boundary, disks: &[Disk], cells: &Cells) -> Result<(), BuildError> {
     let domain = boundary.domain();
     let mut found = vec![0; cells.room()];
     for first in 0..disks.len() {

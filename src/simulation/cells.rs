@@ -44,7 +44,7 @@ pub(super) const SPARE_DISKS: usize = 64;
 /// A ring of ghost cells surrounds the grid. Beyond walls, ghosts are empty; at periodic sides and ends, they
 /// mirror the cells of the opposite side. Where disks differ in size, the grid belongs to the smallest class,
 /// and each larger class has a layer above it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Cells {
     grid: Grid,
     contents: Contents,
@@ -59,8 +59,8 @@ impl Cells {
     /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for
     /// them. The cells also suit a disk of the diameter `further` and, if this diameter is the largest, any
     /// smaller disk.
-    pub(super) fn new<B: Boundary + ?Sized>(
-        boundary: &B,
+    pub(super) fn new(
+        boundary: &dyn Boundary,
         cell_size: CellSize,
         disks: impl ExactSizeIterator<Item = (DVec2, f64)> + Clone,
         further: Option<f64>,
@@ -89,8 +89,8 @@ impl Cells {
 
     /// Creates cells with these layouts, one for each class; there is at least one class. The disks, of these
     /// diameters, are added afterwards.
-    pub(super) fn empty<B: Boundary + ?Sized>(
-        boundary: &B,
+    pub(super) fn empty(
+        boundary: &dyn Boundary,
         layouts: &Layouts,
         diameters: impl Iterator<Item = f64>,
     ) -> Self {
@@ -117,7 +117,7 @@ impl Cells {
         }
     }
 
-    fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
+    fn mark_walls(&mut self, boundary: &dyn Boundary, largest_radius: f64) {
         for place in self.grid.places() {
             if boundary.may_touch(&self.grid.region(place), largest_radius) {
                 self.contents.mark_wall(self.grid.index(place));

@@ -10,6 +10,7 @@
 use glam::DVec2;
 
 use super::Simulation;
+use super::engine::Engine;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::forecasting::HORIZON;
 use super::state::{FARTHEST, Forecast};
@@ -42,10 +43,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// is enlarged by the largest gap. The depth minus this gap is the depth of the disk itself.
     #[inline]
     pub(super) fn check_touch(&mut self, disk: usize, wall: usize) -> Outcome<()> {
-        let probe = self.probe(disk);
+        let probe = self.engine.probe(disk);
         let gap = NEAR * probe.radius();
-        match self.boundary.overlap(&probe.with_radius(probe.radius() + gap)) {
-            Some(overlap) if overlap.depth - gap <= self.counters.max_wall_overlap => Ok(()),
+        match self.parts.boundary.overlap(&probe.with_radius(probe.radius() + gap)) {
+            Some(overlap) if overlap.depth - gap <= self.engine.counters.max_wall_overlap => Ok(()),
             // The deepest wall need not be the one that was touched.
             Some(Overlap { with: deepest, depth }) => {
                 self.note_overlap(disk, Partner::Wall(wall), Partner::Wall(deepest), depth - gap)
@@ -59,7 +60,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     #[inline(never)]
     pub(super) fn see_wall(&self, wall: usize, collision: &mut Collision) -> DVec2 {
-        let found = self.boundary.surface(wall, collision.position, self.clock.now).velocity;
+        let found = self.parts.boundary.surface(wall, collision.position, self.engine.clock.now).velocity;
         std::mem::replace(&mut collision.velocities[1], found)
     }
 
@@ -83,7 +84,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // speed, in the other direction.
         let is_held = |direction| {
             let (found, expected) = (found.dot(direction), expected.dot(direction));
-            found * expected <= 0.0 && found.abs() <= expected.abs() && !self.boundary.state().is_empty()
+            found * expected <= 0.0
+                && found.abs() <= expected.abs()
+                && !self.parts.boundary.state().is_empty()
         };
         let across = normal.perp();
         // A guide at a slant moves a wall along its surface, too. No disk feels it if there is no friction.
@@ -96,21 +99,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return Ok(());
         }
         let fault = BoundaryFault::Reaction { wall, expected, found };
-        Err(self.boundary_fault(collision.disk, fault).into())
+        Err(self.engine.boundary_fault(collision.disk, fault).into())
     }
 
     /// Checks that a wall has not jumped away from a disk that it touches, or into the disk.
     #[cold]
     #[inline(never)]
     pub(super) fn check_place(&self, disk: usize, wall: usize) -> Outcome<()> {
-        self.check_gap(disk, wall, &self.probe(disk))?;
+        self.check_gap(disk, wall, &self.engine.probe(disk))?;
         self.check_passed(disk)
-    }
-
-    /// Returns a probe of the disk as it is now, for queries to the boundary.
-    pub(super) fn probe(&self, disk: usize) -> Probe {
-        let Material { radius, kind, .. } = self.bodies.material(disk);
-        Probe::new(self.bodies.position(disk, self.clock.now), radius, self.clock.now).with_kind(kind)
     }
 
     /// Records the largest overlap so far, or returns an error if an overlap is larger than rounding.
@@ -127,25 +124,25 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         depth: f64,
     ) -> Outcome<()> {
         let radius = match partner {
-            Partner::Disk(other) => self.bodies.radius(disk).min(self.bodies.radius(other)),
-            Partner::Wall(_) => self.bodies.radius(disk),
+            Partner::Disk(other) => self.engine.bodies.radius(disk).min(self.engine.bodies.radius(other)),
+            Partner::Wall(_) => self.engine.bodies.radius(disk),
         };
         // A depth that is not a number would stay the largest forever.
         if depth.is_nan() || depth > DEEP * radius + self.rounding_at(disk, partner) {
             return Err(self.false_contact(disk, inside, depth).into());
         }
         match partner {
-            Partner::Disk(_) => self.counters.max_overlap = depth,
-            Partner::Wall(_) => self.counters.max_wall_overlap = depth,
+            Partner::Disk(_) => self.engine.counters.max_overlap = depth,
+            Partner::Wall(_) => self.engine.counters.max_wall_overlap = depth,
         }
         Ok(())
     }
 
     /// Returns whether a disk on its present flight touches a wall at `time`, up to rounding.
     pub(super) fn touches(&self, disk: usize, wall: usize, time: f64) -> bool {
-        let Material { radius, kind, .. } = self.bodies.material(disk);
-        let probe = Probe::new(self.bodies.position(disk, time), radius, time).with_kind(kind);
-        self.boundary.overlap(&self.enlarged(disk, wall, &probe)).is_some()
+        let Material { radius, kind, .. } = self.engine.bodies.material(disk);
+        let probe = Probe::new(self.engine.bodies.position(disk, time), radius, time).with_kind(kind);
+        self.parts.boundary.overlap(&self.enlarged(disk, wall, &probe)).is_some()
     }
 
     /// Returns a probe that overlaps each wall from which a gap within rounding separates the disk.
@@ -156,16 +153,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Checks that a gap before a wall is within rounding.
     #[cold]
     fn check_gap(&self, disk: usize, wall: usize, probe: &Probe) -> Outcome<()> {
-        let (now, radius) = (self.clock.now, probe.radius());
+        let (now, radius) = (self.engine.clock.now, probe.radius());
         let within = self.enlarged(disk, wall, probe);
         // A wall that jumps away from the disks may have jumped within the rounding error of the time. The
         // engine never passes times before the epoch.
-        let before = (now - self.clock.rounding()).max(0.0);
-        if [now, before].iter().any(|&time| self.boundary.overlap(&within.with_time(time)).is_some()) {
+        let before = (now - self.engine.clock.rounding()).max(0.0);
+        if [now, before].iter().any(|&time| self.parts.boundary.overlap(&within.with_time(time)).is_some()) {
             return Ok(());
         }
         let mut gaps = std::iter::successors(Some(NEAR * radius), |gap| Some(2.0 * gap)).take(MOST_DOUBLINGS);
-        let found = |gap: f64| Some(gap - self.boundary.overlap(&probe.with_radius(radius + gap))?.depth);
+        let found =
+            |gap: f64| Some(gap - self.parts.boundary.overlap(&probe.with_radius(radius + gap))?.depth);
         let gap = gaps.find_map(found).unwrap_or(f64::INFINITY);
         Err(self.false_contact(disk, Partner::Wall(wall), -gap).into())
     }
@@ -176,25 +174,20 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// the epoch. The time of a touch is rounded as absolute times are, since some walls know only absolute
     /// times. Both the disk and the wall move during this error of the time.
     fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
-        let now = self.clock.now;
-        let position = self.bodies.position(disk, now);
-        let way = self.fastest() * self.clock.epoch_length;
+        let now = self.engine.clock.now;
+        let position = self.engine.bodies.position(disk, now);
+        let way = self.engine.fastest() * self.engine.clock.epoch_length;
         let rounding = ROUNDINGS * (position.x.abs() + position.y.abs() + way);
         let Partner::Wall(wall) = partner else { return rounding };
-        let speed = self.boundary.surface(wall, position, now).velocity.length();
-        rounding + self.clock.rounding() * (speed + self.fastest())
-    }
-
-    /// Returns the speed that no disk exceeds in this epoch.
-    fn fastest(&self) -> f64 {
-        FARTHEST * self.bodies.typical_diameter / self.clock.epoch_length
+        let speed = self.parts.boundary.surface(wall, position, now).velocity.length();
+        rounding + self.engine.clock.rounding() * (speed + self.engine.fastest())
     }
 
     /// Checks a disk that reached the horizon of a search without a touch: no later search would find a wall
     /// that the disk has passed.
     pub(super) fn check_passed(&self, disk: usize) -> Outcome<()> {
-        let probe = self.probe(disk);
-        match self.boundary.overlap(&probe) {
+        let probe = self.engine.probe(disk);
+        match self.parts.boundary.overlap(&probe) {
             Some(Overlap { with: wall, depth })
                 if depth.is_nan()
                     || depth > DEEP * probe.radius() + self.rounding_at(disk, Partner::Wall(wall)) =>
@@ -209,13 +202,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// check. More checks would cost more than the runs. A scheduler that names no disk at all is noticed
     /// when an epoch has passed.
     pub(super) fn check_sometimes(&mut self) -> Outcome<()> {
-        let (events, time) = (self.counters.events(), self.time());
-        let is_due = self.scratch.checked.is_none_or(|(before, since)| {
-            events - before >= self.len() as u64 || time - since >= self.clock.epoch_length
+        let (events, time) = (self.engine.counters.events(), self.time());
+        let is_due = self.engine.scratch.checked.is_none_or(|(before, since)| {
+            events - before >= self.len() as u64 || time - since >= self.engine.clock.epoch_length
         });
         if is_due {
-            self.check_all(self.clock.now)?;
-            self.scratch.checked = Some((events, time));
+            self.check_all(self.engine.clock.now)?;
+            self.engine.scratch.checked = Some((events, time));
         }
         Ok(())
     }
@@ -223,16 +216,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Checks that no event before this time offset was lost, and that all disks are in the domain at that
     /// time.
     pub(super) fn check_all(&self, offset: f64) -> Outcome<()> {
-        let domain = self.boundary.domain();
-        let rounding = self.clock.rounding() * self.fastest();
-        for (disk, particle) in self.bodies.particles.iter().enumerate() {
+        let domain = self.parts.boundary.domain();
+        let rounding = self.engine.clock.rounding() * self.engine.fastest();
+        for (disk, particle) in self.engine.bodies.particles.iter().enumerate() {
             if particle.forecast.due() < offset {
-                return Err(self.overdue(disk, particle.forecast.due()).into());
+                return Err(self.engine.overdue(disk, particle.forecast.due()).into());
             }
-            let position = self.bodies.position(disk, offset);
-            if !domain.contains(position, rounding + self.bodies.radius(disk)) {
+            let position = self.engine.bodies.position(disk, offset);
+            if !domain.contains(position, rounding + self.engine.bodies.radius(disk)) {
                 let DVec2 { x, y } = position;
-                return Err(self.boundary_fault(disk, BoundaryFault::Outside { x, y }).into());
+                return Err(self.engine.boundary_fault(disk, BoundaryFault::Outside { x, y }).into());
             }
         }
         Ok(())
@@ -245,7 +238,33 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the name of the partner if it is a wall.
     pub(super) fn name_of(&self, partner: Partner) -> Option<String> {
         let Partner::Wall(wall) = partner else { return None };
-        Some(self.boundary.wall_name(wall).into_owned())
+        Some(self.parts.boundary.wall_name(wall).into_owned())
+    }
+
+    /// Repeats the search that returned an impossible touch, in order to report the touch.
+    #[cold]
+    pub(super) fn impossible_touch(&self, disk: usize) -> RunError {
+        let now = self.engine.clock.now;
+        let until = now + HORIZON * self.engine.clock.epoch_length;
+        let FirstTouch::At(touch) = self.parts.boundary.first_touch(&self.engine.flight(disk), until) else {
+            return self.engine.boundary_fault(disk, BoundaryFault::Search);
+        };
+        let (wall, early_by) = (touch.wall, now - touch.time);
+        self.engine
+            .boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.engine.wall_count })
+    }
+}
+
+impl Engine {
+    /// Returns a probe of the disk as it is now, for queries to the boundary.
+    pub(super) fn probe(&self, disk: usize) -> Probe {
+        let Material { radius, kind, .. } = self.bodies.material(disk);
+        Probe::new(self.bodies.position(disk, self.clock.now), radius, self.clock.now).with_kind(kind)
+    }
+
+    /// Returns the speed that no disk exceeds in this epoch.
+    fn fastest(&self) -> f64 {
+        FARTHEST * self.bodies.typical_diameter / self.clock.epoch_length
     }
 
     #[cold]
@@ -262,17 +281,5 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     pub(super) fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
         RunError::Boundary { disk, time: self.time(), fault }
-    }
-
-    /// Repeats the search that returned an impossible touch, in order to report the touch.
-    #[cold]
-    pub(super) fn impossible_touch(&self, disk: usize) -> RunError {
-        let now = self.clock.now;
-        let until = now + HORIZON * self.clock.epoch_length;
-        let FirstTouch::At(touch) = self.boundary.first_touch(&self.flight(disk), until) else {
-            return self.boundary_fault(disk, BoundaryFault::Search);
-        };
-        let (wall, early_by) = (touch.wall, now - touch.time);
-        self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
     }
 }

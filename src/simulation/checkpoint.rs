@@ -260,29 +260,29 @@ impl<'de> Deserialize<'de> for Checkpoint {
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Takes a checkpoint of the run in its present state.
     pub fn checkpoint(&self) -> Checkpoint {
-        let particles = &self.bodies.particles;
+        let particles = &self.engine.bodies.particles;
         Checkpoint(Saved {
-            rule: self.rule.fingerprint(),
-            boundary: self.boundary.fingerprint(),
-            domain: self.boundary.domain(),
-            models: self.bodies.models(),
-            gravity: self.bodies.gravity.acceleration(),
+            rule: self.parts.rule.fingerprint(),
+            boundary: self.parts.boundary.fingerprint(),
+            domain: self.parts.boundary.domain(),
+            models: self.engine.bodies.models(),
+            gravity: self.engine.bodies.gravity.acceleration(),
             trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
-            spins: self.bodies.spins.clone(),
-            images: self.bodies.images.clone(),
-            identities: self.bodies.identities.clone(),
-            typical_diameter: self.bodies.typical_diameter,
-            fresh_count: self.bodies.fresh_count,
-            inlets: self.inlets.clone(),
-            walls: self.boundary.state(),
+            spins: self.engine.bodies.spins.clone(),
+            images: self.engine.bodies.images.clone(),
+            identities: self.engine.bodies.identities.clone(),
+            typical_diameter: self.engine.bodies.typical_diameter,
+            fresh_count: self.engine.bodies.fresh_count,
+            inlets: self.engine.inlets.clone(),
+            walls: self.parts.boundary.state(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
-            layouts: self.cells.layouts(),
-            places: self.cells.places.clone(),
-            generator: self.generator.clone(),
+            layouts: self.engine.cells.layouts(),
+            places: self.engine.cells.places.clone(),
+            generator: self.engine.generator.clone(),
             // The number of events until the next check is not part of the state.
-            clock: Clock { events_to_look: 0, ..self.clock },
-            counters: self.counters,
-            ledger: self.ledger,
+            clock: Clock { events_to_look: 0, ..self.engine.clock },
+            counters: self.engine.counters,
+            ledger: self.engine.ledger,
         })
     }
 }

@@ -104,7 +104,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         driving: &mut D,
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {
-        self.check_end(limits.end()).map_err(|error| *error)?;
+        self.engine.check_end(limits.end()).map_err(|error| *error)?;
         let (start, before) = (Instant::now(), self.counters().collisions());
         driving.times().start_at(self.time());
         loop {

@@ -2,6 +2,7 @@
 
 use super::builder::fit;
 use super::cells::Cells;
+use super::engine::Parts;
 use super::traffic::check_inlets;
 use super::{BuildError, Simulation};
 use crate::boundary::Boundary;
@@ -26,14 +27,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with_rule<T: CollisionRule>(self, rule: T) -> Simulation<T, B, S> {
-        self.exchanged(|_, boundary, scheduler| (rule, boundary, scheduler))
+        let Parts { boundary, scheduler, .. } = self.parts;
+        Simulation { parts: Parts { rule, boundary, scheduler }, engine: self.engine }
     }
 
     /// Returns the same simulation with another scheduler, which may be of another type.
     ///
     /// The trajectory is the same, bit for bit.
     pub fn with_scheduler<T: EventScheduler>(self, scheduler: T) -> Simulation<R, B, T> {
-        let mut simulation = self.exchanged(|rule, boundary, _| (rule, boundary, scheduler));
+        let Parts { rule, boundary, .. } = self.parts;
+        let mut simulation = Simulation { parts: Parts { rule, boundary, scheduler }, engine: self.engine };
         simulation.reset_scheduler();
         simulation
     }
@@ -45,8 +48,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls.
     pub fn with_boundary<T: Boundary>(mut self, mut boundary: T) -> Result<Simulation<R, T, S>, BuildError> {
-        (self.wall_count, self.cells) = self.admit(&mut boundary)?;
-        let mut simulation = self.exchanged(|rule, _, scheduler| (rule, boundary, scheduler));
+        (self.engine.wall_count, self.engine.cells) = self.admit(&mut boundary)?;
+        let Parts { rule, scheduler, .. } = self.parts;
+        let mut simulation = Simulation { parts: Parts { rule, boundary, scheduler }, engine: self.engine };
         simulation.predict_all();
         Ok(simulation)
     }
@@ -55,40 +59,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// for them. The motion of walls that react is given from the time origin on, so the origin moves to the
     /// present.
     pub(super) fn admit(&mut self, boundary: &mut impl Boundary) -> Result<(usize, Cells), BuildError> {
-        let by = if boundary.state().is_empty() { 0.0 } else { self.clock.exact_offset() };
-        boundary.set_time_origin(self.clock.origin + by);
-        check_inlets(boundary, &self.inlets)?;
-        let fitted = fit(boundary, &self.disks(), self.clock.now - by)?;
+        let by = if boundary.state().is_empty() { 0.0 } else { self.engine.clock.exact_offset() };
+        boundary.set_time_origin(self.engine.clock.origin + by);
+        check_inlets(boundary, &self.engine.inlets)?;
+        let fitted = fit(boundary, &self.disks(), self.engine.clock.now - by)?;
         if by > 0.0 {
             self.shift_epoch(by);
         }
         self.count_jumps(boundary);
-        self.balance_anew(&boundary.domain());
-        self.marks[1] = Mark::new();
+        self.engine.balance_anew(&boundary.domain());
+        self.engine.marks[1] = Mark::new();
         Ok(fitted)
-    }
-
-    /// Exchanges parts, and leaves everything else unchanged.
-    fn exchanged<R2, B2, S2>(self, new: impl FnOnce(R, B, S) -> (R2, B2, S2)) -> Simulation<R2, B2, S2> {
-        let Self { wall_count, bodies, cells, clock, generator, .. } = self;
-        let Self { counters, lookahead, instructions, scratch, inlets, ledger, marks, .. } = self;
-        let (rule, boundary, scheduler) = new(self.rule, self.boundary, self.scheduler);
-        Simulation {
-            rule,
-            boundary,
-            wall_count,
-            scheduler,
-            bodies,
-            cells,
-            clock,
-            generator,
-            counters,
-            lookahead,
-            instructions,
-            scratch,
-            inlets,
-            ledger,
-            marks,
-        }
     }
 }

@@ -4,6 +4,7 @@
 use std::hint::select_unpredictable;
 
 use super::Simulation;
+use super::engine::Engine;
 use super::prediction::{LANES, earliest_collision, find_partners, leave_cell, leave_cells};
 use super::state::{Earliest, Exit, Forecast};
 use crate::Flight;
@@ -26,7 +27,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The function is not inlined, since the whole search is inlined into it.
     #[inline(never)]
     pub(super) fn find_next(&mut self, disk: usize) {
-        self.find_partner(disk);
+        self.engine.find_partner(disk);
         self.end_flight(disk);
     }
 
@@ -34,10 +35,76 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// disk's own flight in its cell stays the same.
     #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
-        self.find_partner(disk);
+        self.engine.find_partner(disk);
         self.schedule(disk);
     }
 
+    /// Finds the next events of two disks, whose neighbors have been listed.
+    #[inline(always)]
+    pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
+        let Engine { instructions, bodies, cells, clock, scratch, .. } = &mut self.engine;
+        let (instructions, periods, now) = (*instructions, cells.grid().periods(), clock.now);
+        find_partners(instructions, instructions, bodies, periods, disks, &mut scratch.found, counts, now);
+        let at_wall = leave_cells(instructions, bodies, cells, disks[0], disks[1], now);
+        for (disk, at_wall) in disks.into_iter().zip(at_wall) {
+            if at_wall {
+                self.end_at_wall(disk);
+            }
+        }
+    }
+
+    /// Passes the time of a disk's next event to the scheduler.
+    #[inline(always)]
+    pub(super) fn schedule(&mut self, disk: usize) {
+        self.parts.scheduler.set(disk, self.engine.forecast(disk).due());
+    }
+
+    /// Finds when and where a disk's flight in its cell ends.
+    #[inline(always)]
+    pub(super) fn end_flight(&mut self, disk: usize) {
+        self.engine.instructions.run(
+            #[inline(always)]
+            move || self.end_flight_here(disk),
+        );
+    }
+
+    #[inline(always)]
+    fn end_flight_here(&mut self, disk: usize) {
+        if leave_cell(&mut self.engine.bodies, &self.engine.cells, disk, self.engine.clock.now) {
+            self.end_at_wall(disk);
+        }
+    }
+
+    /// Ends the flight at a wall, if the disk touches one before it leaves its cell.
+    fn end_at_wall(&mut self, disk: usize) {
+        let now = self.engine.clock.now;
+        let horizon = now + HORIZON * self.engine.clock.epoch_length;
+        let flight = self.engine.flight(disk);
+        let until = self.engine.forecast(disk).exit_due.min(horizon);
+        let (time, exit) = match self.parts.boundary.first_touch(&flight, until) {
+            FirstTouch::At(Touch { time, wall }) => {
+                self.engine.forecast_mut(disk).wall = wall as u16;
+                // A prediction cannot return an error. An impossible touch is due immediately, and is
+                // reported when its turn comes.
+                let is_possible = time >= now && time <= until && wall < self.engine.wall_count;
+                if is_possible { (time, Exit::Wall) } else { (now, Exit::Impossible) }
+            }
+            FirstTouch::NotBefore(open) if open >= until => {
+                if self.engine.forecast(disk).exit_due <= horizon {
+                    return;
+                }
+                (horizon, Exit::Horizon)
+            }
+            FirstTouch::NotBefore(open) if open > now => (open, Exit::Horizon),
+            // The search makes no progress, so the run would not either.
+            FirstTouch::NotBefore(_) => (now, Exit::Impossible),
+        };
+        let forecast = self.engine.forecast_mut(disk);
+        (forecast.exit_due, forecast.exit) = (time, exit);
+    }
+}
+
+impl Engine {
     /// Finds the next collision of a disk among all its neighbors.
     #[inline(always)]
     fn find_partner(&mut self, disk: usize) {
@@ -50,29 +117,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(always)]
     pub(super) fn neighbors(&mut self, disk: usize, list: usize) -> usize {
         self.cells.around(disk, &mut self.scratch.found[list])
-    }
-
-    /// Finds the next events of two disks, whose neighbors have been listed.
-    #[inline(always)]
-    pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
-        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
-        let found = &mut self.scratch.found;
-        find_partners(
-            self.instructions,
-            self.instructions,
-            &mut self.bodies,
-            periods,
-            disks,
-            found,
-            counts,
-            now,
-        );
-        let at_wall = leave_cells(self.instructions, &mut self.bodies, &self.cells, disks[0], disks[1], now);
-        for (disk, at_wall) in disks.into_iter().zip(at_wall) {
-            if at_wall {
-                self.end_at_wall(disk);
-            }
-        }
     }
 
     #[inline(always)]
@@ -98,12 +142,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.forecast_mut(disk).set_collision(earliest, collisions);
     }
 
-    /// Passes the time of a disk's next event to the scheduler.
-    #[inline(always)]
-    pub(super) fn schedule(&mut self, disk: usize) {
-        self.scheduler.set(disk, self.forecast(disk).due());
-    }
-
     /// Enlarges the buffer for neighbors to the size that the cells need.
     ///
     /// The need grows when a cell gets crowded, so this method is called wherever disks enter cells.
@@ -121,50 +159,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         for found in &mut self.scratch.found {
             found.resize(room, 0);
         }
-    }
-
-    /// Finds when and where a disk's flight in its cell ends.
-    #[inline(always)]
-    pub(super) fn end_flight(&mut self, disk: usize) {
-        self.instructions.run(
-            #[inline(always)]
-            move || self.end_flight_here(disk),
-        );
-    }
-
-    #[inline(always)]
-    fn end_flight_here(&mut self, disk: usize) {
-        if leave_cell(&mut self.bodies, &self.cells, disk, self.clock.now) {
-            self.end_at_wall(disk);
-        }
-    }
-
-    /// Ends the flight at a wall, if the disk touches one before it leaves its cell.
-    fn end_at_wall(&mut self, disk: usize) {
-        let now = self.clock.now;
-        let horizon = now + HORIZON * self.clock.epoch_length;
-        let flight = self.flight(disk);
-        let until = self.forecast(disk).exit_due.min(horizon);
-        let (time, exit) = match self.boundary.first_touch(&flight, until) {
-            FirstTouch::At(Touch { time, wall }) => {
-                self.forecast_mut(disk).wall = wall as u16;
-                // A prediction cannot return an error. An impossible touch is due immediately, and is
-                // reported when its turn comes.
-                let is_possible = time >= now && time <= until && wall < self.wall_count;
-                if is_possible { (time, Exit::Wall) } else { (now, Exit::Impossible) }
-            }
-            FirstTouch::NotBefore(open) if open >= until => {
-                if self.forecast(disk).exit_due <= horizon {
-                    return;
-                }
-                (horizon, Exit::Horizon)
-            }
-            FirstTouch::NotBefore(open) if open > now => (open, Exit::Horizon),
-            // The search makes no progress, so the run would not either.
-            FirstTouch::NotBefore(_) => (now, Exit::Impossible),
-        };
-        let forecast = self.forecast_mut(disk);
-        (forecast.exit_due, forecast.exit) = (time, exit);
     }
 
     #[inline]
@@ -224,7 +218,7 @@ mod tests {
             .disks(disks)
             .gravity(0.1)
             .build()?;
-        run.instructions = instructions;
+        run.engine.instructions = instructions;
         run.run_until(100.0, &mut ())?;
         Ok(run.disks())
     }

@@ -43,20 +43,24 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         check_speeds(disks.iter().map(Disk::velocity))?;
         let stay = |(index, disk): (usize, &Disk)| {
             // Some walls exist only for some kinds of disks.
-            disk.position() == self.bodies.position(index, self.clock.now)
-                && disk.radius() == self.bodies.radius(index)
-                && disk.kind() == self.bodies.material(index).kind
+            disk.position() == self.engine.bodies.position(index, self.engine.clock.now)
+                && disk.radius() == self.engine.bodies.radius(index)
+                && disk.kind() == self.engine.bodies.material(index).kind
         };
         let all_stay = disks.iter().enumerate().all(stay);
-        let fitted = (!all_stay).then(|| fit(&self.boundary, disks, self.clock.now)).transpose()?;
-        let mut bodies = self.bodies.clone();
-        bodies.replace(disks, self.clock.now);
-        check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
+        let fitted =
+            (!all_stay).then(|| fit(&self.parts.boundary, disks, self.engine.clock.now)).transpose()?;
+        let mut bodies = self.engine.bodies.clone();
+        bodies.replace(disks, self.engine.clock.now);
+        check_epoch(
+            &Clock { epoch_length: bodies.epoch_length(), ..self.engine.clock },
+            self.engine.clock.now,
+        )?;
         // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
-        self.shift_epoch(self.clock.exact_offset());
-        self.bodies.replace(disks, self.clock.now);
+        self.shift_epoch(self.engine.clock.exact_offset());
+        self.engine.bodies.replace(disks, self.engine.clock.now);
         if let Some((wall_count, cells)) = fitted {
-            (self.wall_count, self.cells) = (wall_count, cells);
+            (self.engine.wall_count, self.engine.cells) = (wall_count, cells);
         }
         self.begin_anew();
         Ok(())

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Simulation;
+use super::engine::Engine;
 use super::prediction::are_closing;
 use super::state::{Exit, Forecast};
 use crate::boundary::Boundary;
@@ -19,6 +20,35 @@ const MOST_NUDGES: u32 = 24;
 const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Makes a disk leave a wall if the engine and the boundary disagree about its motion.
+    ///
+    /// Because its speed is rounded, a disk can part from the wall in the engine's arithmetic and approach it
+    /// in the boundary's. A disk that rests on a wall does not part from it, and stays unchanged. The pushes
+    /// are added to the collision, so that its impulse and energy are the impulse and energy that the disk
+    /// receives.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn leave_wall(&mut self, disk: usize, wall: usize, collision: &mut Collision) {
+        let now = self.engine.clock.now;
+        for doubling in 0..MOST_NUDGES {
+            let Forecast { exit, exit_due, wall: next, .. } = *self.engine.forecast(disk);
+            if exit != Exit::Wall || exit_due > now || usize::from(next) != wall {
+                return;
+            }
+            // The speed relative to the wall is a difference of speeds, so it has the rounding error of these
+            // speeds.
+            let fallen = self.engine.bodies.fall(now).1.length();
+            let scale = f64::EPSILON * (self.engine.bodies.speed(disk) + fallen);
+            let before = self.engine.bodies.velocity(disk, now);
+            self.engine.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), now);
+            let after = self.engine.bodies.velocity(disk, now);
+            collision.add_push(before, after, self.engine.bodies.material(disk).inverse_mass);
+            self.find_next(disk);
+        }
+    }
+}
+
+impl Engine {
     /// Makes two disks part if their relative speed after a collision is zero, or if rounding lets them
     /// approach.
     ///
@@ -44,33 +74,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let total = masses[0] + masses[1];
             self.bodies.push(disk, push * (masses[0] / total), now);
             self.bodies.push(partner, -push * (masses[1] / total), now);
-        }
-    }
-
-    /// Makes a disk leave a wall if the engine and the boundary disagree about its motion.
-    ///
-    /// Because its speed is rounded, a disk can part from the wall in the engine's arithmetic and approach it
-    /// in the boundary's. A disk that rests on a wall does not part from it, and stays unchanged. The pushes
-    /// are added to the collision, so that its impulse and energy are the impulse and energy that the disk
-    /// receives.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn leave_wall(&mut self, disk: usize, wall: usize, collision: &mut Collision) {
-        let now = self.clock.now;
-        for doubling in 0..MOST_NUDGES {
-            let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
-            if exit != Exit::Wall || exit_due > now || usize::from(next) != wall {
-                return;
-            }
-            // The speed relative to the wall is a difference of speeds, so it has the rounding error of these
-            // speeds.
-            let fallen = self.bodies.fall(now).1.length();
-            let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
-            let before = self.bodies.velocity(disk, now);
-            self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), now);
-            let after = self.bodies.velocity(disk, now);
-            collision.add_push(before, after, self.bodies.material(disk).inverse_mass);
-            self.find_next(disk);
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::builder::{cells_around, check_epoch, check_speeds, fit};
+use super::engine::Engine;
 use super::lookahead::Lookahead;
 use super::state::Clock;
 use super::{BuildError, Simulation};
@@ -49,18 +50,21 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let indices = self.len()..self.len() + new.len();
         countable(indices.end)?;
         check_speeds(new.iter().map(Disk::velocity))?;
-        self.bodies.identities.check_room(&new)?;
+        self.engine.bodies.identities.check_room(&new)?;
         let mut all = self.disks();
         all.extend_from_slice(&new);
-        let (wall_count, cells) = fit(&self.boundary, &all, self.clock.now)?;
-        let mut bodies = self.bodies.clone();
-        bodies.insert(&new, self.clock.now);
-        check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
+        let (wall_count, cells) = fit(&self.parts.boundary, &all, self.engine.clock.now)?;
+        let mut bodies = self.engine.bodies.clone();
+        bodies.insert(&new, self.engine.clock.now);
+        check_epoch(
+            &Clock { epoch_length: bodies.epoch_length(), ..self.engine.clock },
+            self.engine.clock.now,
+        )?;
         // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
-        self.shift_epoch(self.clock.exact_offset());
-        self.ledger.count(self.time(), self.len());
-        self.bodies.insert(&new, self.clock.now);
-        (self.wall_count, self.cells) = (wall_count, cells);
+        self.shift_epoch(self.engine.clock.exact_offset());
+        self.engine.ledger.count(self.time(), self.len());
+        self.engine.bodies.insert(&new, self.engine.clock.now);
+        (self.engine.wall_count, self.engine.cells) = (wall_count, cells);
         self.begin_anew();
         Ok(indices)
     }
@@ -84,23 +88,25 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if removed.is_empty() {
             return Ok(removed);
         }
-        let cells = cells_around(&self.boundary, &rest)?;
-        self.shift_epoch(self.clock.exact_offset());
-        self.ledger.count(self.time(), self.len());
-        self.bodies.remove(&leaves);
-        self.cells = cells;
+        let cells = cells_around(&self.parts.boundary, &rest)?;
+        self.shift_epoch(self.engine.clock.exact_offset());
+        self.engine.ledger.count(self.time(), self.len());
+        self.engine.bodies.remove(&leaves);
+        self.engine.cells = cells;
         self.begin_anew();
         Ok(removed)
     }
 
     /// Predicts all events anew after disks were changed, added or removed.
     pub(super) fn begin_anew(&mut self) {
-        self.lookahead = Lookahead::default();
-        self.balance_anew(&self.boundary.domain());
-        self.clock.epoch_length = self.bodies.epoch_length();
+        self.engine.lookahead = Lookahead::default();
+        self.engine.balance_anew(&self.parts.boundary.domain());
+        self.engine.clock.epoch_length = self.engine.bodies.epoch_length();
         self.predict_all();
     }
+}
 
+impl Engine {
     /// Begins a new balance of the energy, after a change that is not part of a run.
     pub(super) fn balance_anew(&mut self, domain: &Domain) {
         let [energy, _] = self.bodies.energy(self.clock.now, domain);

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::engine::Engine;
 use super::errors::{Outcome, RunError};
 use super::limits::{Limits, Watch};
 use super::state::effort;
@@ -54,6 +55,23 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         limits: &Limits<'_>,
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {
+        #[cfg(debug_assertions)]
+        return {
+            // A reference to the reference, since an observer that is a trait object already has no size.
+            let mut observer = observer;
+            self.lend(|run| run.run_erased(limits, &mut observer))
+        };
+        #[cfg(not(debug_assertions))]
+        self.run_here(limits, observer)
+    }
+
+    /// Runs the event loop that is compiled for these parts and this observer.
+    #[inline]
+    pub(super) fn run_here<O: Observer + ?Sized>(
+        &mut self,
+        limits: &Limits<'_>,
+        observer: &mut O,
+    ) -> Result<RunEnd, RunError> {
         self.guarded(|run| run.watched_run(limits, observer)).map_err(|error| *error)
     }
 
@@ -61,11 +79,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// midst of an event leaves disks whose next events are not known.
     #[inline]
     fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Outcome<T>) -> Outcome<T> {
-        if std::mem::replace(&mut self.ledger.is_running, true) {
+        if std::mem::replace(&mut self.engine.ledger.is_running, true) {
             return Err(Box::new(RunError::Torn { time: self.time() }));
         }
         let done = work(self);
-        self.ledger.is_running = false;
+        self.engine.ledger.is_running = false;
         done
     }
 
@@ -74,12 +92,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         limits: &Limits<'_>,
         observer: &mut O,
     ) -> Outcome<RunEnd> {
-        self.check_end(limits.end())?;
-        let watch = Watch::new(limits, &self.counters);
-        self.clock.events_to_look = 1;
+        self.engine.check_end(limits.end())?;
+        let watch = Watch::new(limits, &self.engine.counters);
+        self.engine.clock.events_to_look = 1;
         observer.on_start(&self.snapshot());
         let ended = match self.verdict_of(observer) {
-            Ok(ControlFlow::Continue(())) => self.instructions.run(
+            Ok(ControlFlow::Continue(())) => self.engine.instructions.run(
                 #[inline(always)]
                 || self.sample_until(&watch, observer),
             ),
@@ -120,15 +138,31 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         end: f64,
         observer: &mut O,
     ) -> Result<Option<Event>, RunError> {
+        #[cfg(debug_assertions)]
+        return {
+            let mut observer = observer;
+            self.lend(|run| run.step_erased(end, &mut observer))
+        };
+        #[cfg(not(debug_assertions))]
+        self.step_here(end, observer)
+    }
+
+    /// Steps with the event loop that is compiled for these parts and this observer.
+    #[inline]
+    pub(super) fn step_here<O: Observer + ?Sized>(
+        &mut self,
+        end: f64,
+        observer: &mut O,
+    ) -> Result<Option<Event>, RunError> {
         self.guarded(|run| run.watched_step(end, observer)).map_err(|error| *error)
     }
 
     fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
-        self.check_end(end)?;
+        self.engine.check_end(end)?;
         let limits = Limits::until(end);
-        let watch = Watch::new(&limits, &self.counters);
+        let watch = Watch::new(&limits, &self.engine.counters);
         let reached = loop {
-            let opening = self.next_opening()?;
+            let opening = self.engine.next_opening()?;
             match self.collide_until(end.min(opening), &watch, observer)? {
                 Reached::Time if opening <= end => self.open_inlets(opening, observer)?,
                 reached => break reached,
@@ -145,14 +179,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
         let end = watch.end();
         loop {
-            if let Some(end) = watch.reached(&self.counters) {
+            if let Some(end) = watch.reached(&self.engine.counters) {
                 return Ok(end);
             }
             let sample = observer.next_sample();
             if sample.is_nan() {
                 return Err(Box::new(RunError::SampleTime { next: sample, time: self.time() }));
             }
-            let opening = self.next_opening()?;
+            let opening = self.engine.next_opening()?;
             let stop = end.min(sample.max(self.time())).min(opening);
             loop {
                 match self.collide_until(stop, watch, observer)? {
@@ -193,7 +227,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Outcome<Reached> {
         while let Some((disk, due)) = self.next_due(stop) {
-            if self.clock.is_look_due()
+            if self.engine.clock.is_look_due()
                 && let Some(end) = self.look(watch, disk, due)?
             {
                 return Ok(Reached::Limit(end));
@@ -202,7 +236,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
-        self.clock.advance_to(stop);
+        self.engine.clock.advance_to(stop);
         Ok(Reached::Time)
     }
 
@@ -212,32 +246,34 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(never)]
     fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {
         // In all cases, the next run checks its limits before its first event.
-        self.clock.events_to_look = 1;
-        if let Some(end) = watch.reached(&self.counters) {
+        self.engine.clock.events_to_look = 1;
+        if let Some(end) = watch.reached(&self.engine.counters) {
             return Ok(Some(end));
         }
-        let (events, disks) = (effort(&self.counters), self.bodies.len());
-        if self.clock.guard.left(events, disks) == 0 {
-            let least = watch.least_progress(self.clock.epoch_length, disks);
-            if let Some(standstill) = self.clock.guard.end_window(due, events, least)
+        let (events, disks) = (effort(&self.engine.counters), self.engine.bodies.len());
+        if self.engine.clock.guard.left(events, disks) == 0 {
+            let least = watch.least_progress(self.engine.clock.epoch_length, disks);
+            if let Some(standstill) = self.engine.clock.guard.end_window(due, events, least)
                 && self.is_stalled(disk, due)
             {
                 return Err(self.stalled(&standstill, disk, due).into());
             }
         }
-        let left = self.clock.guard.left(events, disks);
-        self.clock.events_to_look = left.min(watch.events_to_look(&self.counters));
+        let left = self.engine.clock.guard.left(events, disks);
+        self.engine.clock.events_to_look = left.min(watch.events_to_look(&self.engine.counters));
         Ok(None)
-    }
-
-    pub(super) fn check_end(&self, end: f64) -> Outcome<()> {
-        let is_ahead = end.is_finite() && end >= self.time() - self.clock.rounding();
-        if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
     }
 
     /// Asks the observer whether the run continues.
     #[inline]
     fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
         observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))
+    }
+}
+
+impl Engine {
+    pub(super) fn check_end(&self, end: f64) -> Outcome<()> {
+        let is_ahead = end.is_finite() && end >= self.time() - self.clock.rounding();
+        if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
     }
 }

@@ -1,6 +1,7 @@
 //! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy. `state/guard.rs`
 //! decides when a run hardly progresses, and has the defaults.
 
+use super::engine::Engine;
 use super::resolution::{resolve_pair, resolve_wall};
 use super::state::{Clock, Exit, Forecast, Standstill, least_progress};
 use super::{Remedy, RunError, Simulation};
@@ -32,8 +33,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the error of a run that stands still before an event of this disk.
     #[cold]
     pub(super) fn stalled(&self, standstill: &Standstill, disk: usize, due: f64) -> RunError {
-        let (disk, due) = self.next_collider(disk, due);
-        let partner = self.partner_of(disk);
+        let (disk, due) = self.engine.next_collider(disk, due);
+        let partner = self.engine.partner_of(disk);
         let wall = partner.and_then(|partner| self.name_of(partner));
         let remedy = match partner.map(|partner| self.remedy(disk, partner, due)) {
             Some(Remedy::ElasticWhenSlow | Remedy::LongerContactDuration | Remedy::FasterDisks)
@@ -44,7 +45,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             remedy => remedy.unwrap_or(Remedy::OtherParts),
         };
         let Standstill { events, elapsed } = *standstill;
-        let is_default_met = elapsed >= least_progress(self.clock.epoch_length, self.len()) * events as f64;
+        let is_default_met =
+            elapsed >= least_progress(self.engine.clock.epoch_length, self.len()) * events as f64;
         let remedy = if is_default_met { Remedy::LessProgress } else { remedy };
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
     }
@@ -56,12 +58,64 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// are alike, a disk is squeezed.
     #[cold]
     pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
-        let (disk, due) = self.next_collider(disk, due);
-        let remedy = self.partner_of(disk).map(|partner| self.remedy(disk, partner, due));
-        let is_stuck = self.clock.guard.alike >= STUCK || self.clock.guard.slow >= PATIENCE;
+        let (disk, due) = self.engine.next_collider(disk, due);
+        let remedy = self.engine.partner_of(disk).map(|partner| self.remedy(disk, partner, due));
+        let is_stuck = self.engine.clock.guard.alike >= STUCK || self.engine.clock.guard.slow >= PATIENCE;
         remedy != Some(Remedy::FasterDisks) || is_stuck
     }
 
+    fn remedy(&self, disk: usize, partner: Partner, due: f64) -> Remedy {
+        let clock = Clock { now: due, ..self.engine.clock };
+        match partner {
+            Partner::Disk(other) => {
+                let periods = self.engine.cells.grid().periods();
+                let (collision, _) =
+                    resolve_pair(&self.engine.bodies, &self.parts.rule, periods, &clock, disk, other);
+                self.engine.remedy_for(&collision.contact, &self.parts.rule)
+            }
+            Partner::Wall(wall) => {
+                let surface = self.parts.boundary.surface(wall, self.engine.bodies.position(disk, due), due);
+                if self.moves_otherwise(disk, wall, due) {
+                    return Remedy::WallVelocity;
+                }
+                let mut generator = self.engine.generator.clone();
+                let (collision, _) = resolve_wall(
+                    &self.engine.bodies,
+                    &self.parts.rule,
+                    &mut generator,
+                    &surface,
+                    &clock,
+                    disk,
+                    wall,
+                );
+                match surface.response {
+                    Response::Rule(own) => self.engine.remedy_for(&collision.contact, own),
+                    Response::Thermal(_) | Response::Absorbing => Remedy::FasterDisks,
+                    Response::Shared => self.engine.remedy_for(&collision.contact, &self.parts.rule),
+                }
+            }
+        }
+    }
+
+    /// Returns whether a wall's geometry approaches a disk at another speed than the wall's surface reports.
+    ///
+    /// If the disk is enlarged and held at rest, the depth of its overlap grows at the speed of the wall.
+    fn moves_otherwise(&self, disk: usize, wall: usize, due: f64) -> bool {
+        let surface = self.parts.boundary.surface(wall, self.engine.bodies.position(disk, due), due);
+        let probe = self.engine.probe(disk).with_position(self.engine.bodies.position(disk, due));
+        let larger = probe.with_radius(1.01 * probe.radius());
+        let depth = |time: f64| {
+            self.parts.boundary.overlap(&larger.with_time(time)).filter(|found| found.with == wall)
+        };
+        let wait = MOMENT * self.engine.clock.epoch_length;
+        let (Some(before), Some(after)) = (depth(due), depth(due + wait)) else { return false };
+        let (speed, told) = ((after.depth - before.depth) / wait, surface.velocity.dot(surface.normal));
+        let typical = self.engine.bodies.typical_diameter / self.engine.clock.epoch_length;
+        (speed - told).abs() > ALIKE * (speed.abs() + told.abs() + typical)
+    }
+}
+
+impl Engine {
     /// Returns the disk of the next collision and its time offset, or the arguments if there is no collision.
     fn next_collider(&self, disk: usize, due: f64) -> (usize, f64) {
         if self.partner_of(disk).is_some() {
@@ -81,47 +135,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         let wall = usize::from(forecast.wall);
         (forecast.exit == Exit::Wall && wall < self.wall_count).then_some(Partner::Wall(wall))
-    }
-
-    fn remedy(&self, disk: usize, partner: Partner, due: f64) -> Remedy {
-        let clock = Clock { now: due, ..self.clock };
-        match partner {
-            Partner::Disk(other) => {
-                let periods = self.cells.grid().periods();
-                let (collision, _) = resolve_pair(&self.bodies, &self.rule, periods, &clock, disk, other);
-                self.remedy_for(&collision.contact, &self.rule)
-            }
-            Partner::Wall(wall) => {
-                let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
-                if self.moves_otherwise(disk, wall, due) {
-                    return Remedy::WallVelocity;
-                }
-                let mut generator = self.generator.clone();
-                let (collision, _) =
-                    resolve_wall(&self.bodies, &self.rule, &mut generator, &surface, &clock, disk, wall);
-                match surface.response {
-                    Response::Rule(own) => self.remedy_for(&collision.contact, own),
-                    Response::Thermal(_) | Response::Absorbing => Remedy::FasterDisks,
-                    Response::Shared => self.remedy_for(&collision.contact, &self.rule),
-                }
-            }
-        }
-    }
-
-    /// Returns whether a wall's geometry approaches a disk at another speed than the wall's surface reports.
-    ///
-    /// If the disk is enlarged and held at rest, the depth of its overlap grows at the speed of the wall.
-    fn moves_otherwise(&self, disk: usize, wall: usize, due: f64) -> bool {
-        let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
-        let probe = self.probe(disk).with_position(self.bodies.position(disk, due));
-        let larger = probe.with_radius(1.01 * probe.radius());
-        let depth =
-            |time: f64| self.boundary.overlap(&larger.with_time(time)).filter(|found| found.with == wall);
-        let wait = MOMENT * self.clock.epoch_length;
-        let (Some(before), Some(after)) = (depth(due), depth(due + wait)) else { return false };
-        let (speed, told) = ((after.depth - before.depth) / wait, surface.velocity.dot(surface.normal));
-        let typical = self.bodies.typical_diameter / self.clock.epoch_length;
-        (speed - told).abs() > ALIKE * (speed.abs() + told.abs() + typical)
     }
 
     /// Returns the remedy that fits the rule's impulse in the same contact at a lower speed.

@@ -8,6 +8,7 @@
 use glam::DVec2;
 
 use super::builder::{check_speeds, too_small};
+use super::engine::Engine;
 use super::errors::{BuildError, Outcome, RunError};
 use super::prediction::nearest_image;
 use super::{Inlet, Simulation};
@@ -33,28 +34,136 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// If the inlet is not in the domain, or a model does not fit into the boundary, just fills a hollow of a
     /// wall, or moves at a speed below 1e-100. The simulation then stays unchanged.
     pub fn add_inlet(&mut self, mut inlet: Inlet) -> Result<(), BuildError> {
-        check_inlets(&self.boundary, std::slice::from_ref(&inlet))?;
+        check_inlets(&self.parts.boundary, std::slice::from_ref(&inlet))?;
         check_speeds(inlet.models().iter().map(Disk::velocity).chain(inlet.velocity_of_return()))?;
         let diameter = inlet.largest_diameter();
         if diameter > 0.0 && !self.make_cells_suit(diameter) {
-            return Err(too_small(&self.boundary.domain(), diameter));
+            return Err(too_small(&self.parts.boundary.domain(), diameter));
         }
         inlet.times.start_at(self.time());
-        self.inlets.push(inlet);
+        self.engine.inlets.push(inlet);
         self.reset_scheduler();
         Ok(())
     }
 
     /// Returns the inlets, in the order in which they were added.
     pub fn inlets(&self) -> &[Inlet] {
-        &self.inlets
+        &self.engine.inlets
     }
 
     /// Removes all inlets, and returns them with the disks that wait.
     pub fn remove_inlets(&mut self) -> Vec<Inlet> {
-        std::mem::take(&mut self.inlets)
+        std::mem::take(&mut self.engine.inlets)
     }
 
+    /// Opens all inlets that are due at this absolute time.
+    pub(super) fn open_inlets<O: Observer + ?Sized>(&mut self, time: f64, observer: &mut O) -> Outcome<()> {
+        for number in 0..self.engine.inlets.len() {
+            if self.engine.inlets[number].times.upcoming() > time {
+                continue;
+            }
+            self.engine.inlets[number].open(time);
+            while let Some(disk) = self.engine.inlets[number].waiting.front().copied()
+                && let Some(placed) = self.place_for(number, &disk)?
+            {
+                self.put_in(&placed)?;
+                self.engine.inlets[number].waiting.pop_front();
+                self.engine.counters.insertions += 1;
+                self.engine.ledger.count(time, self.len() - 1);
+                observer.on_insert(&self.engine.bodies.disk(self.len() - 1, self.engine.clock.now), time);
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds room for a disk at an inlet.
+    fn place_for(&mut self, inlet: usize, disk: &Disk) -> Outcome<Option<Disk>> {
+        let numbered = self.engine.bodies.identities.check_room(&[disk.identified(0)]);
+        numbered.map_err(|source| RunError::Inlet { time: self.time(), source })?;
+        if self.len() >= MOST_DISKS || !self.make_cells_suit(2.0 * disk.radius()) {
+            return Ok(None);
+        }
+        Ok((0..TRIES).find_map(|_| {
+            let placed = self.engine.inlets[inlet].placed(disk)?;
+            self.has_room(&placed).then_some(placed)
+        }))
+    }
+
+    fn has_room(&mut self, disk: &Disk) -> bool {
+        let (position, radius, now) = (disk.position(), disk.radius(), self.engine.clock.now);
+        let found = &mut self.engine.scratch.found[0];
+        let count = self.engine.cells.near(position, 2.0 * radius, found);
+        let periods = self.engine.cells.grid().periods();
+        let is_free = |other: usize| {
+            let apart = self.engine.bodies.position(other, now) - position;
+            let apart = DVec2::new(nearest_image(apart.x, periods.x), nearest_image(apart.y, periods.y));
+            apart.length() >= radius + self.engine.bodies.radius(other)
+        };
+        found[..count].iter().all(|&other| is_free(other as usize))
+            && self.parts.boundary.overlap(&Probe::of(disk, now)).is_none()
+    }
+
+    /// Removes a disk. The last one gets its index.
+    pub(super) fn take_out(&mut self, disk: usize) {
+        let last = self.len() - 1;
+        self.engine.cells.take_out(disk);
+        self.engine.bodies.swap_remove(disk);
+        // The lookahead holds indices, of which the last one no longer exists.
+        self.engine.lookahead.forget();
+        self.engine.make_room();
+        // The scheduler cannot remove a disk. To the scheduler, a disk that is never due is as good as
+        // removed.
+        self.parts.scheduler.set(last, f64::INFINITY);
+        if disk != last {
+            self.schedule(disk);
+        }
+        self.keep_cells_suitable();
+    }
+
+    /// Inserts a disk at a free position, into cells that suit it.
+    fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
+        // The position of a disk at a distant epoch would lack digits, as would the position of a fast disk.
+        if self.engine.clock.now > self.engine.clock.epoch_length {
+            self.move_epoch(self.engine.clock.now)?;
+        }
+        let velocity = disk.velocity() - self.engine.bodies.fall(self.engine.clock.now).1;
+        // The length of an epoch is measured in the typical diameter, which no disk has defined yet.
+        if self.is_empty() {
+            self.engine.bodies.typical_diameter = 2.0 * disk.radius();
+        }
+        if self.is_empty() || !self.engine.bodies.keeps_pace(velocity, self.engine.clock.epoch_length) {
+            self.begin_epoch_at(std::iter::once(velocity))?;
+        }
+        let new = self.len();
+        self.engine.bodies.push_disk(disk, self.engine.clock.now);
+        self.engine.cells.put_in(disk.position(), 2.0 * disk.radius());
+        self.engine.make_room();
+        self.find_next(new);
+        if new < self.engine.scratch.seats {
+            self.schedule(new);
+        } else {
+            self.reset_scheduler();
+        }
+        self.keep_cells_suitable();
+        Ok(())
+    }
+
+    /// Makes new cells if the present ones do not suit disks of this diameter. Returns whether the domain has
+    /// room for such disks.
+    fn make_cells_suit(&mut self, diameter: f64) -> bool {
+        self.engine.cells.suit(diameter)
+            || self.renew_cells(self.engine.cells.grid().cell_size(), Some(diameter))
+    }
+
+    /// Makes new cells if there are far more or far fewer disks than the present cells suit.
+    fn keep_cells_suitable(&mut self) {
+        if self.engine.cells.are_outgrown() {
+            self.renew_cells(self.engine.cells.grid().cell_size(), None);
+        }
+    }
+}
+
+impl Engine {
     /// Returns the absolute time at which the next inlet opens, or infinity without inlets.
     pub(super) fn next_opening(&self) -> Outcome<f64> {
         let mut next = f64::INFINITY;
@@ -69,53 +178,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(next)
     }
 
-    /// Opens all inlets that are due at this absolute time.
-    pub(super) fn open_inlets<O: Observer + ?Sized>(&mut self, time: f64, observer: &mut O) -> Outcome<()> {
-        for number in 0..self.inlets.len() {
-            if self.inlets[number].times.upcoming() > time {
-                continue;
-            }
-            self.inlets[number].open(time);
-            while let Some(disk) = self.inlets[number].waiting.front().copied()
-                && let Some(placed) = self.place_for(number, &disk)?
-            {
-                self.put_in(&placed)?;
-                self.inlets[number].waiting.pop_front();
-                self.counters.insertions += 1;
-                self.ledger.count(time, self.len() - 1);
-                observer.on_insert(&self.bodies.disk(self.len() - 1, self.clock.now), time);
-            }
-        }
-        Ok(())
-    }
-
-    /// Finds room for a disk at an inlet.
-    fn place_for(&mut self, inlet: usize, disk: &Disk) -> Outcome<Option<Disk>> {
-        let numbered = self.bodies.identities.check_room(&[disk.identified(0)]);
-        numbered.map_err(|source| RunError::Inlet { time: self.time(), source })?;
-        if self.len() >= MOST_DISKS || !self.make_cells_suit(2.0 * disk.radius()) {
-            return Ok(None);
-        }
-        Ok((0..TRIES).find_map(|_| {
-            let placed = self.inlets[inlet].placed(disk)?;
-            self.has_room(&placed).then_some(placed)
-        }))
-    }
-
-    fn has_room(&mut self, disk: &Disk) -> bool {
-        let (position, radius, now) = (disk.position(), disk.radius(), self.clock.now);
-        let found = &mut self.scratch.found[0];
-        let count = self.cells.near(position, 2.0 * radius, found);
-        let periods = self.cells.grid().periods();
-        let is_free = |other: usize| {
-            let apart = self.bodies.position(other, now) - position;
-            let apart = DVec2::new(nearest_image(apart.x, periods.x), nearest_image(apart.y, periods.y));
-            apart.length() >= radius + self.bodies.radius(other)
-        };
-        found[..count].iter().all(|&other| is_free(other as usize))
-            && self.boundary.overlap(&Probe::of(disk, now)).is_none()
-    }
-
     /// Passes a disk, which a sink has removed, to the inlet that puts such disks back.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         let inlets = self.inlets.iter_mut().filter(|inlet| inlet.takes_back());
@@ -123,68 +185,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             inlet.take_back(gone);
         }
     }
-
-    /// Removes a disk. The last one gets its index.
-    pub(super) fn take_out(&mut self, disk: usize) {
-        let last = self.len() - 1;
-        self.cells.take_out(disk);
-        self.bodies.swap_remove(disk);
-        // The lookahead holds indices, of which the last one no longer exists.
-        self.lookahead.forget();
-        self.make_room();
-        // The scheduler cannot remove a disk. To the scheduler, a disk that is never due is as good as
-        // removed.
-        self.scheduler.set(last, f64::INFINITY);
-        if disk != last {
-            self.schedule(disk);
-        }
-        self.keep_cells_suitable();
-    }
-
-    /// Inserts a disk at a free position, into cells that suit it.
-    fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
-        // The position of a disk at a distant epoch would lack digits, as would the position of a fast disk.
-        if self.clock.now > self.clock.epoch_length {
-            self.move_epoch(self.clock.now)?;
-        }
-        let velocity = disk.velocity() - self.bodies.fall(self.clock.now).1;
-        // The length of an epoch is measured in the typical diameter, which no disk has defined yet.
-        if self.is_empty() {
-            self.bodies.typical_diameter = 2.0 * disk.radius();
-        }
-        if self.is_empty() || !self.bodies.keeps_pace(velocity, self.clock.epoch_length) {
-            self.begin_epoch_at(std::iter::once(velocity))?;
-        }
-        let new = self.len();
-        self.bodies.push_disk(disk, self.clock.now);
-        self.cells.put_in(disk.position(), 2.0 * disk.radius());
-        self.make_room();
-        self.find_next(new);
-        if new < self.scratch.seats {
-            self.schedule(new);
-        } else {
-            self.reset_scheduler();
-        }
-        self.keep_cells_suitable();
-        Ok(())
-    }
-
-    /// Makes new cells if the present ones do not suit disks of this diameter. Returns whether the domain has
-    /// room for such disks.
-    fn make_cells_suit(&mut self, diameter: f64) -> bool {
-        self.cells.suit(diameter) || self.renew_cells(self.cells.grid().cell_size(), Some(diameter))
-    }
-
-    /// Makes new cells if there are far more or far fewer disks than the present cells suit.
-    fn keep_cells_suitable(&mut self) {
-        if self.cells.are_outgrown() {
-            self.renew_cells(self.cells.grid().cell_size(), None);
-        }
-    }
 }
 
 /// Checks that inlets are in the domain of a boundary, and that the boundary has room for their models.
-pub(super) fn check_inlets<B: Boundary + ?Sized>(boundary: &B, inlets: &[Inlet]) -> Result<(), BuildError> {
+pub(super) fn check_inlets(boundary: &dyn Boundary, inlets: &[Inlet]) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for inlet in inlets {
         for place in inlet.places() {

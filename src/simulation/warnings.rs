@@ -5,6 +5,7 @@ use std::fmt;
 
 use glam::DVec2;
 
+use super::engine::Engine;
 use super::errors::named;
 use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Region};
@@ -210,17 +211,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// [`counters`](Self::counters), with the names of walls, and warnings that depend on the state of the
     /// simulation.
     pub fn warnings(&self) -> Vec<Warning> {
-        let mut warnings = self.counters.warnings();
+        let mut warnings = self.engine.counters.warnings();
         for warning in &mut warnings {
             if let Warning::WallJumped { wall, name, .. } = warning {
                 *name = self.name_of(Partner::Wall(*wall));
             }
         }
-        let waiting = self.inlets.iter().map(Inlet::waiting).enumerate();
+        let waiting = self.engine.inlets.iter().map(Inlet::waiting).enumerate();
         let crowded = waiting.filter(|&(_, waiting)| waiting >= JAM);
         warnings.extend(crowded.map(|(inlet, waiting)| Warning::DisksWait { inlet, waiting }));
         warnings.extend(self.long_contact_duration());
-        warnings.extend(self.one_direction());
+        warnings.extend(self.engine.one_direction());
         warnings.extend(self.endless_fall());
         warnings.extend(self.energy_gained());
         warnings.extend(self.closed_sink_so_far());
@@ -228,15 +229,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     fn long_contact_duration(&self) -> Option<Warning> {
-        let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.counters;
-        let collisions = self.counters.collisions();
-        let disk_time = self.ledger.disk_time_at(self.time(), self.len());
+        let Counters { contact_duration_collisions: elastic, longest_contact, .. } = self.engine.counters;
+        let collisions = self.engine.counters.collisions();
+        let disk_time = self.engine.ledger.disk_time_at(self.time(), self.len());
         // Both disks take part in a collision of two, but only one in a collision with a wall.
-        let partners = 1.0 + self.counters.disk_collisions as f64 / collisions.max(1) as f64;
+        let partners = 1.0 + self.engine.counters.disk_collisions as f64 / collisions.max(1) as f64;
         let rate = |count: u64| partners * count as f64 / disk_time;
         let free = longest_contact * rate(collisions - elastic);
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
-        let way = way / self.bodies.typical_diameter;
+        let way = way / self.engine.bodies.typical_diameter;
         // In matter that collapses, the model decides most collisions on purpose; such matter is recognized
         // because its disks hardly move in the contact duration. In a flow, the model may decide nearly all
         // collisions, too. Few others are then left, so all collisions are counted.
@@ -246,6 +247,63 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         is_long.then_some(Warning::LongContactDuration { share_of_time, elastic, collisions })
     }
 
+    fn endless_fall(&self) -> Option<Warning> {
+        let upwards = self.gravity().acceleration().y;
+        let is_open = upwards > 0.0 && self.parts.boundary.domain().top.is_infinite();
+        (is_open && (0..self.len()).any(|disk| self.has_no_wall_above(disk)))
+            .then_some(Warning::EndlessFall { upwards })
+    }
+
+    /// Returns whether a disk that moves straight up can never touch a wall. A part of the boundary may be a
+    /// lid.
+    fn has_no_wall_above(&self, disk: usize) -> bool {
+        let (place, radius) =
+            (self.engine.bodies.position(disk, self.engine.clock.now), self.engine.bodies.radius(disk));
+        // The region begins a diameter above the center, so that the floor on which a disk lies is not in it.
+        let above = Region::new(place + 2.0 * radius * DVec2::Y, DVec2::new(place.x, f64::INFINITY));
+        !self.parts.boundary.may_touch(&above, radius)
+    }
+
+    fn closed_sink_so_far(&self) -> Option<Warning> {
+        let may_be = self.engine.counters.removals == 0 && self.engine.counters.collisions() >= FEWEST;
+        let wall = may_be.then(|| self.closed_sink()).flatten()?;
+        Some(Warning::ClosedSink { wall, name: self.parts.boundary.wall_name(wall).into_owned() })
+    }
+
+    fn energy_gained(&self) -> Option<Warning> {
+        let [now, size] = self.engine.bodies.energy(self.engine.clock.now, &self.parts.boundary.domain());
+        let rebounds = self.engine.counters.energy_of_rebounds;
+        let before = self.engine.ledger.energy + rebounds;
+        // Disks that fall forever have large energies of both kinds, whose rounding may exceed their sum.
+        let is_more = now - before > GAIN * (size + before.abs() + rebounds);
+        (!self.engine.ledger.has_source && is_more).then_some(Warning::EnergyGained { before, now })
+    }
+
+    /// Counts the walls that have another position in another boundary at the present time. Walls with the
+    /// same name count as one wall. A wall has not jumped if any wall was at its place, or at an image of it,
+    /// whatever its name.
+    pub(super) fn count_jumps(&mut self, other: &dyn Boundary) {
+        let far = JUMP * self.engine.bodies.typical_diameter;
+        let (before, domain) = (places(&self.parts.boundary, self.engine.clock.now), other.domain());
+        let nearest = |walls: &Places, place: DVec2| {
+            let ways = walls.iter().map(|&(_, there)| domain.separation(there, place).length());
+            ways.fold(f64::INFINITY, f64::min)
+        };
+        for (name, walls) in places(other, self.engine.clock.now) {
+            let Some(known) = before.get(&name) else { continue };
+            let ways = walls.iter().map(|&(wall, place)| (wall, place, nearest(known, place)));
+            let is_new = |place| before.values().all(|walls| nearest(walls, place) > far);
+            let jumps = ways.filter(|&(_, place, by)| by > far && is_new(place));
+            let Some((wall, _, by)) = jumps.max_by(|one, other| one.2.total_cmp(&other.2)) else { continue };
+            self.engine.counters.wall_jumps += 1;
+            if by > self.engine.counters.farthest_jump {
+                (self.engine.counters.farthest_jump, self.engine.counters.jumped_wall) = (by, wall as u16);
+            }
+        }
+    }
+}
+
+impl Engine {
     fn one_direction(&self) -> Option<Warning> {
         let collisions = self.counters.disk_collisions;
         let speeds = (0..self.len()).map(|disk| self.bodies.velocity(disk, self.clock.now).abs());
@@ -256,60 +314,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let is_one = may_be && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })
     }
-
-    fn endless_fall(&self) -> Option<Warning> {
-        let upwards = self.gravity().acceleration().y;
-        let is_open = upwards > 0.0 && self.boundary.domain().top.is_infinite();
-        (is_open && (0..self.len()).any(|disk| self.has_no_wall_above(disk)))
-            .then_some(Warning::EndlessFall { upwards })
-    }
-
-    /// Returns whether a disk that moves straight up can never touch a wall. A part of the boundary may be a
-    /// lid.
-    fn has_no_wall_above(&self, disk: usize) -> bool {
-        let (place, radius) = (self.bodies.position(disk, self.clock.now), self.bodies.radius(disk));
-        // The region begins a diameter above the center, so that the floor on which a disk lies is not in it.
-        let above = Region::new(place + 2.0 * radius * DVec2::Y, DVec2::new(place.x, f64::INFINITY));
-        !self.boundary.may_touch(&above, radius)
-    }
-
-    fn closed_sink_so_far(&self) -> Option<Warning> {
-        let may_be = self.counters.removals == 0 && self.counters.collisions() >= FEWEST;
-        let wall = may_be.then(|| self.closed_sink()).flatten()?;
-        Some(Warning::ClosedSink { wall, name: self.boundary.wall_name(wall).into_owned() })
-    }
-
-    fn energy_gained(&self) -> Option<Warning> {
-        let [now, size] = self.bodies.energy(self.clock.now, &self.boundary.domain());
-        let rebounds = self.counters.energy_of_rebounds;
-        let before = self.ledger.energy + rebounds;
-        // Disks that fall forever have large energies of both kinds, whose rounding may exceed their sum.
-        let is_more = now - before > GAIN * (size + before.abs() + rebounds);
-        (!self.ledger.has_source && is_more).then_some(Warning::EnergyGained { before, now })
-    }
-
-    /// Counts the walls that have another position in another boundary at the present time. Walls with the
-    /// same name count as one wall. A wall has not jumped if any wall was at its place, or at an image of it,
-    /// whatever its name.
-    pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
-        let far = JUMP * self.bodies.typical_diameter;
-        let (before, domain) = (places(&self.boundary, self.clock.now), other.domain());
-        let nearest = |walls: &Places, place: DVec2| {
-            let ways = walls.iter().map(|&(_, there)| domain.separation(there, place).length());
-            ways.fold(f64::INFINITY, f64::min)
-        };
-        for (name, walls) in places(other, self.clock.now) {
-            let Some(known) = before.get(&name) else { continue };
-            let ways = walls.iter().map(|&(wall, place)| (wall, place, nearest(known, place)));
-            let is_new = |place| before.values().all(|walls| nearest(walls, place) > far);
-            let jumps = ways.filter(|&(_, place, by)| by > far && is_new(place));
-            let Some((wall, _, by)) = jumps.max_by(|one, other| one.2.total_cmp(&other.2)) else { continue };
-            self.counters.wall_jumps += 1;
-            if by > self.counters.farthest_jump {
-                (self.counters.farthest_jump, self.counters.jumped_wall) = (by, wall as u16);
-            }
-        }
-    }
 }
 
 /// Walls, each with its index and its position.
@@ -317,7 +321,7 @@ type Places = Vec<(usize, DVec2)>;
 
 /// Returns the walls of a boundary by name. Several walls may have the same name, such as a brick and the
 /// corners at its ends. The map is sorted, so that the count is the same on every run.
-fn places<B: Boundary>(boundary: &B, time: f64) -> BTreeMap<String, Places> {
+fn places(boundary: &dyn Boundary, time: f64) -> BTreeMap<String, Places> {
     let mut places: BTreeMap<String, Places> = BTreeMap::new();
     for wall in 0..boundary.wall_count() {
         if let Some(place) = boundary.wall_point(wall, time) {

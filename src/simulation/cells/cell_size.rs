@@ -9,10 +9,11 @@ pub(super) const FREE_PATHS: f64 = 3.0;
 /// The size of the cells. Small cells hold fewer neighbors, and large cells are left less often.
 ///
 /// The smallest cells are best where disks crowd, and the largest cells in a dilute gas.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) enum CellSize {
     Small,
+    #[default]
     Medium,
     Large,
 }

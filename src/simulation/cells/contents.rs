@@ -13,7 +13,7 @@ const WINDOW: usize = 16 + SLOTS;
 /// Every cell has a block. If a cell has more disks than fit into its block, the last slot is a link to a
 /// crowd that holds the others. The memory therefore grows with the numbers of cells and disks, however
 /// unevenly the disks lie.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Contents {
     blocks: Vec<Block>,
     crowds: Crowds,

@@ -28,7 +28,7 @@ struct Part {
 ///
 /// A crowd is identified by the number of its first part, the only one that may have free slots. The memory
 /// grows with the number of disks in crowds, and never shrinks.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Crowds {
     parts: Vec<Part>,
     /// The first of the free parts, which belong to no crowd.

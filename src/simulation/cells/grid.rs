@@ -12,7 +12,7 @@ use crate::prefetch::prefetch;
 ///
 /// Cells of one column are next to each other in memory. The usual large system is a wide, low box, and in
 /// this order places that are near in the box are also near in memory.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(in crate::simulation) struct Grid {
     pub(in crate::simulation) layout: Layout,
     /// Number of cells in a column, ring included.

@@ -185,7 +185,7 @@ impl Layer {
         home(place.column) * self.stride() + home(place.row)
     }
 
-    pub(super) fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
+    pub(super) fn mark_walls(&mut self, boundary: &dyn Boundary, largest_radius: f64) {
         let Layout { columns, rows, .. } = self.layout.cells;
         let side = 1 << self.layout.doublings;
         for column in (1..=columns).step_by(side) {

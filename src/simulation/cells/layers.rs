@@ -119,7 +119,7 @@ impl Layers {
         Self { classes, larger, visitors, is_narrow }
     }
 
-    pub(super) fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, classes: &[SizeClass]) {
+    pub(super) fn mark_walls(&mut self, boundary: &dyn Boundary, classes: &[SizeClass]) {
         for (layer, class) in self.larger.iter_mut().zip(&classes[1..]) {
             layer.mark_walls(boundary, 0.5 * class.largest);
         }

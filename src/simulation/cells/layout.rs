@@ -19,7 +19,7 @@ pub(super) const LEAST_PITCH: f64 = 1.000_001;
 pub(crate) const FEWEST: f64 = 4.0;
 
 /// The dimensions of the grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Layout {
     pub(in crate::simulation) cell_size: CellSize,

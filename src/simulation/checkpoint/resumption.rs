@@ -5,14 +5,13 @@ use super::{Checkpoint, CheckpointError, Saved};
 use crate::Gravity;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::instructions::Instructions;
 use crate::observable::Mark;
 use crate::scheduler::{BySize, EventScheduler};
+use crate::simulation::Simulation;
 use crate::simulation::builder::count_walls;
 use crate::simulation::cells::Cells;
-use crate::simulation::lookahead::Lookahead;
+use crate::simulation::engine::{Engine, Parts};
 use crate::simulation::state::{Bodies, Clock};
-use crate::simulation::{Scratch, Simulation};
 
 /// A builder of a run that continues from a checkpoint; see [`Simulation::resume`].
 #[derive(Debug, Clone)]
@@ -98,10 +97,10 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         check_places(saved, &cells, &bodies)?;
         cells.fill(saved.places.clone());
         let mut run = self.run(bodies, cells, wall_count);
-        run.make_room();
+        run.engine.make_room();
         // This call gives the boundary its origin and the scheduler its times.
         run.shift_epoch(0.0);
-        let state = run.boundary.set_state(&saved.walls);
+        let state = run.parts.boundary.set_state(&saved.walls);
         state.map_err(|error| CheckpointError::Inconsistent(error.to_string()))?;
         Ok(run)
     }
@@ -121,30 +120,24 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         if by > 0.0 {
             run.shift_epoch(by);
         }
-        run.balance_anew(&run.boundary.domain());
+        run.engine.balance_anew(&run.parts.boundary.domain());
         run.predict_all();
         Ok(run)
     }
 
     fn run(self, bodies: Bodies, cells: Cells, wall_count: usize) -> Simulation<R, B, S> {
         let saved = &self.checkpoint.0;
+        let clock = Clock { events_to_look: 1, ..saved.clock };
+        let engine = Engine::new(wall_count, bodies, cells, clock, saved.generator.clone(), saved.ledger);
         Simulation {
-            rule: self.rule,
-            boundary: self.boundary,
-            wall_count,
-            scheduler: self.scheduler,
-            bodies,
-            cells,
-            clock: Clock { events_to_look: 1, ..saved.clock },
-            generator: saved.generator.clone(),
-            counters: saved.counters,
-            lookahead: Lookahead::default(),
-            instructions: Instructions::detected(),
-            scratch: Scratch::default(),
-            inlets: saved.inlets.clone(),
-            ledger: saved.ledger,
-            // The observers that are read with a checkpoint have lost the mark of the saved run.
-            marks: [Mark::default(), Mark::new()],
+            parts: Parts { rule: self.rule, boundary: self.boundary, scheduler: self.scheduler },
+            engine: Engine {
+                counters: saved.counters,
+                inlets: saved.inlets.clone(),
+                // The observers that are read with a checkpoint have lost the mark of the saved run.
+                marks: [Mark::default(), Mark::new()],
+                ..engine
+            },
         }
     }
 }

@@ -1,0 +1,103 @@
+//! The two halves of a simulation: the parts that its user chooses, and the engine that they drive.
+
+#[cfg(debug_assertions)]
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::cells::Cells;
+use super::lookahead::Lookahead;
+use super::state::{Bodies, Clock, Ledger};
+use super::{Counters, Inlet};
+#[cfg(debug_assertions)]
+use crate::Gravity;
+use crate::instructions::Instructions;
+use crate::observable::Mark;
+
+/// The parts that may be of any type.
+#[derive(Debug, Clone)]
+pub(super) struct Parts<R, B, S> {
+    pub(super) rule: R,
+    pub(super) boundary: B,
+    pub(super) scheduler: S,
+}
+
+/// The state of a simulation, which is the same type for all parts.
+#[derive(Debug, Clone)]
+pub(super) struct Engine {
+    /// Number of walls of the boundary. The results of the boundary are checked against this number.
+    pub(super) wall_count: usize,
+    pub(super) bodies: Bodies,
+    pub(super) cells: Cells,
+    pub(super) clock: Clock,
+    pub(super) generator: Xoshiro256PlusPlus,
+    pub(super) counters: Counters,
+    pub(super) lookahead: Lookahead,
+    /// Processor instructions that predictions may use. The results are the same with any of them, bit for
+    /// bit.
+    pub(super) instructions: Instructions,
+    pub(super) scratch: Scratch,
+    pub(super) inlets: Vec<Inlet>,
+    pub(super) ledger: Ledger,
+    /// Marks of this run and of its walls.
+    pub(super) marks: [Mark; 2],
+}
+
+impl Engine {
+    /// Creates an engine for these bodies, which has not run yet.
+    pub(super) fn new(
+        wall_count: usize,
+        bodies: Bodies,
+        cells: Cells,
+        clock: Clock,
+        generator: Xoshiro256PlusPlus,
+        ledger: Ledger,
+    ) -> Self {
+        Self {
+            wall_count,
+            bodies,
+            cells,
+            clock,
+            generator,
+            counters: Counters::default(),
+            lookahead: Lookahead::default(),
+            instructions: Instructions::detected(),
+            scratch: Scratch::default(),
+            inlets: Vec::new(),
+            ledger,
+            marks: [Mark::new(), Mark::new()],
+        }
+    }
+
+    /// Returns the present absolute time.
+    #[inline]
+    pub(super) fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// Returns the number of disks.
+    #[inline]
+    pub(super) fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Returns an engine without disks, which stands in for one that is lent.
+    #[cfg(debug_assertions)]
+    pub(super) fn empty() -> Self {
+        let bodies = Bodies::new(&[], Gravity::NONE);
+        let (clock, ledger) = (Clock::new(0.0, 1.0), Ledger::new(0.0, 0.0));
+        Self::new(0, bodies, Cells::default(), clock, Xoshiro256PlusPlus::from_seed([0; 32]), ledger)
+    }
+}
+
+/// Buffers that are used again and again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scratch {
+    /// Buffers for the neighbors of one disk, or of both disks of a collision.
+    pub(super) found: [Vec<u32>; 2],
+    /// Times of the next events of all disks.
+    pub(super) due: Vec<f64>,
+    /// Number of disks for which the scheduler has room.
+    pub(super) seats: usize,
+    /// Number of events and time at which all disks were last checked after a run.
+    pub(super) checked: Option<(u64, f64)>,
+}

@@ -1,0 +1,71 @@
+//! In builds with debug assertions, one event loop for all parts.
+//!
+//! The event loop is generic, so that a release build compiles it for the rule, the boundary, the scheduler
+//! and the observer of each run. Tests have hundreds of such combinations, and compiling the loop for each
+//! takes far longer than the tests. In builds with debug assertions, a simulation therefore lends its engine
+//! to a run whose parts are trait objects, and this loop is compiled once, in this crate. The arithmetic is
+//! the same, so the bits are, too.
+
+use std::mem::{replace, swap};
+
+use super::engine::{Engine, Parts};
+use super::errors::RunError;
+use super::limits::Limits;
+use super::{Event, RunEnd, Simulation};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::Observer;
+use crate::scheduler::EventScheduler;
+
+/// A simulation whose parts are trait objects of another simulation.
+pub(super) type Erased<'a> =
+    Simulation<&'a dyn CollisionRule, &'a mut dyn Boundary, &'a mut dyn EventScheduler>;
+
+/// An erased run, which returns the engine to its owner at the end, even if a part panics.
+struct Loan<'a> {
+    run: Erased<'a>,
+    owner: &'a mut Engine,
+}
+
+impl Drop for Loan<'_> {
+    fn drop(&mut self) {
+        swap(&mut self.run.engine, self.owner);
+    }
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Performs some work on this simulation, with its parts as trait objects.
+    pub(super) fn lend<T>(&mut self, work: impl FnOnce(&mut Erased<'_>) -> T) -> T {
+        let Parts { rule, boundary, scheduler } = &mut self.parts;
+        let parts = Parts { rule: &*rule as _, boundary: boundary as _, scheduler: scheduler as _ };
+        let engine = replace(&mut self.engine, Engine::empty());
+        let mut loan = Loan { run: Simulation { parts, engine }, owner: &mut self.engine };
+        work(&mut loan.run)
+    }
+}
+
+// These functions are not generic and never inlined, so each is compiled only here.
+impl Erased<'_> {
+    #[inline(never)]
+    pub(super) fn run_erased(
+        &mut self,
+        limits: &Limits<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<RunEnd, RunError> {
+        self.run_here(limits, observer)
+    }
+
+    #[inline(never)]
+    pub(super) fn step_erased(
+        &mut self,
+        end: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Event>, RunError> {
+        self.step_here(end, observer)
+    }
+
+    #[inline(never)]
+    pub(super) fn predict_all_erased(&mut self) {
+        self.predict_all_here();
+    }
+}
