@@ -28,7 +28,6 @@ mod cells;
 mod checking;
 #[cfg(feature = "serde")]
 mod checkpoint;
-mod closed_sinks;
 mod driving;
 mod engine;
 mod epoch;
@@ -57,7 +56,7 @@ pub use builder::SimulationBuilder;
 pub(crate) use cells::FEWEST;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
-pub use driving::{Driving, Rescaling, WhiteNoise, laws};
+pub use driving::{Driving, Rescaling, WhiteNoise};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use inlet::Inlet;
@@ -277,8 +276,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Replaces the walls from now on.
     ///
-    /// Moving walls take the positions of their motions at the present time. A wall that thereby jumps causes
-    /// a [`Warning`]. A new [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of
+    /// Moving walls take the positions of their motions at the present time. A new [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of
     /// the present boundary, it continues.
     ///
     /// # Errors

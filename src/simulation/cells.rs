@@ -190,12 +190,6 @@ impl Cells {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
     }
 
-    /// Returns the class of a disk: the number of its grid, counted from the smallest cells.
-    #[cfg(feature = "serde")]
-    pub(super) fn class(&self, disk: usize) -> u8 {
-        self.layers.as_ref().map_or(0, |layers| layers.classes[disk])
-    }
-
     /// Returns the grid in which a disk is.
     pub(super) fn grid_of(&self, disk: usize) -> &Grid {
         self.layers.as_ref().and_then(|layers| layers.of(disk)).map_or(&self.grid, |layer| &layer.grid)

@@ -5,10 +5,8 @@
 //! | [`WhiteNoise`] | random kicks, which conserve the total momentum |
 //! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
 //!
-//! A custom driving implements [`Driving`], and [`laws::check`] tests it. The event loop does not know about
-//! drivings.
+//! A custom driving implements [`Driving`]. The event loop does not know about drivings.
 
-pub mod laws;
 mod noise;
 mod rescaling;
 
@@ -43,10 +41,7 @@ use crate::{Disk, ParameterError};
 ///    the next kick. A run that is cut into pieces has the same kicks.
 /// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
-/// [`laws::check`] tests all of this; `docs/validation.md` says which planted faults the check finds. If a
-/// driving draws random numbers in the order of the list and remembers disks by their position in it, the
-/// check finds this only if each kick at a position resembles the previous one there. The engine refuses
-/// disks that overlap, a change of their number, and a clock that stands still.
+/// The engine refuses disks that overlap, a change of their number, and a clock that stands still.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;

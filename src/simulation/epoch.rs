@@ -12,7 +12,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts the next event of every disk from the present state alone.
     pub(super) fn predict_all(&mut self) {
         #[cfg(debug_assertions)]
-        self.lend(|run| run.predict_all_erased());
+        self.lend(super::lending::predict_all_erased);
         #[cfg(not(debug_assertions))]
         self.predict_all_here();
     }

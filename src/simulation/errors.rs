@@ -5,7 +5,6 @@ mod build;
 mod remedy;
 mod run;
 
-pub(super) use answers::named;
 pub use answers::{BoundaryFault, FailedCollision};
 pub use build::BuildError;
 pub use remedy::Remedy;

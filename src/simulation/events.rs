@@ -80,18 +80,12 @@ pub struct Counters {
     pub removals: u64,
     /// Disks that inlets added.
     pub insertions: u64,
-    /// Jumps of walls: a boundary set between runs had a wall at another position.
-    pub wall_jumps: u64,
-    /// Largest displacement of such a wall.
-    pub farthest_jump: f64,
-    /// Index of the wall with this displacement.
-    pub jumped_wall: u16,
 }
 
 impl Counters {
     /// Returns the counts since `earlier`.
     ///
-    /// The largest overlaps, the longest contact and the farthest jump cover the whole run.
+    /// The largest overlaps and the longest contact cover the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {
@@ -110,7 +104,6 @@ impl Counters {
             cell_resizes: self.cell_resizes.saturating_sub(earlier.cell_resizes),
             removals: self.removals.saturating_sub(earlier.removals),
             insertions: self.insertions.saturating_sub(earlier.insertions),
-            wall_jumps: self.wall_jumps.saturating_sub(earlier.wall_jumps),
             ..*self
         }
     }

@@ -66,7 +66,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if by > 0.0 {
             self.shift_epoch(by);
         }
-        self.count_jumps(boundary);
         self.engine.balance_anew(&boundary.domain());
         self.engine.marks[1] = Mark::new();
         Ok(fitted)

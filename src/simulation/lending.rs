@@ -44,28 +44,27 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 }
 
-// These functions are not generic and never inlined, so each is compiled only here.
-impl Erased<'_> {
-    #[inline(never)]
-    pub(super) fn run_erased(
-        &mut self,
-        limits: &Limits<'_>,
-        observer: &mut dyn Observer,
-    ) -> Result<RunEnd, RunError> {
-        self.run_here(limits, observer)
-    }
+// The functions below are not generic and never inlined, so each is compiled only here.
 
-    #[inline(never)]
-    pub(super) fn step_erased(
-        &mut self,
-        end: f64,
-        observer: &mut dyn Observer,
-    ) -> Result<Option<Event>, RunError> {
-        self.step_here(end, observer)
-    }
+#[inline(never)]
+pub(super) fn run_erased(
+    run: &mut Erased<'_>,
+    limits: &Limits<'_>,
+    observer: &mut dyn Observer,
+) -> Result<RunEnd, RunError> {
+    run.run_here(limits, observer)
+}
 
-    #[inline(never)]
-    pub(super) fn predict_all_erased(&mut self) {
-        self.predict_all_here();
-    }
+#[inline(never)]
+pub(super) fn step_erased(
+    run: &mut Erased<'_>,
+    end: f64,
+    observer: &mut dyn Observer,
+) -> Result<Option<Event>, RunError> {
+    run.step_here(end, observer)
+}
+
+#[inline(never)]
+pub(super) fn predict_all_erased(run: &mut Erased<'_>) {
+    run.predict_all_here();
 }

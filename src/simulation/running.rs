@@ -59,7 +59,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         return {
             // A reference to the reference, since an observer that is a trait object already has no size.
             let mut observer = observer;
-            self.lend(|run| run.run_erased(limits, &mut observer))
+            self.lend(|run| super::lending::run_erased(run, limits, &mut observer))
         };
         #[cfg(not(debug_assertions))]
         self.run_here(limits, observer)
@@ -141,7 +141,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         #[cfg(debug_assertions)]
         return {
             let mut observer = observer;
-            self.lend(|run| run.step_erased(end, &mut observer))
+            self.lend(|run| super::lending::step_erased(run, end, &mut observer))
         };
         #[cfg(not(debug_assertions))]
         self.step_here(end, observer)

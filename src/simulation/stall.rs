@@ -36,14 +36,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (disk, due) = self.engine.next_collider(disk, due);
         let partner = self.engine.partner_of(disk);
         let wall = partner.and_then(|partner| self.name_of(partner));
-        let remedy = match partner.map(|partner| self.remedy(disk, partner, due)) {
-            Some(Remedy::ElasticWhenSlow | Remedy::LongerContactDuration | Remedy::FasterDisks)
-                if self.closed_sink().is_some() =>
-            {
-                Remedy::ClosedSink
-            }
-            remedy => remedy.unwrap_or(Remedy::OtherParts),
-        };
+        let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
         let Standstill { events, elapsed } = *standstill;
         let is_default_met =
             elapsed >= least_progress(self.engine.clock.epoch_length, self.len()) * events as f64;

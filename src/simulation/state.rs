@@ -15,8 +15,6 @@ pub(super) use bodies::Spin;
 pub(super) use bodies::{Bodies, Trajectory};
 pub(super) use clock::{Clock, Tally};
 pub(super) use forecast::{Earliest, Exit, Forecast};
-#[cfg(feature = "serde")]
-pub(super) use guard::Guard;
 pub(super) use guard::{Standstill, effort, least_progress};
 pub(super) use identities::Identities;
 pub(super) use ledger::Ledger;

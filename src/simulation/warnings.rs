@@ -1,17 +1,15 @@
 //! Warnings: facts that a run noticed and survived.
 
-use std::collections::BTreeMap;
 use std::fmt;
 
 use glam::DVec2;
 
 use super::engine::Engine;
-use super::errors::named;
 use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Region};
 use crate::collision::CollisionRule;
 use crate::error::Rounded;
-use crate::observable::{Partner, Temperatures};
+use crate::observable::Temperatures;
 use crate::scheduler::EventScheduler;
 
 /// Fewest collisions for which a share is meaningful.
@@ -32,9 +30,6 @@ const GAIN: f64 = 1e-9;
 /// Fewest disks at an inlet that count as a jam.
 const JAM: usize = 1000;
 
-/// Smallest displacement of a wall that counts as a jump, relative to a typical diameter.
-const JUMP: f64 = 1e-6;
-
 /// A fact that a run noticed and survived, and that its caller may not have wanted.
 ///
 /// Warnings about shares and directions of collisions come only after a thousand collisions. Some warnings
@@ -43,19 +38,6 @@ const JUMP: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A wall jumped when the boundary was set between two runs, and hit no disk. A motion that begins at
-    /// another phase is a usual cause; see [`StartingAt`](crate::wall::StartingAt). The
-    /// [points](crate::boundary::Boundary::wall_point) of the walls before and after are compared.
-    WallJumped {
-        /// The wall that jumped farthest.
-        wall: usize,
-        /// The name of the wall, if the simulation itself was asked for its warnings.
-        name: Option<String>,
-        /// Distance by which this wall jumped.
-        by: f64,
-        /// Number of jumps of all walls.
-        jumps: u64,
-    },
     /// The contact duration is not short compared with the time between the collisions of a disk: by Luding's
     /// criterion, $`t_c\,\omega_c \ll 1`$, where $`\omega_c`$ is the rate of the collisions that the model
     /// did not change. The model removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a
@@ -103,17 +85,6 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// No disk seems to have room to touch a sink, and none has been removed in a thousand collisions or
-    /// more: walls cover the sink, for example because they are closer than a radius to a line for centers,
-    /// or the sink lets all these disks pass. A gate that opens later is a harmless cause, and so is a slot
-    /// that is wider than a disk by less than a quarter of a radius. Walls farther away that separate all
-    /// disks from a sink, or leave only too narrow a way to it, are not noticed.
-    ClosedSink {
-        /// The first wall of the sink.
-        wall: usize,
-        /// The name of that wall.
-        name: String,
-    },
     /// A thousand disks or more wait at an inlet. The inlet may have no room at all, for example if it lies
     /// inside a part.
     DisksWait {
@@ -127,13 +98,6 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::WallJumped { wall, name, by, jumps } => write!(
-                formatter,
-                "walls jumped {jumps} times when the boundary was set, the farthest by {}{}; \
-                 StartingAt lets a motion begin where it should",
-                Rounded(*by),
-                named(Some(Partner::Wall(*wall)), name.as_deref())
-            ),
             Self::LongContactDuration { share_of_time, elastic, collisions } => write!(
                 formatter,
                 "the contact duration is {} times the time between two collisions of a disk ({elastic} of {collisions} \
@@ -164,11 +128,6 @@ impl fmt::Display for Warning {
                 Rounded(*before),
                 Rounded(*now)
             ),
-            Self::ClosedSink { name, .. } => write!(
-                formatter,
-                "no disk has room at the sink \"{name}\": walls are in its way (a line for centers must be farther from \
-                 them than a radius), or it lets all kinds of these disks pass"
-            ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,
                 "{waiting} disks wait at inlet {inlet}: disks or walls fill its room, or it opens too often"
@@ -195,28 +154,19 @@ impl Counters {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn warnings(&self) -> Vec<Warning> {
-        let Self { least_rebound_collisions: raised, jumped_wall, farthest_jump: by, .. } = *self;
-        let (jumps, wall) = (self.wall_jumps, usize::from(jumped_wall));
-        let jumped = (jumps > 0).then_some(Warning::WallJumped { wall, name: None, by, jumps });
-        let collisions = self.collisions();
+        let (raised, collisions) = (self.least_rebound_collisions, self.collisions());
         let is_mostly_raised = collisions >= FEWEST && raised > collisions / 2;
         let energy = self.energy_of_rebounds;
         let raised = is_mostly_raised.then_some(Warning::MostlyLeastRebound { raised, collisions, energy });
-        jumped.into_iter().chain(raised).collect()
+        raised.into_iter().collect()
     }
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the warnings about the simulation since it was built: the warnings of its
-    /// [`counters`](Self::counters), with the names of walls, and warnings that depend on the state of the
-    /// simulation.
+    /// [`counters`](Self::counters), and warnings that depend on the state of the simulation.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.engine.counters.warnings();
-        for warning in &mut warnings {
-            if let Warning::WallJumped { wall, name, .. } = warning {
-                *name = self.name_of(Partner::Wall(*wall));
-            }
-        }
         let waiting = self.engine.inlets.iter().map(Inlet::waiting).enumerate();
         let crowded = waiting.filter(|&(_, waiting)| waiting >= JAM);
         warnings.extend(crowded.map(|(inlet, waiting)| Warning::DisksWait { inlet, waiting }));
@@ -224,7 +174,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         warnings.extend(self.engine.one_direction());
         warnings.extend(self.endless_fall());
         warnings.extend(self.energy_gained());
-        warnings.extend(self.closed_sink_so_far());
         warnings
     }
 
@@ -264,12 +213,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         !self.parts.boundary.may_touch(&above, radius)
     }
 
-    fn closed_sink_so_far(&self) -> Option<Warning> {
-        let may_be = self.engine.counters.removals == 0 && self.engine.counters.collisions() >= FEWEST;
-        let wall = may_be.then(|| self.closed_sink()).flatten()?;
-        Some(Warning::ClosedSink { wall, name: self.parts.boundary.wall_name(wall).into_owned() })
-    }
-
     fn energy_gained(&self) -> Option<Warning> {
         let [now, size] = self.engine.bodies.energy(self.engine.clock.now, &self.parts.boundary.domain());
         let rebounds = self.engine.counters.energy_of_rebounds;
@@ -277,29 +220,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // Disks that fall forever have large energies of both kinds, whose rounding may exceed their sum.
         let is_more = now - before > GAIN * (size + before.abs() + rebounds);
         (!self.engine.ledger.has_source && is_more).then_some(Warning::EnergyGained { before, now })
-    }
-
-    /// Counts the walls that have another position in another boundary at the present time. Walls with the
-    /// same name count as one wall. A wall has not jumped if any wall was at its place, or at an image of it,
-    /// whatever its name.
-    pub(super) fn count_jumps(&mut self, other: &dyn Boundary) {
-        let far = JUMP * self.engine.bodies.typical_diameter;
-        let (before, domain) = (places(&self.parts.boundary, self.engine.clock.now), other.domain());
-        let nearest = |walls: &Places, place: DVec2| {
-            let ways = walls.iter().map(|&(_, there)| domain.separation(there, place).length());
-            ways.fold(f64::INFINITY, f64::min)
-        };
-        for (name, walls) in places(other, self.engine.clock.now) {
-            let Some(known) = before.get(&name) else { continue };
-            let ways = walls.iter().map(|&(wall, place)| (wall, place, nearest(known, place)));
-            let is_new = |place| before.values().all(|walls| nearest(walls, place) > far);
-            let jumps = ways.filter(|&(_, place, by)| by > far && is_new(place));
-            let Some((wall, _, by)) = jumps.max_by(|one, other| one.2.total_cmp(&other.2)) else { continue };
-            self.engine.counters.wall_jumps += 1;
-            if by > self.engine.counters.farthest_jump {
-                (self.engine.counters.farthest_jump, self.engine.counters.jumped_wall) = (by, wall as u16);
-            }
-        }
     }
 }
 
@@ -314,19 +234,4 @@ impl Engine {
         let is_one = may_be && x.min(y) <= STRAIGHT * x.max(y);
         is_one.then_some(Warning::OneDirection { collisions: self.counters.collisions() })
     }
-}
-
-/// Walls, each with its index and its position.
-type Places = Vec<(usize, DVec2)>;
-
-/// Returns the walls of a boundary by name. Several walls may have the same name, such as a brick and the
-/// corners at its ends. The map is sorted, so that the count is the same on every run.
-fn places(boundary: &dyn Boundary, time: f64) -> BTreeMap<String, Places> {
-    let mut places: BTreeMap<String, Places> = BTreeMap::new();
-    for wall in 0..boundary.wall_count() {
-        if let Some(place) = boundary.wall_point(wall, time) {
-            places.entry(boundary.wall_name(wall).into_owned()).or_default().push((wall, place));
-        }
-    }
-    places
 }

@@ -52,6 +52,15 @@ fn files_that_cannot_be_read_are_errors() {
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
 }
 
+/// A checkpoint is bytes in any format, so nothing gets past its version and checksum.
+#[test]
+fn a_checkpoint_with_a_byte_too_many_is_refused() {
+    let mut state = serde_json::to_value(checkpoint()).unwrap();
+    state.as_array_mut().unwrap().push(serde_json::json!(1));
+    let error = serde_json::from_value::<Checkpoint>(state).unwrap_err();
+    assert!(error.to_string().contains("damaged"), "{error}");
+}
+
 proptest! {
     #![proptest_config(config(2000))]
 

@@ -11,18 +11,8 @@ mod edits;
 mod few;
 #[cfg(feature = "serde")]
 mod files;
-#[cfg(all(feature = "serde", unix))]
-mod forged;
-#[cfg(all(feature = "serde", unix))]
-mod forged_systems;
-#[cfg(all(feature = "serde", unix))]
-mod forging;
-#[cfg(feature = "serde")]
-mod intruders;
 mod invariants;
 mod laws;
-#[cfg(all(feature = "serde", unix))]
-mod limits;
 mod log;
 mod random_runs;
 mod regressions;
@@ -33,7 +23,5 @@ mod script;
 mod specimens;
 mod systems;
 mod texts;
-#[cfg(feature = "serde")]
-mod unknown_fields;
 mod vessels;
 mod walls;

@@ -5,20 +5,16 @@ use std::path::{Path, PathBuf};
 
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
-use granular_edmd::scheduler::LinearScan;
-use granular_edmd::simulation::{Checkpoint, CheckpointError};
+use granular_edmd::simulation::Checkpoint;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
-
-pub(crate) type Rule = ContactDuration<Frictional>;
-type SmallRun = Simulation<Rule, Container, LinearScan>;
 
 /// Magic, version and checksum come before the contents of every sealed file.
 pub(crate) const VERSION_AT: usize = 8;
 pub(crate) const CHECKSUM_AT: usize = 12;
 pub(crate) const CONTENTS_AT: usize = 44;
 
-pub(crate) fn rule() -> Rule {
+pub(crate) fn rule() -> ContactDuration<Frictional> {
     ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.2).unwrap(), 1e-3).unwrap()
 }
 
@@ -35,10 +31,6 @@ pub(crate) fn checkpoint() -> Checkpoint {
     let mut run = builder.build().unwrap();
     run.run_until(3.0, &mut ()).unwrap();
     run.checkpoint()
-}
-
-pub(crate) fn resume(checkpoint: &Checkpoint) -> Result<SmallRun, CheckpointError> {
-    Simulation::resume(checkpoint, rule(), container()).scheduler(LinearScan::default()).build()
 }
 
 /// Contents behind the seal of `like`.

@@ -9,14 +9,12 @@ use granular_edmd::collision::{
     RollingFriction, Rough, RulesByKind, Smooth, SpeedDependent,
 };
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::SampleTimes;
-use granular_edmd::simulation::{Driving, Rescaling, WhiteNoise, laws as driving_laws};
 use granular_edmd::trajectory::{ExtendedXyz, LammpsDump};
 use granular_edmd::wall::{
     BiParabolic, Delayed, Fixed, Piston, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
     Triangular, WallMotion, laws as wall_laws,
 };
-use granular_edmd::{Disk, Kind, ParameterError, trajectory};
+use granular_edmd::{Disk, Kind, trajectory};
 
 type Failed = Box<dyn std::error::Error>;
 type Rules = Vec<(Box<dyn CollisionRule>, Promises)>;
@@ -152,47 +150,10 @@ fn no_check_refuses_a_part_of_the_library_in_ten_thousand_seeds() {
     }
 }
 
-/// A noise for the disks on one side of a line.
-#[derive(Clone)]
-struct Layer {
-    noise: WhiteNoise,
-    along: DVec2,
-    edge: f64,
-}
-
-impl Driving for Layer {
-    fn times(&mut self) -> &mut SampleTimes {
-        self.noise.times()
-    }
-
-    fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError> {
-        let is_inside = |disk: &Disk| disk.position().dot(self.along) < self.edge;
-        let mut layer: Vec<Disk> = disks.iter().filter(|disk| is_inside(disk)).copied().collect();
-        self.noise.kick(&mut layer)?;
-        let mut heated = layer.into_iter();
-        disks.iter_mut().filter(|disk| is_inside(disk)).zip(&mut heated).for_each(|(disk, hot)| *disk = hot);
-        Ok(())
-    }
-}
-
-/// These checks have no seed.
+/// The check of formats has no seed.
 #[test]
-fn formats_and_drivings_of_the_library_pass() -> Result<(), Failed> {
+fn formats_of_the_library_pass() -> Result<(), Failed> {
     trajectory::laws::check(&ExtendedXyz)?;
     trajectory::laws::check(&LammpsDump)?;
-    let (times, promises) = (SampleTimes::every(0.3)?, driving_laws::Promises::new());
-    let noise = WhiteNoise::new(0.2, times, 3)?;
-    driving_laws::check(|| noise.clone(), &promises.with_momentum())?;
-    // From one disk of the check to all.
-    for edge in 0..20 {
-        for along in [DVec2::X, DVec2::NEG_X, 10.0 * DVec2::Y] {
-            let edge = f64::from(edge) + if along.x < 0.0 { -17.5 } else { 1.5 } + 2.0 * along.y;
-            let layer = Layer { noise: noise.clone(), along, edge };
-            driving_laws::check(|| layer.clone(), &promises)
-                .map_err(|found| format!("{along} {edge}: {found}"))?;
-        }
-    }
-    let rescaling = Rescaling::new(1.0, times)?;
-    driving_laws::check(|| rescaling.clone(), &promises)?;
     Ok(())
 }

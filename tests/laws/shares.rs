@@ -5,14 +5,11 @@ use std::collections::BTreeMap;
 use granular_edmd::Violation;
 use granular_edmd::boundary::laws as boundary_laws;
 use granular_edmd::collision::laws as collision_laws;
-use granular_edmd::observable::SampleTimes;
 use granular_edmd::scheduler::laws as scheduler_laws;
-use granular_edmd::simulation::{Driving, laws as driving_laws};
 use granular_edmd::wall::laws as wall_laws;
-use granular_edmd::{Disk, ParameterError, observable, trajectory};
+use granular_edmd::{observable, trajectory};
 
 use crate::faults::blind::boundaries::Walled;
-use crate::faults::blind::drivings::Driven;
 use crate::faults::blind::fingerprints::{Pair, Parts};
 use crate::faults::blind::{self, motions::Motion, rules::Promised, schedulers::Maker};
 use crate::faults::{Planted, informed};
@@ -49,27 +46,6 @@ fn check_boundary(_: usize, fault: &mut Walled) -> Verdict {
 
 fn check_scheduler(_: usize, make: &mut Maker) -> Verdict {
     scheduler_laws::check(make)
-}
-
-struct Boxed(Box<dyn Driving>);
-
-impl Driving for Boxed {
-    fn times(&mut self) -> &mut SampleTimes {
-        self.0.times()
-    }
-
-    fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError> {
-        self.0.kick(disks)
-    }
-}
-
-/// A check makes several drivings, so the catalogue is made again for each.
-fn judged_drivings(catalogue: fn() -> Vec<Planted<Driven>>) -> Verdicts {
-    judged(catalogue(), |index, fault| {
-        let promises = driving_laws::Promises::new();
-        let promises = if fault.keeps_momentum { promises.with_momentum() } else { promises };
-        driving_laws::check(|| Boxed(catalogue().swap_remove(index).part.driving), &promises)
-    })
 }
 
 fn check_pair(_: usize, pair: &mut Pair) -> Verdict {
@@ -109,11 +85,6 @@ fn all() -> BTreeMap<(&'static str, &'static str), Verdicts> {
             "scheduler",
             judged(blind::schedulers::catalogue(), check_scheduler),
             judged(informed::schedulers::catalogue(), check_scheduler),
-        ),
-        halves(
-            "driving",
-            judged_drivings(blind::drivings::catalogue),
-            judged_drivings(informed::drivings::catalogue),
         ),
         halves(
             "observer",
@@ -173,8 +144,6 @@ fn honest_parts_pass() {
         judged(blind::boundaries::honest(), check_boundary),
         judged(informed::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
-        judged_drivings(blind::drivings::honest),
-        judged_drivings(informed::drivings::honest),
         judged(blind::observers::honest(), |_, observer| observable::laws::check(&mut **observer)),
         judged(blind::formats::honest(), |_, format| trajectory::laws::check(&**format)),
         judged(blind::fingerprints::honest(), check_pair),

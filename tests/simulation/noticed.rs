@@ -2,15 +2,15 @@
 //! that is wrong does not end as if it were right.
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Obstacles, Overlap, Part, Probe, Region, Surface, Touch,
-    Vessel, Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Vessel,
+    Wall,
 };
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Partner;
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BoundaryFault, RunError, Warning};
-use granular_edmd::wall::{AccelerationBounds, Sinusoidal, StartingAt, Triangular, WallMotion, WallState};
+use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
 use granular_edmd::{Disk, Flight, Simulation, initial};
 
 fn walls() -> Container {
@@ -289,116 +289,6 @@ fn the_slowest_disks_take_few_events_to_the_last_times() {
             );
         }
     }
-}
-
-#[test]
-fn a_wall_that_jumps_between_runs_is_a_warning() {
-    let open = |motion: Option<Triangular>| match motion {
-        Some(motion) => walls().with_motion(Wall::Lid, motion).unwrap(),
-        None => walls(),
-    };
-    let disks = [Disk::new(DVec2::new(6.0, 5.0), 0.5).unwrap()];
-    let mut run = Simulation::builder(Elastic, open(None)).disks(disks).build().unwrap();
-    run.run_until(1.0, &mut ()).unwrap();
-    run.set_boundary(open(None)).unwrap();
-    assert_eq!(run.warnings(), []);
-    let motion = Triangular::new(2.0, std::f64::consts::TAU).unwrap();
-    // At time 1, after a whole period, the motion is in its middle.
-    run.set_boundary(open(Some(motion))).unwrap();
-    assert_eq!(run.warnings(), []);
-    run.run_until(1.125, &mut ()).unwrap();
-    run.set_boundary(open(None)).unwrap();
-    let [Warning::WallJumped { wall: 3, name: Some(name), by, jumps: 1, .. }] = &run.warnings()[..] else {
-        panic!("{:?}", run.warnings())
-    };
-    assert!(name == "lid" && (by - 1.0).abs() < 1e-12, "{by}");
-    assert!(run.warnings()[0].to_string().contains("\"lid\""), "{}", run.warnings()[0]);
-    // The counters have the warning, too: those of a checkpoint and of a record are asked alike.
-    assert_eq!(run.counters().warnings().len(), 1);
-    assert_eq!(run.counters().since(run.counters()).warnings(), []);
-}
-
-#[test]
-fn a_part_that_jumps_is_named() {
-    let gate = || Part::polyline([DVec2::new(4.0, 5.0), DVec2::new(8.0, 5.0)]).unwrap();
-    let late = |start: f64| {
-        let motion = StartingAt::new(Sinusoidal::new(2.0, 1.0).unwrap(), start).unwrap();
-        gate().with_motion(DVec2::Y, motion).unwrap()
-    };
-    let vessel = |part: Part| Vessel::new(walls()).with("gate", part).unwrap();
-    let disks = [Disk::new(DVec2::new(1.0, 1.0), 0.5).unwrap()];
-    let mut run = Simulation::builder(Elastic, vessel(gate())).disks(disks).build().unwrap();
-    run.run_until(3.0, &mut ()).unwrap();
-    let mut smooth = run.clone();
-    smooth.set_boundary(vessel(late(3.0))).unwrap();
-    assert_eq!(smooth.warnings(), []);
-    run.set_boundary(vessel(late(1.0))).unwrap();
-    let said = run.warnings()[0].to_string();
-    assert!(said.contains("gate") && said.contains("1.81859"), "{said}");
-}
-
-/// A drum with a slit turns about its center, which stays where it is; a whole drum looks the same from any
-/// side.
-#[test]
-fn an_arc_that_jumps_about_its_center_is_a_warning() {
-    let center = DVec2::new(6.0, 5.0);
-    let drum = |brick: Brick, rate: f64| {
-        let part = Part::new([brick.two_sided()]).unwrap().with_rotation(center, rate).unwrap();
-        Vessel::new(walls()).with("drum", part).unwrap()
-    };
-    let disks = [Disk::new(center, 0.5).unwrap()];
-    let jump = |brick: Brick, other: Brick| {
-        let mut run = Simulation::builder(Elastic, drum(brick, 0.5)).disks(disks).build().unwrap();
-        run.run_until(3.0, &mut ()).unwrap();
-        run.set_boundary(drum(other, 0.9)).unwrap();
-        run.warnings()
-    };
-    let slit = Brick::arc(center, 3.0, 0.3, 6.1).unwrap();
-    let turned = jump(slit, slit);
-    // The chord of the angle 1.2.
-    let chord = 6.0 * 0.6_f64.sin();
-    assert!(
-        matches!(turned[..], [Warning::WallJumped { by, .. }] if (by - chord).abs() < 1e-12),
-        "{turned:?}"
-    );
-    let circle = |radius: f64| Brick::circle(center, radius).unwrap();
-    assert_eq!(jump(circle(3.0), circle(3.0)), []);
-    let grown = jump(circle(3.0), circle(4.0));
-    assert!(matches!(grown[..], [Warning::WallJumped { by, .. }] if (by - 1.0).abs() < 1e-12), "{grown:?}");
-    // A peg that grows on all sides but one.
-    let peg = |radius: f64| Disk::new(center + DVec2::X * (2.0 - radius), radius).unwrap();
-    let pegs = |radius: f64| Obstacles::new(walls(), [peg(radius)]);
-    let disks = [Disk::new(DVec2::new(1.0, 1.0), 0.5).unwrap()];
-    let mut run = Simulation::builder(Elastic, pegs(1.0)).disks(disks).build().unwrap();
-    run.set_boundary(pegs(1.5)).unwrap();
-    assert!(matches!(run.warnings()[..], [Warning::WallJumped { .. }]), "{:?}", run.warnings());
-}
-
-/// A flap turns about one of its ends. The same walls in another order have not moved.
-#[test]
-fn a_flap_that_jumps_is_a_warning_and_another_order_is_none() {
-    let corners = [(4.0, 3.0), (8.0, 3.0), (8.0, 6.0), (4.0, 6.0)].map(DVec2::from);
-    let disks = [Disk::new(DVec2::new(1.0, 1.0), 0.5).unwrap()];
-    let jumps = |part: &dyn Fn(f64) -> Part| {
-        let vessel = |rate: f64| Vessel::new(walls()).with("flap", part(rate)).unwrap();
-        let mut run = Simulation::builder(Elastic, vessel(0.5)).disks(disks).build().unwrap();
-        run.run_until(1.0, &mut ()).unwrap();
-        run.set_boundary(vessel(0.9)).unwrap();
-        run.warnings()
-    };
-    let flap =
-        |rate: f64| Part::polyline(corners[..2].iter().copied()).unwrap().with_rotation(corners[0], rate);
-    let turned = jumps(&|rate| flap(rate).unwrap());
-    let chord = 8.0 * 0.2_f64.sin();
-    assert!(
-        matches!(turned[..], [Warning::WallJumped { by, .. }] if (by - chord).abs() < 1e-12),
-        "{turned:?}"
-    );
-    let block = |rate: f64| {
-        let first = usize::from(rate > 0.6);
-        Part::block((0..4).map(|corner| corners[(first + corner) % 4])).unwrap()
-    };
-    assert_eq!(jumps(&block), []);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Temperatures, on_collision};
 use granular_edmd::simulation::{Limits, Remedy, RunError, Warning};
 use granular_edmd::wall::Sinusoidal;
-use granular_edmd::{Disk, Flight, Kind, Simulation, initial};
+use granular_edmd::{Disk, Flight, Simulation, initial};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
@@ -273,99 +273,6 @@ fn a_stall_names_its_cause() -> Outcome {
     let sinking = || -> Outcome<Lying> { Ok(Lying(walls()?, -0.2)) };
     assert_eq!(stall_of(lossy, sinking()?, disk()?)?, Remedy::WallVelocity);
     assert_eq!(stall_of(short, sinking()?, disk()?)?, Remedy::WallVelocity);
-    Ok(())
-}
-
-fn line(ends: [(f64, f64); 2]) -> Outcome<Part> {
-    Ok(Part::polyline(ends.map(DVec2::from))?)
-}
-
-fn with_exit(exit: Part) -> Outcome<Vessel> {
-    Ok(Vessel::new(walls()?).with("exit", exit)?)
-}
-
-/// A line that takes centers, nearer to a wall than a radius, is a sink that never opens: a stall names it,
-/// with a remedy around the rule and without.
-#[test]
-fn a_stall_names_a_sink_that_never_opens() -> Outcome {
-    let disk = || -> Outcome<Vec<Disk>> { Ok(vec![Disk::new(DVec2::new(5.0, 3.0), 0.5)?]) };
-    let lossy = Smooth::from_restitution(0.5)?;
-    let exit = line([(2.0, 0.3), (8.0, 0.3)])?.absorbing_centers();
-    assert_eq!(stall_of(lossy, with_exit(exit.clone())?, disk()?)?, Remedy::ClosedSink);
-    let short = ContactDuration::new(lossy, 1e-12)?;
-    assert_eq!(stall_of(short, with_exit(exit)?, disk()?)?, Remedy::ClosedSink);
-    let other = line([(2.0, 15.0), (8.0, 15.0)])?.absorbing_centers();
-    assert_eq!(stall_of(lossy, with_exit(other)?, disk()?)?, Remedy::ElasticWhenSlow);
-    Ok(())
-}
-
-/// Without a stall, it is a warning.
-#[test]
-fn a_sink_that_never_opens_is_a_warning() -> Outcome {
-    let beside = |x: f64| line([(x, 4.0), (x, 12.0)]);
-    let closed = [
-        beside(19.7)?.absorbing_centers(),
-        beside(19.7)?.absorbing_centers().only_for([Kind::DEFAULT]),
-        line([(19.9, 19.3), (19.3, 19.9)])?.absorbing_centers(),
-        // For a kind that no disk has.
-        beside(10.0)?.absorbing_centers().only_for([Kind::new(3)]),
-    ];
-    for exit in closed {
-        let mut run = Simulation::builder(Elastic, with_exit(exit)?).disks(gas(&walls()?)?).build()?;
-        run.run_until(100.0, &mut ())?;
-        let seen = run.warnings();
-        let [Warning::ClosedSink { wall: 4, ref name }] = seen[..] else { panic!("{seen:?}") };
-        assert_eq!(name, "exit");
-        assert!(seen[0].to_string().contains("\"exit\""), "{}", seen[0]);
-    }
-    Ok(())
-}
-
-/// A slot hardly wider than a disk over a long sink, wherever it lies.
-#[test]
-fn a_sink_under_a_narrow_slot_is_no_warning() -> Outcome {
-    for (slot, offset) in [(1.15, 0.0), (1.15, 0.3), (1.15, 0.6), (1.5, 0.0), (1.5, 0.3), (1.5, 7.1)] {
-        let [left, right] = [-0.5, 0.5].map(|side| 100.0 + offset + side * slot);
-        let block = |from: f64, to: f64| {
-            Part::block([(from, -1.0), (to, -1.0), (to, 2.0), (from, 2.0)].map(DVec2::from))
-        };
-        let vessel = Vessel::new(Container::closed(200.0, 10.0)?)
-            .with("west", block(-1.0, left)?)?
-            .with("east", block(right, 201.0)?)?
-            .with("exit", line([(0.0, 1.0), (200.0, 1.0)])?.absorbing())?;
-        let columns = (4..190).map(|column| 2.0 + f64::from(column));
-        let places = columns.flat_map(|x| [4.5, 6.0, 7.5, 9.0].map(|y| DVec2::new(1.01 * x, y)));
-        let disks = places.map(|place| Disk::new(place, 0.5)).collect::<Result<Vec<_>, _>>()?;
-        let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
-        let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
-        run.run(&Limits::until(1000.0).with_most_collisions(2000), &mut ())?;
-        assert_eq!((run.counters().removals, run.warnings()), (0, vec![]), "{slot} {offset}");
-    }
-    Ok(())
-}
-
-/// A sink to which disks could get is none, though none is high enough.
-#[test]
-fn a_sink_that_waits_is_no_warning() -> Outcome {
-    let exits = [
-        line([(20.0, 14.0), (20.0, 14.1)])?.absorbing(),
-        line([(20.0, 14.0), (20.0, 16.0)])?.absorbing_centers(),
-        line([(19.4, 14.0), (19.4, 16.0)])?.absorbing_centers(),
-        line([(3.0, 20.0), (3.2, 20.0)])?.absorbing(),
-        Part::peg(DVec2::new(9.0, 17.0), 1.0)?.absorbing(),
-        Part::peg(DVec2::new(0.0, 20.0), 3.0)?.absorbing_centers(),
-        line([(2.0, 17.0), (18.0, 17.0)])?.with_motion(DVec2::Y, Sinusoidal::new(0.5, 1.0)?)?.absorbing(),
-    ];
-    let mut vessels = exits.into_iter().map(with_exit).collect::<Outcome<Vec<_>>>()?;
-    let lid = || -> Outcome<Container> { Ok(walls()?.with_motion(Wall::Lid, Sinusoidal::new(0.5, 1.0)?)?) };
-    vessels.extend([walls()?.absorbing(Wall::Lid)?, lid()?.absorbing(Wall::Lid)?].map(Vessel::new));
-    for vessel in vessels {
-        let mut disks = gas(&walls()?)?;
-        disks.retain(|disk| disk.position().y < 8.0);
-        let mut run = Simulation::builder(Elastic, vessel).disks(disks).gravity(3.0).build()?;
-        run.run_until(100.0, &mut ())?;
-        assert_eq!((run.counters().removals, run.warnings()), (0, vec![]), "{:?}", run.boundary());
-    }
     Ok(())
 }
 

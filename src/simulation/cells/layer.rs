@@ -102,21 +102,6 @@ impl LayerLayout {
         whole.then_some(Layout { columns: columns / side, rows: rows / side, pitch, cell_size })
     }
 
-    /// Returns whether the cells are so narrow that their disks can meet only one image of each other, and of
-    /// disks of the smallest class.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn is_narrow_enough(
-        &self,
-        domain: &Domain,
-        smallest: &Layout,
-        smallest_diameter: f64,
-        diameter: f64,
-    ) -> bool {
-        let grid = Grid::new(domain, *smallest, smallest_diameter);
-        let widest = widest(domain, &grid, smallest_diameter, diameter);
-        self.cells.pitch.cmple(widest).all()
-    }
-
     /// Returns the same homes with cells at most this wide and high, if cells can be so fine.
     pub(super) fn narrower(self, widest: DVec2) -> Option<Self> {
         let mut layout = self;

@@ -1,6 +1,6 @@
 //! Resumption: building a run from a checkpoint.
 
-use super::validation::{MISFIT, are_layouts, check, check_numbers, check_places};
+use super::validation::{check_layouts, check_lengths, check_places};
 use super::{Checkpoint, CheckpointError, Saved};
 use crate::Gravity;
 use crate::boundary::Boundary;
@@ -89,12 +89,12 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             return Err(CheckpointError::Domain { saved: saved.domain, given });
         }
         let wall_count = count_walls(&self.boundary)?;
-        check_numbers(saved, wall_count)?;
+        check_lengths(saved, wall_count)?;
         let bodies = bodies_of(saved);
         let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
-        check(are_layouts(saved, diameters.clone()), MISFIT)?;
+        check_layouts(saved, diameters.clone())?;
         let mut cells = Cells::empty(&self.boundary, &saved.layouts, diameters);
-        check_places(saved, &cells, &bodies)?;
+        check_places(saved, &cells)?;
         cells.fill(saved.places.clone());
         let mut run = self.run(bodies, cells, wall_count);
         run.engine.make_room();
@@ -109,7 +109,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// anew.
     fn build_anew(mut self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
-        check_numbers(saved, usize::MAX)?;
+        check_lengths(saved, usize::MAX)?;
         let bodies = bodies_of(saved);
         // Walls that react begin at the time origin.
         let by = if self.boundary.state().is_empty() { 0.0 } else { saved.clock.exact_offset() };

@@ -10,7 +10,7 @@ use crate::error::{Readable, Rounded, RoundedVector};
 use crate::observable::Partner;
 
 /// Returns the description of a disk's partner for an error.
-pub(in crate::simulation) fn named(partner: Option<Partner>, wall: Option<&str>) -> String {
+pub(super) fn named(partner: Option<Partner>, wall: Option<&str>) -> String {
     match (partner, wall) {
         (Some(Partner::Disk(other)), _) => format!(" with disk {other}"),
         (Some(Partner::Wall(_)), Some(name)) => format!(" with the wall {name:?}"),

@@ -25,8 +25,6 @@ pub enum Remedy {
     WallVelocity,
     /// The rule gains energy, so disks become ever faster.
     EnergyGain,
-    /// Matter comes to rest, and walls keep it from a sink: no disk can touch the sink.
-    ClosedSink,
     /// The run advances, but more slowly than
     /// [`Limits::with_least_progress`](crate::simulation::Limits::with_least_progress) asks.
     LessProgress,
@@ -54,10 +52,6 @@ impl fmt::Display for Remedy {
                 "the wall does not move at the velocity of its surface; boundary::laws::check compares the two"
             }
             Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
-            Self::ClosedSink => {
-                "matter comes to rest, and no disk has room at a sink, since walls are in its way; \
-                 Simulation::warnings names it"
-            }
             Self::LessProgress => "time advances, but the least progress that was asked for is larger",
             Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
         })

@@ -63,15 +63,10 @@ impl Identities {
         self.forget_the_obvious();
     }
 
-    /// Returns whether a run with `count` disks can have these ids, none of them twice.
+    /// Returns whether these are the ids of `count` disks.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn suits(&self, count: usize) -> bool {
-        let mut ids = self.ids.clone();
-        ids.sort_unstable();
-        let differ = ids.windows(2).all(|pair| pair[0] < pair[1]);
-        let is_complete = [0, count].contains(&ids.len()) && self.last >= count as u64;
-        let known = ids.first() != Some(&0) && ids.last().is_none_or(|&largest| largest <= self.last);
-        is_complete && differ && known && self.last <= LARGEST_ID
+        [0, count].contains(&self.ids.len())
     }
 
     fn list(&mut self, count: usize) {

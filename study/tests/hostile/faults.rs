@@ -10,6 +10,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
+use granular_edmd::Simulation;
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Axis, Control, Experiment, Plan, Protocol, Study};
@@ -18,7 +19,7 @@ use crate::limits::{Limits, in_child};
 use crate::logs::{self, contents};
 use crate::mixture::{Mixture, mixture};
 use crate::report::report;
-use crate::specimens::{Scratch, checkpoint};
+use crate::specimens::{Scratch, checkpoint, container, rule};
 
 const FOLDER: &str = "GRANULAR_EDMD_HOSTILE_FOLDER";
 
@@ -80,7 +81,7 @@ fn child_writes_checkpoints() {
 
 fn two_states() -> [Checkpoint; 2] {
     let first = checkpoint();
-    let mut run = crate::specimens::resume(&first).unwrap();
+    let mut run = Simulation::resume(&first, rule(), container()).build().unwrap();
     run.run_until(9.0, &mut ()).unwrap();
     [first, run.checkpoint()]
 }

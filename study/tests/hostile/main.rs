@@ -10,11 +10,6 @@ mod edits;
 mod faults;
 mod files;
 #[cfg(unix)]
-mod forged;
-#[cfg(unix)]
-mod forging;
-mod intruders;
-#[cfg(unix)]
 mod limits;
 #[path = "../support/logs.rs"]
 mod logs;

@@ -1,38 +1,11 @@
-//! Every kind of value that a study reads from files, with one field too many. Each is refused by name.
+//! Plans with a field too many, and plans too deep or too long.
 
-use granular_edmd_study::analysis::Transition;
-use granular_edmd_study::vibrated_box::{Base, Measurement, Sample, VibratedBox};
-use granular_edmd_study::{Axis, Course, Outcome, Plan, Protocol, Ramp};
-use serde_json::json;
+use granular_edmd_study::vibrated_box::VibratedBox;
+use granular_edmd_study::{Course, Plan, Ramp};
 
-use crate::intruders::refuses;
-use crate::studies::{done_study, plan};
+use crate::studies::plan;
 
-#[test]
-fn plans_and_records_with_a_field_too_many_are_refused() {
-    refuses(&plan());
-    refuses(&Ramp::new("friction", [0.1], Course::Down).unwrap());
-    refuses(&Axis::new("friction", [0.1]).unwrap());
-    for base in [
-        Base::BiParabolic { amplitude: 0.1, angular_frequency: 1.0 },
-        Base::Sinusoidal { amplitude: 0.1, angular_frequency: 1.0 },
-        Base::Thermal { temperature: 1.0, slip: true },
-    ] {
-        let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
-        refuses(&Plan::new(experiment, Protocol::new(2, 3, 1).unwrap(), 5).unwrap());
-    }
-    let (_scratch, study) = done_study("intruder", &plan());
-    let record = study.record(0, 1).unwrap().unwrap();
-    refuses::<Sample>(&record.samples()[0]);
-    let mut measurement = serde_json::to_value(record.observer()).unwrap();
-    measurement["intruder"] = json!(1);
-    assert!(serde_json::from_value::<Measurement>(measurement).unwrap_err().to_string().contains("intruder"));
-    let transition = json!({ "line": "ZeroOne", "value": 0.1, "error": 0.01, "rising": true });
-    refuses(&serde_json::from_value::<Transition>(transition).unwrap());
-    refuses(&Outcome::Stopped { time: 1.0 });
-}
-
-/// The same holds in TOML, at each place of a plan.
+/// A plan refuses an unknown field by name, at each place.
 #[test]
 fn a_plan_in_toml_with_a_field_too_many_is_refused() {
     let text = plan().to_toml().unwrap();

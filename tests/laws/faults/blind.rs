@@ -4,7 +4,6 @@
 //! a fault, as `honest`: a check that refuses one of these is wrong itself.
 
 pub(crate) mod boundaries;
-pub(crate) mod drivings;
 pub(crate) mod fingerprints;
 pub(crate) mod formats;
 pub(crate) mod motions;
@@ -21,7 +20,6 @@ pub(crate) fn names() -> Vec<String> {
         named("motion", &motions::catalogue()),
         named("boundary", &boundaries::catalogue()),
         named("scheduler", &schedulers::catalogue()),
-        named("driving", &drivings::catalogue()),
         named("observer", &observers::catalogue()),
         named("format", &formats::catalogue()),
         named("fingerprint", &fingerprints::catalogue()),

@@ -2,7 +2,6 @@
 //! beyond their ranges, and in the parts of an answer that they compare last.
 
 pub(crate) mod boundaries;
-pub(crate) mod drivings;
 pub(crate) mod fingerprints;
 pub(crate) mod formats;
 pub(crate) mod motions;
@@ -19,7 +18,6 @@ pub(crate) fn names() -> Vec<String> {
         named("motion", &motions::catalogue()),
         named("boundary", &boundaries::catalogue()),
         named("scheduler", &schedulers::catalogue()),
-        named("driving", &drivings::catalogue()),
         named("observer", &observers::catalogue()),
         named("format", &formats::catalogue()),
         named("fingerprint", &fingerprints::catalogue()),

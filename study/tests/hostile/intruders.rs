@@ -1,1 +1,0 @@
-../../../tests/hostile/intruders.rs
