@@ -11,28 +11,23 @@
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
 //!
-//! Motions combine, and the bounds on their acceleration follow automatically:
-//!
-//! | combination | displacement |
-//! |---|---|
-//! | [`StartingAt`] | phase 0 at another time |
-//! | [`Delayed`] | phase 0 at another time, and at rest before it |
-//! | [`Scaled`] | times a factor; −1 mirrors |
-//! | [`Summed`] | the sum of two |
+//! [`Combined`] adds motions, scales them, mirrors them, and lets them begin at another time. The bounds on
+//! their acceleration follow automatically:
 //!
 //! ```
 //! use granular_edmd::boundary::{Container, Wall};
-//! use granular_edmd::wall::{Delayed, Scaled, Sinusoidal, Summed, Tabulated};
+//! use granular_edmd::wall::{Combined, Sinusoidal, Tabulated};
 //!
 //! let shake = Sinusoidal::new(0.1, 10.0)?;
+//! let both = Combined::new(shake).plus(Sinusoidal::new(0.02, 30.0)?)?;
 //! let container = Container::closed(20.0, 30.0)?
 //!     // The grains settle for 50, then two frequencies shake them.
-//!     .with_motion(Wall::Floor, Delayed::new(Summed::new(shake, Sinusoidal::new(0.02, 30.0)?)?, 50.0)?)?
+//!     .with_motion(Wall::Floor, both.delayed_until(50.0)?)?
 //!     // The lid comes down by 4 from time 80 to 100.
-//!     .with_motion(Wall::Lid, Delayed::new(Tabulated::from_to(0.0, 4.0, 20.0)?, 80.0)?)?
+//!     .with_motion(Wall::Lid, Combined::new(Tabulated::from_to(0.0, 4.0, 20.0)?).delayed_until(80.0)?)?
 //!     // Both sides move to the right: the normals of two opposite walls are opposite.
 //!     .with_motion(Wall::Left, shake)?
-//!     .with_motion(Wall::Right, Scaled::new(shake, -1.0)?)?;
+//!     .with_motion(Wall::Right, Combined::new(shake).scaled(-1.0)?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -44,42 +39,36 @@
 //! for an example, and [`laws`] for a check of a custom motion.
 
 mod bi_parabolic;
-mod delayed;
+mod combined;
 mod finite;
 mod first_touch;
 mod fixed;
 mod forward;
 mod jumps;
-#[cfg(feature = "serde")]
 mod known;
 pub mod laws;
 mod motion;
 mod oscillation;
 mod piston;
 mod sawtooth;
-mod scaled;
 mod sinusoidal;
-mod starting_at;
 mod stroke;
-mod summed;
 mod tabulated;
 mod triangular;
 
 pub use bi_parabolic::BiParabolic;
-pub use delayed::Delayed;
+pub use combined::Combined;
 pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use fixed::Fixed;
+pub use known::KnownMotion;
 #[cfg(feature = "serde")]
 pub(crate) use known::motion_or_piston;
 pub(crate) use motion::Motion;
 pub use piston::Piston;
 pub(crate) use piston::Stroke;
 pub use sawtooth::Sawtooth;
-pub use scaled::Scaled;
 pub use sinusoidal::Sinusoidal;
-pub use starting_at::StartingAt;
-pub use summed::Summed;
 pub use tabulated::Tabulated;
 pub use triangular::Triangular;
 

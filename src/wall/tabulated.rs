@@ -86,7 +86,7 @@ impl Tabulated {
     /// z(t) = A + 2(B-A)(t/T)^2\quad (0\le t<T/2),\qquad z(t) = B - 2(B-A)(1-t/T)^2\quad (T/2\le t<T).
     /// ```
     ///
-    /// It begins at phase 0; [`Delayed`](super::Delayed) moves the start.
+    /// It begins at phase 0; [`Combined::delayed_until`](super::Combined::delayed_until) moves the start.
     ///
     /// # Errors
     /// If the time is not positive, or another number or the acceleration is not finite.

@@ -166,7 +166,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ///
     /// The first value of a ramp counts cycles from time 0. A value whose cycle differs from the previous
     /// value's counts cycles from its own start. At this time, the walls may be at any phase, unless their
-    /// motion begins then, too ([`StartingAt`](granular_edmd::wall::StartingAt) in
+    /// motion begins then, too ([`Combined::starting_at`](granular_edmd::wall::Combined::starting_at) in
     /// [`boundary_in`](Self::boundary_in)).
     fn cycle(&self) -> f64 {
         1.0

@@ -12,8 +12,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Event, Limits, RunEnd, RunError};
 use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Delayed, Scaled, Sinusoidal, Summed, Tabulated, Triangular, WallMotion,
-    WallState,
+    AccelerationBounds, BiParabolic, Combined, Sinusoidal, Tabulated, Triangular, WallMotion, WallState,
 };
 use granular_edmd::{Disk, Flight, Simulation};
 
@@ -175,18 +174,23 @@ fn combined_motions_have_the_collisions_of_brute_force() {
             checked_run(rhombus(direction, motion), end, 2.0 * amplitude, dense)
         };
         let sine = |share: f64, speed: f64| Sinusoidal::new(share * amplitude, speed / amplitude).unwrap();
-        let sum = Summed::new(sine(0.5, 1.0), Scaled::new(sine(0.25, 2.3), -2.0).unwrap()).unwrap();
+        let sum =
+            Combined::new(sine(0.5, 1.0)).plus(Combined::new(sine(0.25, 2.3)).scaled(-2.0).unwrap()).unwrap();
         let row = |k: u32| (0.5 * amplitude * f64::from(k), amplitude * libm::cos(f64::from(k * k)));
         let table = || Tabulated::new((0..4000).map(row)).unwrap();
         let gone = Tabulated::from_to(-amplitude, amplitude, 0.4 * end).unwrap();
         let counts = [
-            collisions(DVec2::Y, Box::new(Delayed::new(sine(1.0, 1.0), 0.3 * end).unwrap())),
+            collisions(DVec2::Y, Box::new(Combined::new(sine(1.0, 1.0)).delayed_until(0.3 * end).unwrap())),
             collisions(point(1.0, 0.3), Box::new(sum.clone())),
             collisions(DVec2::Y, Box::new(table())),
-            collisions(point(1.0, 1.0), Box::new(Delayed::new(gone, 0.3 * end).unwrap())),
+            collisions(point(1.0, 1.0), Box::new(Combined::new(gone).delayed_until(0.3 * end).unwrap())),
             collisions(
                 DVec2::Y,
-                Box::new(Summed::new(Delayed::new(sum, 0.2 * end).unwrap(), table()).unwrap()),
+                Box::new(
+                    Combined::new(Combined::new(sum).delayed_until(0.2 * end).unwrap())
+                        .plus(table())
+                        .unwrap(),
+                ),
             ),
         ];
         assert!(counts.iter().all(|&count| count > 10), "{counts:?}");
@@ -200,7 +204,7 @@ fn parts_that_turn_and_travel_have_the_collisions_of_brute_force() {
     let fast = || Sinusoidal::new(0.05, 20.0).unwrap();
     let motions: [Box<dyn Fn() -> Box<dyn WallMotion + Send + Sync>>; 3] = [
         Box::new(|| Box::new(fast())),
-        Box::new(move || Box::new(Delayed::new(gone.clone(), 5.0).unwrap())),
+        Box::new(move || Box::new(Combined::new(gone.clone()).delayed_until(5.0).unwrap())),
         Box::new(|| Box::new(BiParabolic::new(0.4, 2.0).unwrap())),
     ];
     for motion in motions {
@@ -243,9 +247,9 @@ fn a_part_that_turns_travels_to_a_waiting_disk() {
 fn delayed_motions_are_met_at_their_start() {
     for start in 1..40 {
         let start = f64::from(start);
-        let motion = Delayed::new(Sinusoidal::new(1.0, 3.0).unwrap(), start).unwrap();
+        let motion = Combined::new(Sinusoidal::new(1.0, 3.0).unwrap()).delayed_until(start).unwrap();
         checked_run(rhombus(DVec2::Y, motion), start + 1.0, 1.0, 0.01);
-        let motion = Delayed::new(Tabulated::from_to(0.0, 1.0, 0.3).unwrap(), start).unwrap();
+        let motion = Combined::new(Tabulated::from_to(0.0, 1.0, 0.3).unwrap()).delayed_until(start).unwrap();
         checked_run(rhombus(point(-1.0, 0.5), motion), start + 1.0, 1.0, 0.01);
     }
 }

@@ -3,8 +3,8 @@
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::wall::{
-    BiParabolic, Delayed, Fixed, Piston, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
-    Triangular, WallMotion,
+    BiParabolic, Combined, Fixed, KnownMotion, Piston, Sawtooth, Sinusoidal, Tabulated, Triangular,
+    WallMotion,
 };
 
 fn closed() -> Container {
@@ -25,11 +25,11 @@ fn every_motion_goes_round() {
         goes_round(&closed().with_motion(Wall::Floor, motion.clone()).unwrap(), name);
         goes_round(
             &closed()
-                .shaken_vertically(Scaled::new(motion.clone(), 0.5).unwrap())
+                .shaken_vertically(Combined::new(motion.clone()).scaled(0.5).unwrap())
                 .unwrap_or_else(|_| closed()),
             name,
         );
-        let late = StartingAt::new(motion, 2.5).unwrap();
+        let late = Combined::new(motion).starting_at(2.5).unwrap();
         goes_round(&closed().with_motion(Wall::Lid, late).unwrap(), name);
         name.to_owned()
     }
@@ -37,13 +37,11 @@ fn every_motion_goes_round() {
     let gate = || Tabulated::new([(0.0, 0.0), (1.0, 0.3), (4.0, 0.1)]).unwrap();
     let tried = [
         moving("BiParabolic", BiParabolic::new(0.1, 3.0).unwrap()),
-        moving("Delayed", Delayed::new(Summed::new(gate(), sine()).unwrap(), 2.0).unwrap()),
+        moving("Combined", Combined::new(gate()).plus(sine()).unwrap().delayed_until(2.0).unwrap()),
         moving("Fixed", Fixed),
+        moving("KnownMotion", KnownMotion::from(sine())),
         moving("Sawtooth", Sawtooth::new(0.1, 3.0).unwrap()),
-        moving("Scaled", Scaled::new(Scaled::new(sine(), -1.0).unwrap(), -1.0).unwrap()),
         moving("Sinusoidal", Sinusoidal::new(0.1, 3.0).unwrap()),
-        moving("StartingAt", StartingAt::new(sine(), 0.3).unwrap()),
-        moving("Summed", Summed::new(StartingAt::new(sine(), 0.3).unwrap(), gate()).unwrap()),
         moving("Tabulated", gate()),
         moving("Triangular", Triangular::new(0.1, 3.0).unwrap()),
     ];
@@ -59,7 +57,7 @@ fn every_motion_goes_round() {
     let text = serde_json::to_string(&piston).unwrap();
     let motion = text.split_once("\"stroke\":").unwrap().1.split_once('}').unwrap().0;
     let wrapped = format!("{{\"motion\":{{\"stroke\":{motion}}}}},\"start\":1.0}}");
-    let error = serde_json::from_str::<Delayed>(&wrapped).unwrap_err().to_string();
+    let error = serde_json::from_str::<Combined>(&wrapped).unwrap_err().to_string();
     assert!(error.contains("only a wall of a container can be a piston"), "{error}");
     assert_eq!(types.filter(|name| *name != "Piston").collect::<Vec<_>>(), tried);
     goes_round(&closed().shaken_sideways(Sinusoidal::new(0.1, 3.0).unwrap()).unwrap(), "shaken");

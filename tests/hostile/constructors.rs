@@ -9,7 +9,7 @@ use granular_edmd::observable::{
     EnergyChangeProfile, Grid, HeightProfile, PairCorrelation, SampleTimes, WallStress,
 };
 use granular_edmd::statistics::Histogram;
-use granular_edmd::wall::{BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, Tabulated, Triangular};
+use granular_edmd::wall::{BiParabolic, Combined, Fixed, Sawtooth, Sinusoidal, Tabulated, Triangular};
 use granular_edmd::{Disk, Simulation, initial};
 
 /// Numbers that a file or a typing error may bring.
@@ -86,8 +86,8 @@ fn motions() -> Vec<Case> {
         ("time of row 1", |value| told(Tabulated::new([(0.0, 0.0), (value, 0.0)])), splits),
         ("displacement of row 0", |value| told(Tabulated::from_to(value, value, 1.0)), f64::is_finite),
         ("", |value| told(Tabulated::from_to(0.0, 0.0, value)), splits),
-        ("start of a motion", |value| told(Delayed::new(Fixed, value)), f64::is_finite),
-        ("factor of a motion", |value| told(Scaled::new(Fixed, value)), f64::is_finite),
+        ("start of a motion", |value| told(Combined::new(Fixed).delayed_until(value)), f64::is_finite),
+        ("factor of a motion", |value| told(Combined::new(Fixed).scaled(value)), f64::is_finite),
     ]
 }
 
@@ -222,12 +222,12 @@ fn walls_of_any_motion_end_in_an_error_or_run() {
             Sawtooth::new(0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
             Tabulated::from_to(0.0, value, 3.0).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
             Tabulated::from_to(0.0, 0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
-            Scaled::new(sine, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Combined::new(sine).scaled(value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
             Thermal::new(value).map(|thermal| box_of(8.0).with_temperature(Wall::Floor, thermal)),
         ];
         floors.into_iter().flatten().for_each(|floor| runs(&floor.unwrap(), 0.1, 0.0, 1.0));
         // Where floating-point times cannot tell the pieces of a sine apart, the container says so.
-        let Ok(late) = Delayed::new(sine, value) else { continue };
+        let Ok(late) = Combined::new(sine).delayed_until(value) else { continue };
         let floor = box_of(8.0).with_motion(Wall::Floor, late);
         assert!(floor.is_ok() || value.abs() > 1e9, "{value}");
         if let Ok(floor) = floor {

@@ -11,8 +11,8 @@ use granular_edmd::collision::{
 use granular_edmd::glam::DVec2;
 use granular_edmd::trajectory::{ExtendedXyz, LammpsDump};
 use granular_edmd::wall::{
-    BiParabolic, Delayed, Fixed, Piston, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
-    Triangular, WallMotion, laws as wall_laws,
+    BiParabolic, Combined, Fixed, Piston, Sawtooth, Sinusoidal, Tabulated, Triangular, WallMotion,
+    laws as wall_laws,
 };
 use granular_edmd::{Disk, Kind, trajectory};
 
@@ -54,10 +54,10 @@ fn motions() -> Result<Motions, Failed> {
         Box::new(arcs),
         Box::new(Triangular::new(amplitude, frequency)?),
         Box::new(Sawtooth::new(amplitude, frequency)?),
-        Box::new(Delayed::new(sine, 1.3)?),
-        Box::new(StartingAt::new(arcs, 0.7)?),
-        Box::new(Scaled::new(arcs, -0.5)?),
-        Box::new(Summed::new(sine, Sinusoidal::new(0.05, 13.0)?)?),
+        Box::new(Combined::new(sine).delayed_until(1.3)?),
+        Box::new(Combined::new(arcs).starting_at(0.7)?),
+        Box::new(Combined::new(arcs).scaled(-0.5)?),
+        Box::new(Combined::new(sine).plus(Sinusoidal::new(0.05, 13.0)?)?),
         Box::new(Tabulated::from_to(0.0, 0.5, 4.0)?),
     ])
 }

@@ -12,7 +12,7 @@ use granular_edmd::observable::{Arrivals, OfKind, SampleTimes};
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::simulation::{BuildError, Inlet, RunError, Warning};
-use granular_edmd::wall::{BiParabolic, Delayed, Sinusoidal, WallMotion};
+use granular_edmd::wall::{BiParabolic, Combined, Sinusoidal, WallMotion};
 use granular_edmd::{Disk, Kind, Simulation};
 
 use crate::schedulers::{SCHEDULERS, Scheduler};
@@ -372,7 +372,7 @@ fn no_center_passes_a_line_for_centers() -> Result<(), Box<dyn Error>> {
     let (sine, parabolas, late) = (
         Sinusoidal::new(0.6, 2.0)?,
         BiParabolic::new(0.6, 2.0)?,
-        Delayed::new(Sinusoidal::new(2.0, 0.7)?, 5.0)?,
+        Combined::new(Sinusoidal::new(2.0, 0.7)?).delayed_until(5.0)?,
     );
     let (turn, middle) = (0.1, DVec2::splat(10.0));
     for speed in [0.0, 1.0] {

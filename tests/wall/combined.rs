@@ -3,8 +3,8 @@
 use granular_edmd::ParameterError;
 use granular_edmd::wall::laws::{check, check_fingerprints};
 use granular_edmd::wall::{
-    Approach, BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
-    Triangular, WallMotion, check_finite, first_touch,
+    Approach, BiParabolic, Combined, Fixed, Sawtooth, Sinusoidal, Tabulated, Triangular, WallMotion,
+    check_finite, first_touch,
 };
 use proptest::prelude::*;
 
@@ -28,23 +28,23 @@ fn all_keep_the_contract() {
     let arcs = BiParabolic::new(0.1, 7.0).unwrap();
     let saw = Sawtooth::new(0.1, 3.0).unwrap();
     for start in [-2.7, 0.0, 0.3, 5.0] {
-        keeps_its_contract(&Delayed::new(sine(10.0), start).unwrap());
-        keeps_its_contract(&Delayed::new(arcs, start).unwrap());
-        keeps_its_contract(&Delayed::new(saw, start).unwrap());
-        keeps_its_contract(&Delayed::new(gate(), start).unwrap());
-        keeps_its_contract(&StartingAt::new(gate(), start).unwrap());
-        keeps_its_contract(&StartingAt::new(saw, start).unwrap());
-        keeps_its_contract(&Delayed::new(Triangular::new(0.1, 3.0).unwrap(), start).unwrap());
+        keeps_its_contract(&Combined::new(sine(10.0)).delayed_until(start).unwrap());
+        keeps_its_contract(&Combined::new(arcs).delayed_until(start).unwrap());
+        keeps_its_contract(&Combined::new(saw).delayed_until(start).unwrap());
+        keeps_its_contract(&Combined::new(gate()).delayed_until(start).unwrap());
+        keeps_its_contract(&Combined::new(gate()).starting_at(start).unwrap());
+        keeps_its_contract(&Combined::new(saw).starting_at(start).unwrap());
+        keeps_its_contract(&Combined::new(Triangular::new(0.1, 3.0).unwrap()).delayed_until(start).unwrap());
     }
     for factor in [-1.0, 0.0, 1e-3, 2.5] {
-        keeps_its_contract(&Scaled::new(sine(10.0), factor).unwrap());
-        keeps_its_contract(&Scaled::new(Triangular::new(0.1, 3.0).unwrap(), factor).unwrap());
-        keeps_its_contract(&Scaled::new(gate(), factor).unwrap());
+        keeps_its_contract(&Combined::new(sine(10.0)).scaled(factor).unwrap());
+        keeps_its_contract(&Combined::new(Triangular::new(0.1, 3.0).unwrap()).scaled(factor).unwrap());
+        keeps_its_contract(&Combined::new(gate()).scaled(factor).unwrap());
     }
-    keeps_its_contract(&Summed::new(sine(10.0), sine(20.0)).unwrap());
-    keeps_its_contract(&Summed::new(sine(10.0), sine(7.3)).unwrap());
-    keeps_its_contract(&Summed::new(arcs, saw).unwrap());
-    keeps_its_contract(&Summed::new(Delayed::new(arcs, 1.0).unwrap(), gate()).unwrap());
+    keeps_its_contract(&Combined::new(sine(10.0)).plus(sine(20.0)).unwrap());
+    keeps_its_contract(&Combined::new(sine(10.0)).plus(sine(7.3)).unwrap());
+    keeps_its_contract(&Combined::new(arcs).plus(saw).unwrap());
+    keeps_its_contract(&Combined::new(Combined::new(arcs).delayed_until(1.0).unwrap()).plus(gate()).unwrap());
     keeps_its_contract(&gate());
     keeps_its_contract(&Tabulated::from_to(-1.0, 2.0, 0.3).unwrap());
     keeps_its_contract(&Tabulated::from_to(0.5, 0.5, 0.3).unwrap());
@@ -54,10 +54,32 @@ fn all_keep_the_contract() {
 #[test]
 fn motions_of_two_types_may_move_alike() {
     let sine = sine(10.0);
-    let (begun, scaled) = (StartingAt::new(sine, 0.0).unwrap(), Scaled::new(sine, 1.0).unwrap());
+    let (begun, scaled) =
+        (Combined::new(sine).starting_at(0.0).unwrap(), Combined::new(sine).scaled(1.0).unwrap());
     assert_eq!(check_fingerprints(&begun, &sine), Ok(()));
     assert_eq!(check_fingerprints(&sine, &scaled), Ok(()));
     assert_eq!(check_fingerprints(&begun, &scaled), Ok(()));
+}
+
+/// A chain of methods gives the motion that combinations of combinations give.
+#[test]
+fn a_chain_moves_as_nested_combinations_do() {
+    let table = || Combined::new(Tabulated::new([(-1.0, 0.0), (1.0, 1.0), (4.0, 0.5)]).unwrap());
+    let nested = |motion: Combined| Combined::new(motion);
+    for (first, second) in [(0.7, 1.9), (-2.0, 0.5), (3.0, -1.5)] {
+        let pairs = [
+            (table().delayed_until(first), nested(table().delayed_until(first).unwrap())),
+            (table().starting_at(first), nested(table().starting_at(first).unwrap())),
+        ];
+        for (chain, nested) in pairs {
+            let chain = chain.unwrap().delayed_until(second).unwrap().scaled(-2.0).unwrap();
+            let nested = Combined::new(nested.delayed_until(second).unwrap()).scaled(-2.0).unwrap();
+            for k in -400..800 {
+                let (one, other) = (chain.state(0.01 * f64::from(k)), nested.state(0.01 * f64::from(k)));
+                assert!((one.displacement - other.displacement).abs() < 1e-12, "{first} {second} {k}");
+            }
+        }
+    }
 }
 
 /// Follows the pieces of a motion at constant speeds, and checks that each goes on as it begins.
@@ -79,13 +101,13 @@ fn late_kinks_and_jumps_are_where_pieces_end() {
     for k in 0..200 {
         let start = -5.0 + 0.173 * f64::from(k);
         let of = triangular(1.0 + 0.07 * f64::from(k));
-        goes_on_as_it_begins(&StartingAt::new(of, start).unwrap());
-        goes_on_as_it_begins(&Delayed::new(of, start).unwrap());
+        goes_on_as_it_begins(&Combined::new(of).starting_at(start).unwrap());
+        goes_on_as_it_begins(&Combined::new(of).delayed_until(start).unwrap());
         // The pieces of both end at almost the same times.
-        let both = Summed::new(of, triangular(3.0 * of.angular_frequency())).unwrap();
-        goes_on_as_it_begins(&Delayed::new(both, start).unwrap());
+        let both = Combined::new(of).plus(triangular(3.0 * of.angular_frequency())).unwrap();
+        goes_on_as_it_begins(&Combined::new(both).delayed_until(start).unwrap());
         goes_on_as_it_begins(
-            &StartingAt::new(Sawtooth::new(0.3, of.angular_frequency()).unwrap(), start).unwrap(),
+            &Combined::new(Sawtooth::new(0.3, of.angular_frequency()).unwrap()).starting_at(start).unwrap(),
         );
     }
 }
@@ -93,10 +115,8 @@ fn late_kinks_and_jumps_are_where_pieces_end() {
 #[test]
 fn a_disk_meets_a_late_wall_that_turns_at_once() {
     // Rounding has put the end of a fall before the rise that follows, and the search passed over the rise.
-    let wall = StartingAt::new(
-        Triangular::new(0.446_825_572_013_631_04, 4.063_886_831_113_892_5).unwrap(),
-        19.858_224_823_536_09,
-    );
+    let wall = Combined::new(Triangular::new(0.446_825_572_013_631_04, 4.063_886_831_113_892_5).unwrap())
+        .starting_at(19.858_224_823_536_09);
     let wall = wall.unwrap();
     for k in 0..2000 {
         let (height, velocity) = (0.45 + 1e-4 * f64::from(k), -0.03 - 1e-4 * f64::from(k % 97));
@@ -119,31 +139,41 @@ fn jumps_are_found_behind_starts_and_fast_oscillations() {
     let saw = Sawtooth::new(0.1, 3.0).unwrap();
     for k in 0..200 {
         let start = -3.0 + 0.171 * f64::from(k);
-        assert!(Scaled::new(StartingAt::new(saw, start).unwrap(), -1.0).is_err(), "{start}");
-        assert!(Scaled::new(Delayed::new(saw, start).unwrap(), -1.0).is_err(), "{start}");
+        assert!(
+            Combined::new(Combined::new(saw).starting_at(start).unwrap()).scaled(-1.0).is_err(),
+            "{start}"
+        );
+        assert!(
+            Combined::new(Combined::new(saw).delayed_until(start).unwrap()).scaled(-1.0).is_err(),
+            "{start}"
+        );
     }
-    let sum = Summed::new(sine(1e6), saw).unwrap();
-    assert!(Scaled::new(Delayed::new(sum, 50.0).unwrap(), -1.0).is_err());
-    assert!(Scaled::new(Summed::new(sine(10.0), Triangular::new(0.1, 3.0).unwrap()).unwrap(), -1.0).is_ok());
+    let sum = Combined::new(sine(1e6)).plus(saw).unwrap();
+    assert!(Combined::new(Combined::new(sum).delayed_until(50.0).unwrap()).scaled(-1.0).is_err());
+    assert!(
+        Combined::new(Combined::new(sine(10.0)).plus(Triangular::new(0.1, 3.0).unwrap()).unwrap())
+            .scaled(-1.0)
+            .is_ok()
+    );
 }
 
 #[test]
 fn a_sum_has_the_longer_period_if_the_shorter_one_divides_it() {
     let of = |motion: &dyn WallMotion| motion.period();
     let long = of(&sine(10.0));
-    assert_eq!(of(&Summed::new(sine(10.0), sine(40.0)).unwrap()), long);
-    assert_eq!(of(&Summed::new(sine(10.0), sine(10.0)).unwrap()), long);
-    assert_eq!(of(&Summed::new(Fixed, sine(10.0)).unwrap()), long);
-    assert_eq!(of(&Summed::new(sine(10.0), sine(7.3)).unwrap()), None);
-    assert_eq!(of(&Summed::new(sine(10.0), gate()).unwrap()), None);
-    assert_eq!(of(&Summed::new(Fixed, Fixed).unwrap()), None);
+    assert_eq!(of(&Combined::new(sine(10.0)).plus(sine(40.0)).unwrap()), long);
+    assert_eq!(of(&Combined::new(sine(10.0)).plus(sine(10.0)).unwrap()), long);
+    assert_eq!(of(&Combined::new(Fixed).plus(sine(10.0)).unwrap()), long);
+    assert_eq!(of(&Combined::new(sine(10.0)).plus(sine(7.3)).unwrap()), None);
+    assert_eq!(of(&Combined::new(sine(10.0)).plus(gate()).unwrap()), None);
+    assert_eq!(of(&Combined::new(Fixed).plus(Fixed).unwrap()), None);
 }
 
 /// A delayed wall rests at the place at which its motion begins, at phase 0.
 #[test]
 fn a_delayed_wall_rests_where_it_begins() {
     let shifted = Tabulated::new([(-1.0, 0.0), (1.0, 1.0)]).unwrap();
-    let late = Delayed::new(shifted, 4.0).unwrap();
+    let late = Combined::new(shifted).delayed_until(4.0).unwrap();
     for (time, displacement, velocity) in
         [(-9.0, 0.5, 0.0), (3.999, 0.5, 0.0), (4.0, 0.5, 1.0), (5.0, 1.0, 0.0)]
     {
@@ -193,17 +223,20 @@ fn what_cannot_be_is_refused_by_name() {
     );
     let saw = Sawtooth::new(0.1, 3.0).unwrap();
     assert_eq!(
-        told(Scaled::new(saw, -2.0).map(drop)),
+        told(Combined::new(saw).scaled(-2.0).map(drop)),
         "factor of a motion that jumps must be not negative, but is -2"
     );
-    assert_eq!(told(Scaled::new(Fixed, f64::NAN).map(drop)), "factor of a motion must be finite, but is NaN");
-    let far = || Tabulated::from_to(0.0, 1e300, 1e9).unwrap();
-    let largest = |what: &str| format!("largest displacement of a {what} must be finite, but is inf");
-    assert_eq!(told(Scaled::new(far(), 1e9).map(drop)), largest("scaled motion"));
-    let huge = || Scaled::new(far(), 1e8).unwrap();
-    assert_eq!(told(Summed::new(huge(), huge()).map(drop)), largest("sum"));
     assert_eq!(
-        told(Delayed::new(Fixed, f64::INFINITY).map(drop)),
+        told(Combined::new(Fixed).scaled(f64::NAN).map(drop)),
+        "factor of a motion must be finite, but is NaN"
+    );
+    let far = || Tabulated::from_to(0.0, 1e300, 1e9).unwrap();
+    let largest = "largest displacement of a motion must be finite, but is inf";
+    assert_eq!(told(Combined::new(far()).scaled(1e9).map(drop)), largest);
+    let huge = || Combined::new(far()).scaled(1e8).unwrap();
+    assert_eq!(told(Combined::new(huge()).plus(huge()).map(drop)), largest);
+    assert_eq!(
+        told(Combined::new(Fixed).delayed_until(f64::INFINITY).map(drop)),
         "start of a motion must be finite, but is inf"
     );
 }

@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 
 use granular_edmd::wall;
 use granular_edmd::wall::{
-    AccelerationBounds, Approach, BiParabolic, FirstTouch, Fixed, Sawtooth, Sinusoidal, StartingAt,
-    Triangular, WallMotion, WallState,
+    AccelerationBounds, Approach, BiParabolic, Combined, FirstTouch, Fixed, Sawtooth, Sinusoidal, Triangular,
+    WallMotion, WallState,
 };
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -47,7 +47,10 @@ fn motions() -> Vec<(&'static str, Box<dyn WallMotion>)> {
         ("sinusoidal", Box::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap())),
         ("triangular", Box::new(Triangular::new(AMPLITUDE, FREQUENCY).unwrap())),
         ("sawtooth", Box::new(Sawtooth::new(AMPLITUDE, FREQUENCY).unwrap())),
-        ("late", Box::new(StartingAt::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap(), 7.3).unwrap())),
+        (
+            "late",
+            Box::new(Combined::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap()).starting_at(7.3).unwrap()),
+        ),
         ("loose", Box::new(Loose(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap()))),
     ]
 }

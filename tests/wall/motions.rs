@@ -7,7 +7,7 @@ use granular_edmd::Violation;
 use granular_edmd::boundary::{Container, Wall, WallError};
 use granular_edmd::wall::laws::check;
 use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Fixed, Sinusoidal, StartingAt, WallMotion, WallState, check_finite,
+    AccelerationBounds, BiParabolic, Combined, Fixed, Sinusoidal, WallMotion, WallState, check_finite,
 };
 
 const AMPLITUDE: f64 = 0.1;
@@ -227,7 +227,7 @@ fn a_missing_wall_is_named() {
 fn motions_begin_at_their_start() {
     fn check_one(motion: impl WallMotion + Copy + Send + Sync + 'static) {
         for start in [0.0, 1e-9, 0.7, -3.0, 628.318_530_7, 12_345.678, 1e9] {
-            let late = StartingAt::new(motion, start).unwrap();
+            let late = Combined::new(motion).starting_at(start).unwrap();
             check(&late, 0.0, 20.0).unwrap();
             let phase = motion.period().map_or(start, |period| start % period);
             for wait in [0.0, 0.1, 0.4] {
@@ -238,7 +238,7 @@ fn motions_begin_at_their_start() {
             }
         }
         for bad in [f64::NAN, f64::INFINITY] {
-            let error = StartingAt::new(motion, bad).unwrap_err().to_string();
+            let error = Combined::new(motion).starting_at(bad).unwrap_err().to_string();
             assert!(error.starts_with("start of a motion must be finite"), "{error}");
         }
     }
@@ -252,7 +252,7 @@ fn motions_begin_at_their_start() {
 fn motions_with_a_start_come_back_from_files() {
     use granular_edmd::boundary::Boundary;
 
-    let base = StartingAt::new(BiParabolic::new(0.1, 10.0).unwrap(), 12.5).unwrap();
+    let base = Combined::new(BiParabolic::new(0.1, 10.0).unwrap()).starting_at(12.5).unwrap();
     let container = Container::open(4.0).unwrap().with_motion(Wall::Floor, base).unwrap();
     let text = serde_json::to_string(&container).unwrap();
     assert!(text.contains("12.5"), "{text}");

@@ -4,7 +4,7 @@ use granular_edmd::boundary::{Container, Obstacles, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, Radii};
 use granular_edmd::observable::{CenterOfMass, Observable, OfKind, OrderParameters, Snapshot};
-use granular_edmd::wall::StartingAt;
+use granular_edmd::wall::Combined;
 use granular_edmd::{Disk, Kind};
 
 use crate::plan::Setting;
@@ -81,7 +81,7 @@ impl Scene {
     /// Returns the box with its base, which begins an oscillation at this time.
     pub(crate) fn container(self, setting: &Setting, time: f64) -> Result<Container, Failure> {
         let (width, height) = self.size();
-        let base = StartingAt::new(setting.base()?, time)?;
+        let base = Combined::new(setting.base()?).starting_at(time)?;
         Ok(Container::closed(width, height)?.with_motion(Wall::Floor, base)?)
     }
 

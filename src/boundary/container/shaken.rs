@@ -4,7 +4,7 @@ use super::Container;
 use crate::boundary::plane::Slide;
 use crate::boundary::{Wall, WallError};
 use crate::quantity::finite;
-use crate::wall::{Motion, Scaled, WallMotion};
+use crate::wall::{Combined, Motion, WallMotion};
 
 impl Container {
     /// Returns the same container with a wall whose surface moves tangentially at this speed, like a conveyor
@@ -96,7 +96,8 @@ impl Container {
     ) -> Result<Self, WallError> {
         let [first, second] = pair;
         let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall: first, violation })?;
-        let mirrored = Scaled::of(motion.clone(), -1.0).map_err(|_| WallError::Jump { wall: second })?;
+        let mirrored = Combined::of(motion.clone()).scaled(-1.0);
+        let mirrored = mirrored.map_err(|_| WallError::Jump { wall: second })?;
         for (wall, motion) in [(first, motion.clone()), (second, Motion::of(mirrored))] {
             if let Ok(plane) = self.plane_mut(wall) {
                 if plane.motion.reach() != (0.0, 0.0) {

@@ -5,9 +5,7 @@ use granular_edmd::collision::{
     CollisionRule, Contact, ElasticBelow, Frictional, Impulse, RulesByKind, Smooth,
 };
 use granular_edmd::glam::DVec2;
-use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Delayed, Scaled, Sinusoidal, WallMotion, WallState,
-};
+use granular_edmd::wall::{AccelerationBounds, BiParabolic, Combined, Sinusoidal, WallMotion, WallState};
 use granular_edmd::{Disk, Fingerprint, Kind};
 
 use super::boundaries::marked as marked_boundary;
@@ -210,11 +208,17 @@ fn motions(pairs: &mut Pairs) {
     });
     pairs.add_motions("the start is forgotten", false, [1.0, 2.0], |start| {
         let motion = Sinusoidal::new(0.1, 3.0).expect("an amplitude");
-        Marked(Delayed::new(motion, start).expect("a start"), Fingerprint::of("late").number(0.1).number(3.0))
+        Marked(
+            Combined::new(motion).delayed_until(start).expect("a start"),
+            Fingerprint::of("late").number(0.1).number(3.0),
+        )
     });
     pairs.add_motions("the sign of a factor is forgotten", false, [1.0, -1.0], |factor: f64| {
         let motion = Sinusoidal::new(0.1, 3.0).expect("an amplitude");
-        Marked(Scaled::new(motion, factor).expect("a factor"), Fingerprint::of("scaled").number(factor.abs()))
+        Marked(
+            Combined::new(motion).scaled(factor).expect("a factor"),
+            Fingerprint::of("scaled").number(factor.abs()),
+        )
     });
     pairs.add_motions(
         "only the peak speed counts",

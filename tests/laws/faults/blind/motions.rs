@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Delayed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
+    AccelerationBounds, BiParabolic, Combined, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
 };
 
 use crate::faults::{List, Planted, one_in, tenth};
@@ -199,7 +199,7 @@ fn jumps(motions: &mut Motions) {
     });
     motions.add("a sawtooth does not say that it jumps", Altered { jumps: false, ..sawtooth() });
     let shaken = Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude");
-    let delayed = Altered::new(Delayed::new(shaken, 1.0).expect("a start"));
+    let delayed = Altered::new(Combined::new(shaken).delayed_until(1.0).expect("a start"));
     motions.state("a wall that starts late lies lower before the start", delayed, |state, phase| {
         if phase < 1.0 {
             state.displacement = -0.5 * AMPLITUDE;
@@ -264,8 +264,9 @@ fn periods(motions: &mut Motions) {
     motions.add("the period is 0", harmonic().period(0.0));
     motions.add("the period is negative", harmonic().period(-PERIOD));
     motions.add("the period is infinite", harmonic().period(f64::INFINITY));
-    let delayed =
-        Delayed::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude"), 1.0).expect("a start");
+    let delayed = Combined::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude"))
+        .delayed_until(1.0)
+        .expect("a start");
     motions.add("a motion that starts late has a period", Altered::new(delayed).period(PERIOD));
     let tired = amplified(0.5, |phase| phase >= 7.0 * PERIOD);
     motions.add("the amplitude halves after 7 periods", tired);

@@ -4,7 +4,7 @@ use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{
     CollisionRule, Contact, ElasticBelow, Frictional, Impulse, RulesByKind, Smooth,
 };
-use granular_edmd::wall::{Delayed, Sinusoidal, Tabulated, WallMotion};
+use granular_edmd::wall::{Combined, Sinusoidal, Tabulated, WallMotion};
 use granular_edmd::{Fingerprint, Kind};
 
 use crate::faults::blind::boundaries::altered::Altered;
@@ -54,12 +54,14 @@ fn table(kind: u16, loss: f64) -> RulesByKind<Smooth> {
     RulesByKind::new(smooth(0.1)).with(Kind::new(40), Kind::new(kind), smooth(loss))
 }
 
-fn late(start: f64) -> Delayed {
-    Delayed::new(Sinusoidal::new(0.1, 3.0).expect("an amplitude"), start).expect("a start")
+fn late(start: f64) -> Combined {
+    Combined::new(Sinusoidal::new(0.1, 3.0).expect("an amplitude")).delayed_until(start).expect("a start")
 }
 
-fn late_ramp(duration: f64) -> Delayed {
-    Delayed::new(Tabulated::from_to(0.0, 4.0, duration).expect("a duration"), 1000.0).expect("a start")
+fn late_ramp(duration: f64) -> Combined {
+    Combined::new(Tabulated::from_to(0.0, 4.0, duration).expect("a duration"))
+        .delayed_until(1000.0)
+        .expect("a start")
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Pair>> {
