@@ -37,7 +37,6 @@
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`MeanSquaredDisplacement`] | mean squared displacement by time, coefficient of self-diffusion |
 //! | [`TimeCorrelation`] | correlation function of an observable in time, of velocities for example |
-//! | [`TransportCoefficients`] | shear and bulk viscosity, thermal conductivity |
 //! | [`Stress`] | stress tensor of the disks, kinetic and collisional |
 //! | [`Arrivals`] | disks that come to walls, by time: the flow into a sink |
 //! | [`Crossings`] | crossings of a line by direction: the flux through it |
@@ -141,7 +140,6 @@ mod tabular;
 mod temperatures;
 mod temperatures_about_flow;
 mod time_correlation;
-mod transport;
 mod velocity_distribution;
 mod wall_names;
 mod wall_stress;
@@ -200,7 +198,6 @@ pub use temperatures_about_flow::TemperaturesAboutFlow;
 #[doc(alias("autocorrelation", "VACF"))]
 pub use time_correlation::{InnerProduct, TimeCorrelation, Velocities};
 #[doc(alias("velocity distribution", "Sonine", "kurtosis", "Maxwellian"))]
-pub use transport::TransportCoefficients;
 pub use velocity_distribution::VelocityDistribution;
 #[doc(alias("pressure", "wall force"))]
 pub use wall_stress::WallStress;

@@ -23,7 +23,6 @@ mod order_parameters;
 mod piston;
 mod plate;
 mod reversal;
-mod rough_transport;
 mod stress;
 mod structure;
 mod superball;

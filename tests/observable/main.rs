@@ -17,5 +17,4 @@ mod stress_and_velocities;
 #[path = "../support/table.rs"]
 mod table;
 mod tables;
-mod transport;
 mod walls_by_kind;

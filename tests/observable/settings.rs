@@ -49,31 +49,14 @@ fn measures() -> Vec<Measure> {
         Measure("`EnergyChangeProfile`", ROUNDING, collisions::energy_change_profile),
         Measure("`MeanSquaredDisplacement`", ROUNDING, histories::displacements),
         Measure("`TimeCorrelation` of velocities", ROUNDING, histories::correlations),
-        Measure("`TransportCoefficients`", ROUNDING, histories::transport),
     ]
 }
 
 /// The cells that refuse: measure, setting, and words of the error. All others are right.
-const REFUSED: [(&str, &str, &str); 16] = [
+const REFUSED: [(&str, &str, &str); 2] = [
     ("`WallStress`", "periodic both ways", "index of a wall must be less than the number of walls"),
     ("`Arrivals`", "periodic both ways", "index of a wall must be less than the number of walls"),
-    ("`TransportCoefficients`", "closed box", NO_PERIOD),
-    ("`TransportCoefficients`", "periodic sides", NO_PERIOD),
-    ("`TransportCoefficients`", "open top", NO_PERIOD),
-    ("`TransportCoefficients`", "triangle", NO_PERIOD),
-    ("`TransportCoefficients`", "drum", NO_PERIOD),
-    ("`TransportCoefficients`", "block and peg", NO_PERIOD),
-    ("`TransportCoefficients`", "moving walls", NO_PERIOD),
-    ("`TransportCoefficients`", "piston", NO_PERIOD),
-    ("`TransportCoefficients`", "tilted gravity", NO_PERIOD),
-    ("`TransportCoefficients`", "sizes and masses", NO_PERIOD),
-    ("`TransportCoefficients`", "kinds", NO_PERIOD),
-    ("`TransportCoefficients`", "inlet and sink", NO_PERIOD),
-    ("`TransportCoefficients`", "put elsewhere", NO_PERIOD),
-    ("`TransportCoefficients`", "driven", NO_PERIOD),
 ];
-
-const NO_PERIOD: &str = "period of the domain must be positive";
 
 /// Returns the largest relative difference of two lists of numbers; infinite if they cannot be compared.
 fn far(measured: &[f64], truth: &[f64]) -> f64 {

@@ -7,7 +7,7 @@ use granular_edmd::observable::{
     CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
     Grid, Heading, HeightProfile, MeanSquaredDisplacement, Observable, Observer, OfKind, OrderParameters,
     PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Table, Tabular, Temperatures,
-    TimeCorrelation, TransportCoefficients, Velocities, VelocityDistribution, WallStress, measured_by,
+    TimeCorrelation, Velocities, VelocityDistribution, WallStress, measured_by,
 };
 use granular_edmd::{Kind, Simulation, initial};
 
@@ -138,7 +138,6 @@ fn every_measure_is_a_table() {
     let mut clocked = (
         MeanSquaredDisplacement::new(9, times()).unwrap(),
         TimeCorrelation::new(Velocities, 10, times()).unwrap(),
-        TransportCoefficients::new(11, times()).unwrap(),
         Stress::new(times()),
         WallStress::new(times()).with_wall(0, 10.0).unwrap().with_wall(2, 10.0).unwrap(),
     );
@@ -147,15 +146,15 @@ fn every_measure_is_a_table() {
         CollisionCounts::default(),
         CollisionHistograms::new(4.0, 4.0, 12).unwrap(),
     );
-    run.run_until(20.0, &mut (&mut sampled, &mut clocked.0, &mut clocked.1, &mut clocked.3, &mut heard))
+    run.run_until(20.0, &mut (&mut sampled, &mut clocked.0, &mut clocked.1, &mut clocked.2, &mut heard))
         .unwrap();
-    run.run_until(40.0, &mut clocked.4).unwrap();
+    run.run_until(40.0, &mut clocked.3).unwrap();
 
     let (pairs, heights, fields, velocities, changes) = &sampled;
     assert_eq!([rows(&**pairs), rows(&**heights), rows(&**fields)], [5, 6, 12]);
     assert_eq!([rows(&**velocities), rows(&**changes)], [7, 8]);
-    let (displacement, correlation, transport, stress, walls) = &clocked;
-    assert_eq!([rows(displacement), rows(correlation), rows(transport)], [10, 11, 12]);
+    let (displacement, correlation, stress, walls) = &clocked;
+    assert_eq!([rows(displacement), rows(correlation)], [10, 11]);
     assert_eq!([rows(stress), rows(walls)], [1, 2]);
     let (change, counts, histograms) = &heard;
     // Disks with disks, and with each of four walls.

@@ -1,13 +1,11 @@
-//! Measures of pairs of times: displacements, correlations, transport.
+//! Measures of pairs of times: displacements, correlations.
 
 use std::collections::BTreeMap;
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Region;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{
-    Crossings, MeanSquaredDisplacement, Partner, TimeCorrelation, TransportCoefficients, Velocities,
-};
+use granular_edmd::observable::{Crossings, MeanSquaredDisplacement, TimeCorrelation, Velocities};
 
 use super::log::{Log, Occasion};
 use super::systems::{Setting, every};
@@ -84,48 +82,6 @@ pub(super) fn correlations(setting: &Setting) -> Cell {
     let log = setting.run(&mut correlation)?;
     let truth = means(&groups(setting, &log), 1, DVec2::dot);
     let measured: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
-    Ok(far(&measured, &truth))
-}
-
-/// The moment of shear, followed collision by collision from the velocities at the start.
-pub(super) fn transport(setting: &Setting) -> Cell {
-    let mut transport = TransportCoefficients::new(LAGS, every(1.0)).map_err(told)?;
-    let log = setting.run(&mut transport)?;
-    let start = &log.states[0].disks;
-    let mass: f64 = start.iter().map(Disk::mass).sum();
-    let frame = start.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
-    let mut velocities: Vec<DVec2> = start.iter().map(|disk| disk.velocity() - frame).collect();
-    let rate = |velocities: &[DVec2]| -> DVec2 {
-        let of =
-            |(disk, v): (&Disk, &DVec2)| disk.mass() * DVec2::new(v.x * v.y, 0.5 * (v.x * v.x - v.y * v.y));
-        start.iter().zip(velocities).map(of).sum()
-    };
-    let (mut moment, mut time, mut moments) = (DVec2::ZERO, 0.0, Vec::new());
-    for (state, collisions) in log.intervals() {
-        for collision in collisions {
-            let Partner::Disk(partner) = collision.partner else { continue };
-            moment += rate(&velocities) * (collision.time - time);
-            time = collision.time;
-            let tangential = collision.normal.perp() * collision.impulse.tangential();
-            let kick = collision.normal * collision.impulse.normal() + tangential;
-            let way = collision.normal * collision.distance;
-            velocities[collision.disk] += kick / start[collision.disk].mass();
-            velocities[partner] -= kick / start[partner].mass();
-            let shear = 0.5 * (kick.x * way.y + kick.y * way.x);
-            moment += DVec2::new(shear, 0.5 * (kick.x * way.x - kick.y * way.y));
-        }
-        moment += rate(&velocities) * (state.time - time);
-        time = state.time;
-        moments.push(moment);
-    }
-    // The first samples only find the pressure.
-    let used = &moments[LAGS..];
-    let mean = |lag: usize| {
-        let pairs = used.iter().zip(&used[lag..]).map(|(one, other)| 0.5 * one.distance_squared(*other));
-        pairs.sum::<f64>() / (used.len() - lag) as f64
-    };
-    let truth: Vec<f64> = (0..=LAGS).map(mean).collect();
-    let measured: Vec<f64> = transport.iter().map(|(_, [shear, _])| shear.mean()).collect();
     Ok(far(&measured, &truth))
 }
 
