@@ -22,9 +22,10 @@ struct Force {
 }
 
 impl Observer for Force {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.clock.start_at(start.time());
         self.last = start.time();
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {

@@ -51,7 +51,7 @@
 //! [`SampleTimes`] as their clock. In a plain test, [`laws::check`] checks the contract of an observer.
 //!
 //! ```
-//! use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, laws};
+//! use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot, laws};
 //!
 //! /// Counts the collisions within each interval.
 //! struct Beats {
@@ -61,8 +61,9 @@
 //! }
 //!
 //! impl Observer for Beats {
-//!     fn on_start(&mut self, start: &Snapshot<'_>) {
+//!     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
 //!         self.times.start_at(start.time());
+//!         Ok(())
 //!     }
 //!     fn on_collision(&mut self, _: &Collision) {
 //!         self.present += 1;

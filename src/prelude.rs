@@ -10,8 +10,8 @@ pub use crate::collision::{
 pub use crate::glam::DVec2;
 pub use crate::initial;
 pub use crate::observable::{
-    CenterOfMass, Collision, Energies, Fields, Observable, Observer, OrderParameters, SampleTimes, Sampled,
-    Series, Snapshot, Table, on_sample,
+    CenterOfMass, Collision, Energies, Fields, Observable, Observer, ObserverError, OrderParameters,
+    SampleTimes, Sampled, Series, Snapshot, Table, on_sample,
 };
 pub use crate::simulation::{Limits, Simulation};
 pub use crate::statistics::Estimate;

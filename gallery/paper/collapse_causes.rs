@@ -191,7 +191,7 @@ fn measure(
         run.run_until(time(oscillations / 2 + sample * EVERY), &mut ())?;
         orders.push(run.measure(&OrderParameters));
         temperature.push(run.measure(&Temperatures).vertical);
-        profile.add(&run.snapshot());
+        profile.add(&run.snapshot())?;
     }
     gallery::output::warn(&run.warnings());
     let layer = profile.densest_layer();

@@ -3,7 +3,7 @@
 use super::stretch::Stretch;
 use super::table::Table;
 use super::wall_names::{WallNames, check_walls};
-use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Estimate, block_average};
 
@@ -37,8 +37,6 @@ pub struct Arrivals {
     times: Vec<f64>,
     counts: Vec<u64>,
     names: WallNames,
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 impl Arrivals {
@@ -49,7 +47,7 @@ impl Arrivals {
     pub fn at(walls: impl IntoIterator<Item = usize>, times: SampleTimes) -> Self {
         let (walls, stretch) = (walls.into_iter().collect(), Stretch::new(times));
         let (times, counts, names) = (Vec::new(), Vec::new(), WallNames::default());
-        Self { walls, stretch, present: 0, times, counts, names, fault: None }
+        Self { walls, stretch, present: 0, times, counts, names }
     }
 
     /// Returns the ends of the intervals.
@@ -84,13 +82,13 @@ impl Arrivals {
 }
 
 impl Observer for Arrivals {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        let are_there = check_walls(start, &self.walls);
-        let are_same = are_there.and_then(|()| self.names.check(start, |wall| self.walls.contains(&wall)));
-        self.fault = are_same.err();
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        check_walls(start, &self.walls)?;
+        self.names.check(start, |wall| self.walls.contains(&wall))?;
         if self.stretch.begin(start) {
             self.present = 0;
         }
+        Ok(())
     }
 
     #[inline]
@@ -113,11 +111,6 @@ impl Observer for Arrivals {
 
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.stretch.pause(end.time());
-    }
-
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        contract::verdict(&mut self.fault)
     }
 }
 

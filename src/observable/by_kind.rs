@@ -1,6 +1,6 @@
 //! Observables and observers of the disks of one kind, and of the collisions between two kinds.
 
-use super::{Collision, Heading, Observable, Observer, Partner, Snapshot, Tabular, Verdict};
+use super::{Collision, Heading, Observable, Observer, ObserverError, Partner, Snapshot, Tabular, Verdict};
 use crate::{Disk, Kind};
 
 /// A filter: an observable or observer that sees only disks of one kind.
@@ -79,8 +79,8 @@ impl<T: Tabular> Tabular for OfKind<T> {
 }
 
 impl<T: Observer> Observer for OfKind<T> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.inner.on_start(&start.with_disks(&self.chosen(start)));
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        self.inner.on_start(&start.with_disks(&self.chosen(start)))
     }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
@@ -159,8 +159,8 @@ impl<T> BetweenKinds<T> {
 }
 
 impl<T: Observer> Observer for BetweenKinds<T> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.inner.on_start(start);
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        self.inner.on_start(start)
     }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {

@@ -1,6 +1,7 @@
 //! Closures as observables and observers.
 
 use super::{Accumulator, Collision, Named, Observable, Observer, SampleTimes, Sampled, Snapshot};
+use crate::ParameterError;
 
 /// A closure that measures a snapshot; made by [`measured_by`].
 #[derive(Debug, Clone, Copy)]
@@ -97,7 +98,8 @@ pub const fn on_sample<F: FnMut(&Snapshot<'_>)>(times: SampleTimes, watch: F) ->
 }
 
 impl<F: FnMut(&Snapshot<'_>)> Accumulator for OnSample<F> {
-    fn add(&mut self, snapshot: &Snapshot<'_>) {
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
         (self.0)(snapshot);
+        Ok(())
     }
 }

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use super::table::Table;
 use super::wall_names::WallNames;
-use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
-use crate::ParameterError;
+use super::{Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::collision::Regime;
 
 /// An observer that counts collisions by partner and regime, and gives their rates.
@@ -31,9 +30,6 @@ pub struct CollisionCounts {
     elastic_below: u64,
     least_rebound: u64,
     names: WallNames,
-    /// The reason why the collisions of this run cannot be added.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 impl CollisionCounts {
@@ -85,8 +81,8 @@ impl CollisionCounts {
 }
 
 impl Observer for CollisionCounts {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.fault = self.names.check(start, |wall| self.walls.contains_key(&wall)).err();
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        Ok(self.names.check(start, |wall| self.walls.contains_key(&wall))?)
     }
 
     fn on_collision(&mut self, collision: &Collision) {
@@ -102,11 +98,6 @@ impl Observer for CollisionCounts {
             Regime::LeastRebound => self.least_rebound += 1,
             Regime::Unspecified => {}
         }
-    }
-
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        contract::verdict(&mut self.fault)
     }
 }
 
@@ -140,6 +131,6 @@ crate::gate::from_file! {
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least the sum over all regimes", all as f64)?;
-        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, names, fault: None })
+        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, names })
     }
 }

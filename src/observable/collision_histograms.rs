@@ -2,7 +2,7 @@
 
 use super::table::{Table, histogram_headings, histogram_rows};
 use super::wall_names::{WallNames, check_walls};
-use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Histogram;
 
@@ -40,9 +40,6 @@ pub struct CollisionHistograms {
     closing_speed: Histogram,
     impulse: Histogram,
     names: WallNames,
-    /// The reason why this run's collisions cannot be measured.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 impl CollisionHistograms {
@@ -58,7 +55,6 @@ impl CollisionHistograms {
             closing_speed: Histogram::new(0.0, speed, bins)?,
             impulse: Histogram::new(0.0, impulse, bins)?,
             names: WallNames::default(),
-            fault: None,
         })
     }
 
@@ -94,9 +90,9 @@ impl CollisionHistograms {
 }
 
 impl Observer for CollisionHistograms {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        let is_there = check_walls(start, &self.wall);
-        self.fault = is_there.and_then(|()| self.names.check(start, |wall| self.wall == Some(wall))).err();
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        check_walls(start, &self.wall)?;
+        Ok(self.names.check(start, |wall| self.wall == Some(wall))?)
     }
 
     fn on_collision(&mut self, collision: &Collision) {
@@ -113,11 +109,6 @@ impl Observer for CollisionHistograms {
         self.obliqueness.push(slip / (closing * closing + slip * slip).sqrt());
         self.closing_speed.push(closing);
         self.impulse.push(collision.impulse.normal());
-    }
-
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        contract::verdict(&mut self.fault)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Heading, Observable, Observer, Snapshot, Tabular, Verdict};
+use super::{Collision, Heading, Observable, Observer, ObserverError, Snapshot, Tabular, Verdict};
 use crate::Disk;
 use crate::forward::forward;
 
@@ -16,7 +16,7 @@ impl Observer for () {}
 forward! { Observer for [&mut T, Box<T>] {
     fn next_sample(&self) -> f64;
     mut
-    fn on_start(&mut self, start: &Snapshot<'_>);
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError>;
     fn on_collision(&mut self, collision: &Collision);
     fn on_sample(&mut self, snapshot: &Snapshot<'_>);
     fn on_insert(&mut self, disk: &Disk, time: f64);
@@ -29,10 +29,11 @@ forward! { Observer for [&mut T, Box<T>] {
 macro_rules! compose_all {
     ($($holder:ty),+) => {
         $(impl<T: Observer> Observer for $holder {
-            fn on_start(&mut self, start: &Snapshot<'_>) {
+            fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
                 for observer in self.iter_mut() {
-                    observer.on_start(start);
+                    observer.on_start(start)?;
                 }
+                Ok(())
             }
             #[inline]
             fn on_collision(&mut self, collision: &Collision) {
@@ -97,8 +98,9 @@ fn either(first: ControlFlow<()>, second: ControlFlow<()>) -> ControlFlow<()> {
 macro_rules! compose_tuple {
     ($($name:ident $index:tt),+) => {
         impl<$($name: Observer),+> Observer for ($($name,)+) {
-            fn on_start(&mut self, start: &Snapshot<'_>) {
-                $(self.$index.on_start(start);)+
+            fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+                $(self.$index.on_start(start)?;)+
+                Ok(())
             }
             #[inline]
             fn on_collision(&mut self, collision: &Collision) {

@@ -104,8 +104,13 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 pub trait Observer {
     /// Receives the start of a run, which may continue an earlier run, and the disks after each kick of a
     /// driving.
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    ///
+    /// # Errors
+    /// If the observer cannot measure this run, for example because a wall is missing. The run then ends with
+    /// this error, and no event happens.
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         let _ = start;
+        Ok(())
     }
 
     /// Receives a collision that has just happened.

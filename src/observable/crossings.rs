@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::stretch::Stretch;
 use super::table::Table;
-use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
 use crate::{Disk, ParameterError};
@@ -262,13 +262,14 @@ impl Free {
 }
 
 impl Observer for Crossings {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         (self.pull, self.periods) = (start.gravity().acceleration(), start.domain().periods());
         let disks = start.disks().iter();
         self.flights = disks.map(|disk| (disk.id(), Free::of(disk, start.time()))).collect();
         if self.stretch.begin(start) {
             self.present = [0; 2];
         }
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {

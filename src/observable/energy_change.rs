@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use super::system::System;
 use super::table::{ENERGY, Table, headings, row};
 use super::wall_names::WallNames;
-use super::{Collision, Heading, Observer, Partner, Snapshot, Verdict, contract};
-use crate::ParameterError;
+use super::{Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::statistics::BlockedMean;
 
 /// An observer of the mean change of kinetic energy per collision, ⟨dE⟩, for disk–disk collisions and for
@@ -36,15 +35,12 @@ pub struct EnergyChange {
     #[cfg_attr(feature = "serde", serde(default))]
     system: System,
     names: WallNames,
-    /// The reason why the collisions of this run cannot be added.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 impl Default for EnergyChange {
     fn default() -> Self {
         let (disks, system) = (BlockedMean::with_room(), System::default());
-        Self { disks, walls: BTreeMap::new(), system, names: WallNames::default(), fault: None }
+        Self { disks, walls: BTreeMap::new(), system, names: WallNames::default() }
     }
 }
 
@@ -69,10 +65,9 @@ impl EnergyChange {
 }
 
 impl Observer for EnergyChange {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        let is_same = self.system.begin(start);
-        self.fault =
-            is_same.and_then(|()| self.names.check(start, |wall| self.walls.contains_key(&wall))).err();
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        self.system.begin(start)?;
+        Ok(self.names.check(start, |wall| self.walls.contains_key(&wall))?)
     }
 
     #[inline]
@@ -86,11 +81,6 @@ impl Observer for EnergyChange {
 
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.system.pause(end);
-    }
-
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        contract::verdict(&mut self.fault)
     }
 }
 

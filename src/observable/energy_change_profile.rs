@@ -109,13 +109,14 @@ impl Accumulator for EnergyChangeProfile {
         }
     }
 
-    fn add(&mut self, snapshot: &Snapshot<'_>) {
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
         for disk in snapshot.disks() {
             if let Some(bin) = self.bins.find(snapshot.domain().folded(disk.position()).y) {
                 self.layers[bin].translational_temperature.push(disk.translational_energy());
                 self.layers[bin].rotational_temperature.push(2.0 * disk.rotational_energy());
             }
         }
+        Ok(())
     }
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {

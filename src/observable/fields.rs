@@ -135,7 +135,8 @@ impl Fields {
 }
 
 impl Accumulator for Fields {
-    fn add(&mut self, snapshot: &Snapshot<'_>) {
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
+        self.shares.check(snapshot, self.grid.cells())?;
         for disk in snapshot.disks() {
             if let Some(cell) = self.grid.cell_of(disk, &snapshot.domain()) {
                 self.sums[cell].add(disk);
@@ -144,15 +145,12 @@ impl Accumulator for Fields {
         let shares = self.shares.of(snapshot, self.grid.cells());
         self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         self.samples += 1;
+        Ok(())
     }
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         self.grid.check_against(&start.domain())?;
         check_area(&start.domain().region(), self.grid.cells(), start)
-    }
-
-    fn prepare(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
-        self.shares.check(snapshot, self.grid.cells())
     }
 }
 

@@ -168,7 +168,8 @@ fn layers(bins: Bins, domain: &Domain) -> impl Iterator<Item = Region> {
 }
 
 impl Accumulator for HeightProfile {
-    fn add(&mut self, snapshot: &Snapshot<'_>) {
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
+        self.shares.check(snapshot, layers(self.bins, &snapshot.domain()))?;
         let shares = self.shares.of(snapshot, layers(self.bins, &snapshot.domain()));
         self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         let (domain, period) = (snapshot.domain(), snapshot.domain().periods().y);
@@ -180,16 +181,13 @@ impl Accumulator for HeightProfile {
             }
         }
         self.samples += 1;
+        Ok(())
     }
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         check_heights(&self.bins, &start.domain())?;
         let domain = start.domain();
         check_area(&domain.region(), layers(self.bins, &domain), start)
-    }
-
-    fn prepare(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
-        self.shares.check(snapshot, layers(self.bins, &snapshot.domain()))
     }
 }
 

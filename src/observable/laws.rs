@@ -103,7 +103,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
     /// Runs the script, then continues for a share of the time to the next sample. A run that continues
     /// another one must ask for the sample `kept`.
     fn run(mut self, share: f64, kept: Option<f64>) -> Result<End, Violation> {
-        self.observer.on_start(&snapshot(self.now, &disks(0)));
+        let is_accepted = self.observer.on_start(&snapshot(self.now, &disks(0))).is_ok();
         self.wanted = self.next_sample()?;
         let (start, next, rounding) = (self.now, self.wanted, ROUNDING * self.now.abs());
         require!(PART, "start", next >= start - rounding;
@@ -112,7 +112,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         let is_kept = next == kept || (next - kept).abs() <= rounding;
         require!(PART, "cut", is_kept;
             "a run that is cut at {start:?} asks for a sample at {next:?}; without the cut, it was {kept:?}");
-        let mut goes_on = self.goes_on()?;
+        let mut goes_on = self.goes_on()? && is_accepted;
         for _ in 0..self.samples {
             goes_on = goes_on && self.collide()? && self.sample()?;
         }

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lags::{Lags, places_in};
 use super::table::{Table, headings, row};
-use super::{Heading, Observer, PerDisk, SampleTimes, Snapshot};
+use super::{Heading, Observer, ObserverError, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -97,8 +97,9 @@ fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
 }
 
 impl Observer for MeanSquaredDisplacement {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.lags.begin(start);
+        Ok(())
     }
 
     fn next_sample(&self) -> f64 {

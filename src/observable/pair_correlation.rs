@@ -201,8 +201,8 @@ impl Accumulator for PairCorrelation {
         self.counted(start).map(drop)
     }
 
-    fn add(&mut self, snapshot: &Snapshot<'_>) {
-        let Ok(region) = self.counted(snapshot) else { return };
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
+        let region = self.counted(snapshot)?;
         let disks = snapshot.disks();
         let count = |which, is_counted: &dyn Fn(&Disk) -> bool| {
             disks.iter().filter(|disk| self.is_of(which, disk) && is_counted(disk)).count() as f64
@@ -227,6 +227,7 @@ impl Accumulator for PairCorrelation {
             let (low, high) = (self.bins.edge(bin), self.bins.edge(bin + 1));
             self.pairs[bin].push(count as f64 / (PI * (high - low) * (high + low)));
         }
+        Ok(())
     }
 }
 

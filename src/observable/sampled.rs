@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use super::{Collision, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Observer, ObserverError, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 
 /// A measurement that accumulates snapshots.
@@ -14,16 +14,17 @@ use crate::ParameterError;
 /// use granular_edmd::boundary::{Boundary, Container};
 /// use granular_edmd::collision::Elastic;
 /// use granular_edmd::observable::{Accumulator, SampleTimes, Sampled, Snapshot};
-/// use granular_edmd::{Simulation, initial};
+/// use granular_edmd::{ParameterError, Simulation, initial};
 ///
 /// /// The largest speed ever seen.
 /// #[derive(Default)]
 /// struct Fastest(f64);
 ///
 /// impl Accumulator for Fastest {
-///     fn add(&mut self, snapshot: &Snapshot<'_>) {
+///     fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
 ///         let speeds = snapshot.disks().iter().map(|disk| disk.velocity().length());
 ///         self.0 = speeds.fold(self.0, f64::max);
+///         Ok(())
 ///     }
 /// }
 ///
@@ -41,7 +42,10 @@ use crate::ParameterError;
 )]
 pub trait Accumulator {
     /// Adds a snapshot.
-    fn add(&mut self, snapshot: &Snapshot<'_>);
+    ///
+    /// # Errors
+    /// If this snapshot cannot be measured. The run then ends with this error.
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError>;
 
     /// Receives a collision that has just happened.
     fn on_collision(&mut self, collision: &Collision) {
@@ -55,13 +59,6 @@ pub trait Accumulator {
     /// then ends with this error.
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         let _ = start;
-        Ok(())
-    }
-
-    // Only the library's own accumulators have something to look up before a snapshot.
-    #[doc(hidden)]
-    fn prepare(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
-        let _ = snapshot;
         Ok(())
     }
 }
@@ -88,7 +85,7 @@ pub trait Accumulator {
 pub struct Sampled<A> {
     accumulator: A,
     sample_times: SampleTimes,
-    /// The reason why the snapshots of this run cannot be measured.
+    /// The reason why the latest snapshot could not be measured.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
 }
@@ -120,9 +117,10 @@ impl<A> DerefMut for Sampled<A> {
 }
 
 impl<A: Accumulator> Observer for Sampled<A> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.fault = self.accumulator.check(start).err();
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        self.accumulator.check(start)?;
         self.sample_times.start_at(start.time());
+        Ok(())
     }
 
     #[inline]
@@ -135,10 +133,7 @@ impl<A: Accumulator> Observer for Sampled<A> {
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        match self.accumulator.prepare(snapshot) {
-            Ok(()) => self.accumulator.add(snapshot),
-            Err(fault) => self.fault = Some(fault),
-        }
+        self.fault = self.accumulator.add(snapshot).err();
         self.sample_times.advance_past(snapshot.time());
     }
 

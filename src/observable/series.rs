@@ -1,7 +1,7 @@
 //! Series of the values of an observable at set times.
 
 use super::system::System;
-use super::{Observable, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::{Observable, Observer, ObserverError, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
@@ -41,16 +41,13 @@ pub struct Series<Q: Observable> {
     values: Vec<Q::Value>,
     #[cfg_attr(feature = "serde", serde(skip))]
     system: System,
-    /// The reason why the samples of this run cannot be added to the series.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 impl<Q: Observable> Series<Q> {
     /// Creates a series of `observable` at these times.
     pub const fn new(observable: Q, times: SampleTimes) -> Self {
         let (sample_times, system) = (times, System::NONE);
-        Self { observable, sample_times, times: Vec::new(), values: Vec::new(), system, fault: None }
+        Self { observable, sample_times, times: Vec::new(), values: Vec::new(), system }
     }
 
     /// Returns the observable.
@@ -107,15 +104,16 @@ impl<Q: Observable> Series<Q> {
 }
 
 impl<Q: Observable> Observer for Series<Q> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         let time = start.time();
         // The previous run may have ended on the last sample, up to rounding.
         let rounding = self.sample_times.rounding(time);
         let goes_on = self.times.last().is_none_or(|&last| time >= last - rounding);
         let requirement = "not before the last sample of the series; clear it for another run";
-        let goes_on = accept(goes_on, "start of the run", requirement, time).map(drop);
-        self.fault = goes_on.and_then(|()| self.system.is_same(start)).err();
+        accept(goes_on, "start of the run", requirement, time)?;
+        self.system.is_same(start)?;
         self.sample_times.start_at(time);
+        Ok(())
     }
 
     fn next_sample(&self) -> f64 {
@@ -126,11 +124,6 @@ impl<Q: Observable> Observer for Series<Q> {
         self.times.push(snapshot.time());
         self.values.push(self.observable.measure(snapshot));
         self.sample_times.advance_past(snapshot.time());
-    }
-
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        contract::verdict(&mut self.fault)
     }
 }
 
@@ -157,7 +150,7 @@ mod serial {
             let count = values.len() as f64;
             accept(values.len() == times.len(), "number of values", "the number of times", count)?;
             times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
-            Ok(Self { observable, sample_times, times, values, system: System::NONE, fault: None })
+            Ok(Self { observable, sample_times, times, values, system: System::NONE })
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Observer, SampleTimes, Snapshot, Verdict};
+use super::{Collision, Observer, ObserverError, SampleTimes, Snapshot, Verdict};
 
 /// A closure that stops a run at a collision; made by [`stop_when`].
 #[derive(Debug, Clone)]
@@ -32,8 +32,9 @@ pub const fn stop_when<F: FnMut(&Collision) -> bool>(condition: F) -> StopWhen<F
 }
 
 impl<F: FnMut(&Collision) -> bool> Observer for StopWhen<F> {
-    fn on_start(&mut self, _: &Snapshot<'_>) {
+    fn on_start(&mut self, _: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.holds = false;
+        Ok(())
     }
 
     #[inline]
@@ -77,9 +78,10 @@ where
 }
 
 impl<F: FnMut(&Snapshot<'_>) -> bool> Observer for StopWhenSampled<F> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.holds = false;
         self.times.start_at(start.time());
+        Ok(())
     }
 
     fn next_sample(&self) -> f64 {

@@ -6,7 +6,7 @@ use super::free_shares::{FreeShares, check_area};
 use super::grid::{checked_region, holds, inside};
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
-use super::{Collision, Heading, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, ObserverError, SampleTimes, Snapshot, Verdict, contract};
 use crate::boundary::{Domain, Region};
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
@@ -196,14 +196,15 @@ fn share_in(region: &Region, from: DVec2, to: DVec2) -> f64 {
 }
 
 impl Observer for Stress {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         if self.domain.replace(start.domain()) != Some(start.domain()) {
             self.stretch.forget();
         }
-        self.fault = self.check(start).err();
+        self.check(start)?;
         if self.stretch.begin(start) {
             self.transferred = [0.0; 4];
         }
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lags::Lags;
 use super::table::{Table, headings, row};
-use super::{Heading, Observable, Observer, PerDisk, SampleTimes, Snapshot};
+use super::{Heading, Observable, Observer, ObserverError, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Estimate;
 
@@ -128,8 +128,9 @@ impl<Q: Observable> TimeCorrelation<Q> {
 }
 
 impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.lags.begin(start);
+        Ok(())
     }
 
     fn next_sample(&self) -> f64 {

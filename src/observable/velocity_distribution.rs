@@ -196,14 +196,14 @@ fn relative_moment(moment: f64, squares: f64, order: i32, shares: f64, freedom: 
 }
 
 impl Accumulator for VelocityDistribution {
-    fn add(&mut self, snapshot: &Snapshot<'_>) {
+    fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
         let (peculiar, freedom) = self.frame.peculiar(snapshot);
         let sum = |term: &dyn Fn(DVec2, f64) -> f64| peculiar.iter().map(|&(v, left)| term(v, left)).sum();
         let squares: f64 = sum(&|v, _| v.length_squared());
         let whole: f64 =
             snapshot.disks().iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
         if freedom < 1.0 || squares <= LEAST_THERMAL * LEAST_THERMAL * whole {
-            return;
+            return Ok(());
         }
         let thermal = (squares / freedom).sqrt();
         for (velocity, _) in &peculiar {
@@ -225,6 +225,7 @@ impl Accumulator for VelocityDistribution {
                 mean.push(3.0 * relative_moment(fourth, squares, 4, second, freedom, 3.0) - 3.0);
             }
         }
+        Ok(())
     }
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
 use super::wall_names::{WallNames, check_walls};
-use super::{Collision, Heading, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::quantity::positive;
 use crate::statistics::{BlockedMean, Estimate};
@@ -51,9 +51,6 @@ pub struct WallStress {
     stretch: Stretch,
     walls: BTreeMap<usize, Received>,
     names: WallNames,
-    /// The reason why the stress cannot be measured in this run.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 /// The impulse that a wall received.
@@ -69,7 +66,7 @@ struct Received {
 impl WallStress {
     /// Creates an observer that watches no wall yet and gives a value for each interval of the sample times.
     pub const fn new(times: SampleTimes) -> Self {
-        Self { stretch: Stretch::new(times), walls: BTreeMap::new(), names: WallNames::NONE, fault: None }
+        Self { stretch: Stretch::new(times), walls: BTreeMap::new(), names: WallNames::NONE }
     }
 
     /// Returns the same observer, which also watches the wall of this index and length.
@@ -104,14 +101,13 @@ impl WallStress {
 }
 
 impl Observer for WallStress {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        let are_there = check_walls(start, self.walls.keys());
-        let are_same =
-            are_there.and_then(|()| self.names.check(start, |wall| self.walls.contains_key(&wall)));
-        self.fault = are_same.err();
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        check_walls(start, self.walls.keys())?;
+        self.names.check(start, |wall| self.walls.contains_key(&wall))?;
         if self.stretch.begin(start) {
             self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
         }
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {
@@ -139,10 +135,6 @@ impl Observer for WallStress {
 
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.stretch.pause(end.time());
-    }
-
-    fn verdict(&mut self) -> Verdict {
-        contract::verdict(&mut self.fault)
     }
 }
 

@@ -95,8 +95,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.engine.check_end(limits.end())?;
         let watch = Watch::new(limits, &self.engine.counters);
         self.engine.clock.events_to_look = 1;
-        observer.on_start(&self.snapshot());
-        let ended = match self.verdict_of(observer) {
+        let started = observer.on_start(&self.snapshot());
+        let started = started.map_err(|source| Box::new(RunError::Observer { time: self.time(), source }));
+        let ended = match started.and_then(|()| self.verdict_of(observer)) {
             Ok(ControlFlow::Continue(())) => self.engine.instructions.run(
                 #[inline(always)]
                 || self.sample_until(&watch, observer),

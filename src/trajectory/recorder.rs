@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::sink::Sink;
 use super::{FileFormat, RecordError, media};
-use crate::observable::{Observer, SampleTimes, Snapshot, Verdict, verdict};
+use crate::observable::{Observer, ObserverError, SampleTimes, Snapshot, Verdict, verdict};
 
 /// An observer that writes a frame to a file at set times.
 ///
@@ -149,7 +149,7 @@ impl Recorder {
 }
 
 impl Observer for Recorder {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.clock = self.before_failure.take().unwrap_or(self.clock);
         let (time, missed) = (start.time(), self.clock.upcoming());
         let mut clock = self.clock;
@@ -157,10 +157,10 @@ impl Observer for Recorder {
         if self.must_follow && missed < clock.upcoming().min(time) {
             let last = self.times().last().copied().unwrap_or(f64::NAN);
             let path = self.sink.file.path.clone();
-            self.failure = Some(RecordError::Gap { path, last, missed, time });
-            return;
+            return Err(ObserverError::new(RecordError::Gap { path, last, missed, time }));
         }
         (self.clock, self.must_follow) = (clock, false);
+        Ok(())
     }
 
     fn next_sample(&self) -> f64 {

@@ -6,7 +6,7 @@ use std::path::Path;
 use granular_edmd::Disk;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
-use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot, Verdict};
 use granular_edmd::simulation::{Driving, Limits, RunEnd, RunError, Simulation};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -160,10 +160,11 @@ impl<O: Observer> Sliced<'_, O> {
 }
 
 impl<O: Observer> Observer for Sliced<'_, O> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         if !std::mem::replace(self.is_under_way, true) {
-            self.observer.on_start(start);
+            self.observer.on_start(start)?;
         }
+        Ok(())
     }
 
     fn on_end(&mut self, moment: &Snapshot<'_>) {

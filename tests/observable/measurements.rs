@@ -94,7 +94,7 @@ fn measured(
 ) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let mut run = simulation()?;
     let mut watchers = watchers()?;
-    watchers.on_start(&run.snapshot());
+    watchers.on_start(&run.snapshot()).unwrap();
     run.run_until(HALF, &mut watchers)?;
     let mut watchers = through(watchers)?;
     let mut run = Simulation::resume(&run.checkpoint(), rule()?, container()?).build()?;
@@ -113,7 +113,7 @@ fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
     // ran.
     let mut run = simulation()?;
     let mut uncut = watchers()?;
-    uncut.on_start(&run.snapshot());
+    uncut.on_start(&run.snapshot()).unwrap();
     run.run_until(END, &mut uncut)?;
     assert_eq!(postcard::to_stdvec(&uncut)?, whole);
     Ok(())

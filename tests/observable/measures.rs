@@ -43,7 +43,7 @@ fn points_at_random_places_are_not_correlated() -> Outcome {
     ] {
         for time in 1..500 {
             let disks = points(100, &mut chance)?;
-            correlation.add(&Snapshot::new(f64::from(time), &disks, domain, 0.0));
+            correlation.add(&Snapshot::new(f64::from(time), &disks, domain, 0.0)).unwrap();
         }
         assert_eq!((correlation.samples(), correlation.range()), (499, 3.0));
         assert!(is_one(correlation.iter()), "{domain:?}: {:?}", correlation.iter().collect::<Vec<_>>());

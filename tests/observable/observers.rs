@@ -10,7 +10,7 @@ use granular_edmd::observable::laws;
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange,
     EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Observable, Observer,
-    OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled, Series, Snapshot, Stress,
+    ObserverError, OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled, Series, Snapshot, Stress,
     TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, measured_by, on_collision,
     on_sample, stop_when, stop_when_sampled,
 };
@@ -36,7 +36,7 @@ fn collision(time: f64, partner: Partner) -> Collision {
 
 /// Runs without disks, as the engine does.
 fn run(observer: &mut impl Observer, start: f64, end: f64) {
-    observer.on_start(&moment(start));
+    observer.on_start(&moment(start)).unwrap();
     while observer.next_sample() <= end {
         observer.on_sample(&snapshot(observer.next_sample().max(start)));
     }
@@ -139,8 +139,9 @@ struct Tally {
 }
 
 impl Observer for Tally {
-    fn on_start(&mut self, _: &Snapshot<'_>) {
+    fn on_start(&mut self, _: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.told[0] += 1;
+        Ok(())
     }
     fn on_collision(&mut self, _: &Collision) {
         self.told[1] += 1;
@@ -174,7 +175,7 @@ fn verdict_of(tallies: &mut [Tally; 6]) -> String {
     let boxed: Box<dyn Observer + '_> = Box::new(boxed);
     let mut all = (boxed, vec![listed, other], Some(optional), bare, (late, None::<Tally>), ());
     let all: &mut dyn Observer = &mut all;
-    all.on_start(&moment(0.0));
+    all.on_start(&moment(0.0)).unwrap();
     all.on_collision(&collision(0.5, Partner::Wall(0)));
     assert_eq!(all.next_sample(), 1.0);
     all.on_sample(&snapshot(1.0));
@@ -216,18 +217,18 @@ fn closures_stop_a_run_and_let_it_go_on() -> Outcome {
         at_wall.verdict().unwrap().is_break()
     };
     assert_eq!([Partner::Disk(0), Partner::Wall(0), Partner::Disk(0)].map(&mut stopped), [false, true, true]);
-    at_wall.on_start(&moment(1.0));
+    at_wall.on_start(&moment(1.0)).unwrap();
     assert!(at_wall.verdict().unwrap().is_continue());
 
     let mut late =
         stop_when_sampled(SampleTimes::every(1.0)?, |snapshot: &Snapshot<'_>| snapshot.time() > 2.5);
-    late.on_start(&moment(0.5));
+    late.on_start(&moment(0.5)).unwrap();
     for (time, stops) in [(1.0, false), (2.0, false), (3.0, true)] {
         assert_eq!(late.next_sample(), time);
         late.on_sample(&snapshot(time));
         assert_eq!(late.verdict().unwrap().is_break(), stops, "{time}");
     }
-    late.on_start(&moment(3.0));
+    late.on_start(&moment(3.0)).unwrap();
     assert!(late.verdict().unwrap().is_continue() && late.next_sample() == 4.0);
     Ok(())
 }
@@ -287,11 +288,12 @@ fn faulty<F: Fn(f64) -> f64>(after_sample: F) -> Faulty<F> {
 }
 
 impl<F: Fn(f64) -> f64> Observer for Faulty<F> {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         // A run that goes on from the last one keeps its clock.
         if self.started && start.time() != self.ended {
             self.next = start.time() + 0.5;
         }
+        Ok(())
     }
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.ended = end.time();
@@ -411,7 +413,8 @@ fn an_accumulator_alone_measures_as_in_a_run() -> Result<(), Box<dyn std::error:
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.5)?, 1.0, 1)?;
     let new = || HeightProfile::new(0.0, 10.0, 5);
     let (mut alone, mut sampled) = (new()?, Sampled::new(new()?, SampleTimes::every(0.7)?));
-    let mut by_hand = on_sample(SampleTimes::every(0.7)?, |snapshot: &Snapshot<'_>| alone.add(snapshot));
+    let mut by_hand =
+        on_sample(SampleTimes::every(0.7)?, |snapshot: &Snapshot<'_>| alone.add(snapshot).unwrap());
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
     run.run_until(20.0, &mut (&mut sampled, &mut by_hand))?;
     assert_eq!((sampled.samples(), sampled.into_inner()), (28, alone));

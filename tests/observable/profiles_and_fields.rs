@@ -193,7 +193,7 @@ fn a_disk_alone_has_no_negative_temperature() -> Result<(), Box<dyn std::error::
         let (mass, angle) = (0.3 + 0.0013 * f64::from(k), f64::from(k));
         let velocity = DVec2::new(libm::sin(angle), libm::cos(2.0 * angle));
         let disk = disk(5.0, 5.0)?.with_mass(mass)?.with_velocity(velocity)?.with_angular_velocity(angle)?;
-        fields.add(&Snapshot::new(1.0, &[disk], DOMAIN, 0.0));
+        fields.add(&Snapshot::new(1.0, &[disk], DOMAIN, 0.0)).unwrap();
         let cell = fields.cell(0, 0).ok_or("no cell")?;
         assert!(cell.translational_temperature >= 0.0 && cell.rotational_temperature >= 0.0, "{cell:?}");
     }
@@ -298,7 +298,7 @@ fn a_profile_beyond_a_periodic_end_holds_no_image() -> Result<(), Box<dyn std::e
         ((0.0, 10.0), 2.0, 10.0),
     ] {
         let mut profile = HeightProfile::new(bottom, top, 1)?;
-        profile.add(&run.snapshot());
+        profile.add(&run.snapshot()).unwrap();
         let (_, fraction) = profile.iter().next().ok_or("no bin")?;
         let expected = inside * area / (10.0 * height);
         assert!((fraction - expected).abs() < 1e-12, "{bottom} to {top}: {fraction}, not {expected}");

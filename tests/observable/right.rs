@@ -131,8 +131,8 @@ fn the_layer_that_a_floor_sweeps_has_the_area_that_is_left() -> Result<(), Failu
     let (mut profile, region) =
         (HeightProfile::new(0.0, 8.0, 4)?, Region::new(DVec2::ZERO, DVec2::splat(8.0)));
     let mut fields = Fields::new(Grid::new(region, 1, 4)?);
-    profile.add(&run.snapshot());
-    fields.add(&run.snapshot());
+    profile.add(&run.snapshot()).unwrap();
+    fields.add(&run.snapshot()).unwrap();
     let lowest = profile.iter().next().map(|(_, fraction)| fraction);
     assert!((lowest.unwrap_or(0.0) / (PI * 0.16 / 10.0) - 1.0).abs() < 1e-9, "{lowest:?}");
     assert!((fields.iter().next().map_or(0.0, |cell| cell.number_density) - 1.0 / 8.0).abs() < 1e-9);
@@ -298,7 +298,7 @@ fn pairs_of_an_ideal_gas_in_samples_without_disks_and_in_boxes_of_two_sizes() ->
             } else {
                 Container::closed(size, size)?.domain()
             };
-            correlation.add(&Snapshot::new(sample as f64, &disks?, domain, 0.0));
+            correlation.add(&Snapshot::new(sample as f64, &disks?, domain, 0.0)).unwrap();
         }
         Ok(correlation.iter().map(|(_, value)| value.mean()).sum::<f64>() / 3.0)
     };

@@ -25,7 +25,7 @@ fn a_region_gets_its_share_of_a_collision() -> Outcome {
     let domain = BOX.with_periodic_sides();
     let region = Region::new(DVec2::ZERO, DVec2::new(2.0, 10.0));
     let mut stress = Stress::new(times()?).within(region)?;
-    stress.on_start(&Snapshot::new(0.0, &[], domain, 0.0).with_wall_count(2));
+    stress.on_start(&Snapshot::new(0.0, &[], domain, 0.0).with_wall_count(2)).unwrap();
     let contact = Contact::new(2.0, 0.5, 0.5, 0.5 / 3.0);
     let at = |x: f64| {
         let impulse = Impulse::new(3.0, 1.0);
@@ -103,9 +103,9 @@ fn an_interval_that_is_cleared_in_its_middle_does_not_count() -> Outcome {
 fn an_interval_of_two_domains_does_not_count() -> Outcome {
     let mut stress = Stress::new(times()?);
     let other = Container::periodic(5.0, 3.0)?.domain();
-    stress.on_start(&Snapshot::new(0.0, &[], BOX, 0.0).with_wall_count(4));
+    stress.on_start(&Snapshot::new(0.0, &[], BOX, 0.0).with_wall_count(4)).unwrap();
     stress.on_end(&Snapshot::new(0.5, &[], BOX, 0.0).with_wall_count(4));
-    stress.on_start(&Snapshot::new(0.5, &[], other, 0.0).with_wall_count(4));
+    stress.on_start(&Snapshot::new(0.5, &[], other, 0.0).with_wall_count(4)).unwrap();
     stress.on_sample(&Snapshot::new(1.0, &[], other, 0.0));
     assert_eq!(stress.samples(), 0);
     stress.on_sample(&Snapshot::new(2.0, &[], other, 0.0));
@@ -127,7 +127,7 @@ fn disks_that_all_move_alike_have_no_distribution() -> Outcome {
         let snapshot = Snapshot::new(0.0, &disks, BOX, 0.0);
         let new = || VelocityDistribution::new(4.0, 8);
         for mut velocities in [new()?.about_mean(), new()?.about_flow(grid)] {
-            velocities.add(&snapshot);
+            velocities.add(&snapshot).unwrap();
             assert_eq!(velocities.second_cumulant().samples(), 0, "{velocity}");
         }
         let alone = Snapshot::new(0.0, &disks[..1], BOX, 0.0);
@@ -194,7 +194,7 @@ fn velocities_about_a_flow_are_those_of_the_gas_in_it() -> Outcome {
         let disks = disks.into_iter().map(disk).collect::<Result<Vec<_>, _>>()?;
         let snapshot = Snapshot::new(time as f64, &disks, BOX, 0.0);
         for distribution in &mut distributions {
-            distribution.add(&snapshot);
+            distribution.add(&snapshot).unwrap();
         }
     }
     let [all, about_mean, about_flow] = &distributions;

@@ -4,7 +4,7 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Elastic, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Energies, Observable, Observer, SampleTimes, Series, Snapshot, Temperatures,
+    Energies, Observable, Observer, ObserverError, SampleTimes, Series, Snapshot, Temperatures,
 };
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BuildError, Driving, Limits, Rescaling, RunEnd, RunError, WhiteNoise};
@@ -73,8 +73,9 @@ struct Ends {
 }
 
 impl Observer for Ends {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.starts.push((start.time(), Energies.measure(start).total()));
+        Ok(())
     }
     fn on_end(&mut self, end: &Snapshot<'_>) {
         self.ends.push((end.time(), Energies.measure(end).total()));

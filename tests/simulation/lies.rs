@@ -10,7 +10,7 @@ use granular_edmd::boundary::{
 };
 use granular_edmd::collision::{CollisionRule, Contact, Elastic, Frictional, Impulse};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{Collision, Observer, Partner, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, ObserverError, Partner, Snapshot, Verdict};
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BoundaryFault, BuildError, RunError};
 use granular_edmd::{Disk, Flight, Simulation, initial};
@@ -383,9 +383,10 @@ impl Failing {
 }
 
 impl Observer for Failing {
-    fn on_start(&mut self, _: &Snapshot<'_>) {
+    fn on_start(&mut self, _: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.starts += 1;
         self.reach(Stage::Start);
+        Ok(())
     }
     fn on_collision(&mut self, _: &Collision) {
         self.collisions_after += u32::from(self.due);

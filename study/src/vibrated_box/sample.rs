@@ -95,11 +95,11 @@ impl Measurement {
 fn profile(snapshot: &Snapshot<'_>) -> Vec<f64> {
     let top = snapshot.domain().top.min(MOST_BINS as f64);
     let bins = if snapshot.domain().top.is_finite() { top.ceil() } else { OPEN_PROFILE };
-    let profile = HeightProfile::new(0.0, bins, bins as usize).map(|mut profile| {
-        profile.add(snapshot);
-        profile.iter().map(|(_, fraction)| fraction).collect()
+    let profile = HeightProfile::new(0.0, bins, bins as usize).and_then(|mut profile| {
+        profile.add(snapshot)?;
+        Ok(profile.iter().map(|(_, fraction)| fraction).collect())
     });
-    // Creating the profile fails only for a height that is not positive.
+    // Creating the profile fails only for a height that is not positive, and a container's area is known.
     profile.unwrap_or_default()
 }
 

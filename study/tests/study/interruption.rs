@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
-use granular_edmd::observable::{Collision, Observer, Snapshot};
+use granular_edmd::observable::{Collision, Observer, ObserverError, Snapshot};
 use granular_edmd::{Disk, Fingerprint, initial};
 use granular_edmd_study::{Column, Control, Experiment, ExperimentError, Plan, Progress, Protocol, Study};
 use serde::{Deserialize, Serialize};
@@ -81,8 +81,9 @@ struct Heard {
 }
 
 impl Observer for Heard {
-    fn on_start(&mut self, _: &Snapshot<'_>) {
+    fn on_start(&mut self, _: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.starts += 1;
+        Ok(())
     }
 
     fn on_collision(&mut self, _: &Collision) {

@@ -5,7 +5,7 @@ use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use granular_edmd::Fingerprint;
-use granular_edmd::observable::{Observer, SampleTimes, Snapshot, on_collision};
+use granular_edmd::observable::{Observer, ObserverError, SampleTimes, Snapshot, on_collision};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::{Inlet, WhiteNoise};
 use granular_edmd::trajectory::{ExtendedXyz, Recorder};
@@ -49,10 +49,11 @@ fn energy_of(snapshot: &Snapshot<'_>) -> f64 {
 }
 
 impl Observer for Heating {
-    fn on_start(&mut self, snapshot: &Snapshot<'_>) {
+    fn on_start(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserverError> {
         let gained = self.before.map_or(0.0, |before| energy_of(snapshot) - before);
         self.gained += gained;
         self.kicks += u64::from(gained != 0.0);
+        Ok(())
     }
     fn on_end(&mut self, snapshot: &Snapshot<'_>) {
         self.before = Some(energy_of(snapshot));

@@ -1,6 +1,6 @@
 //! An observer.
 
-use granular_edmd::observable::{Collision, Observer, Partner, SampleTimes, Snapshot};
+use granular_edmd::observable::{Collision, Observer, ObserverError, Partner, SampleTimes, Snapshot};
 
 /// The hardest impact on each wall within each interval of time.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,9 +18,10 @@ impl HardestImpacts {
 }
 
 impl Observer for HardestImpacts {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.times.start_at(start.time());
         self.present.resize(start.wall_count(), 0.0);
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {

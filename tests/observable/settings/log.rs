@@ -1,6 +1,6 @@
 //! Everything that happens in a run, from which each measure is computed anew.
 
-use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot};
+use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot};
 use granular_edmd::{Disk, ParameterError};
 
 /// Interval between two states that are kept: short enough to follow disks across periodic sides.
@@ -70,9 +70,10 @@ impl Log {
 }
 
 impl Observer for Log {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.times.start_at(start.time());
         self.keep(Occasion::Start, start);
+        Ok(())
     }
     fn on_collision(&mut self, collision: &Collision) {
         self.collisions.push(*collision);

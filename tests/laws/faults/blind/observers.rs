@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot, Verdict};
 
 use crate::faults::{List, Planted, tenth};
 
@@ -47,10 +47,11 @@ impl Default for Altered {
 
 /// Each step is done rightly first, and then changed.
 impl Observer for Altered {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.times.start_at(start.time());
         self.next = self.times.upcoming();
         (self.start)(self, start.time());
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {

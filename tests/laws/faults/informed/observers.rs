@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use granular_edmd::Disk;
 use granular_edmd::collision::Regime;
-use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
+use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot, Verdict};
 
 use crate::faults::{List, Planted};
 
@@ -25,11 +25,12 @@ struct Changed {
 }
 
 impl Observer for Changed {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.runs += 1;
         self.times.start_at(start.time());
         self.next = self.times.upcoming();
         (self.start)(self, start.time());
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {
@@ -155,8 +156,9 @@ struct OnlyAt {
 }
 
 impl Observer for OnlyAt {
-    fn on_start(&mut self, start: &Snapshot<'_>) {
-        self.clock.on_start(start);
+    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+        self.clock.on_start(start)?;
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {

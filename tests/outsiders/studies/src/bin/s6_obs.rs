@@ -39,10 +39,11 @@ impl Tabular for Order {
 /// Granular temperature by height, with errors from blocks.
 struct TemperatureProfile { top: f64, bins: Vec<BlockedMean> }
 impl Accumulator for TemperatureProfile {
-    fn add(&mut self, s: &Snapshot<'_>) {
+    fn add(&mut self, s: &Snapshot<'_>) -> Result<(), granular_edmd::ParameterError> {
         let n = self.bins.len(); let mut sums = vec![(0u32, DVec2::ZERO, 0.0); n];
         for d in s.disks() { let k = (d.position().y / self.top * n as f64) as usize; if k < n { let e = &mut sums[k]; e.0 += 1; e.1 += d.velocity(); e.2 += d.mass() * d.velocity().length_squared(); } }
         for (b, (c, p, e)) in self.bins.iter_mut().zip(sums) { if c > 1 { let c = f64::from(c); b.push(0.5 * (e - p.length_squared() / c) / (c - 1.0)); } }
+        Ok(())
     }
 }
 impl Table for TemperatureProfile {
