@@ -24,20 +24,15 @@
 //! assert!(estimate.standard_error() > 3.0 * mean.ungrouped().standard_error());
 //! ```
 
-mod bins;
-mod blocked_mean;
 mod blocking;
 mod estimate;
 mod histogram;
-mod moments;
-mod plateau;
-mod repeats;
 mod running_mean;
 
-pub(crate) use bins::Bins;
-pub use blocked_mean::BlockedMean;
+pub use blocking::BlockedMean;
 pub use blocking::block_average;
 pub use estimate::Estimate;
+pub(crate) use histogram::Bins;
 pub use histogram::{Histogram, HistogramBin};
-pub(crate) use moments::Moments;
+pub(crate) use running_mean::Moments;
 pub use running_mean::RunningMean;
