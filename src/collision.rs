@@ -47,46 +47,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod body;
 mod contact;
-mod contact_duration;
-mod elastic;
-mod elastic_below;
 mod encounter;
-mod friction;
 mod frictional;
-mod from_fn;
 mod impulse;
 mod inelasticity;
 mod known;
 pub mod laws;
-mod least_rebound;
-mod rolling_friction;
-mod rough;
-mod rules_by_kind;
-mod smooth;
-mod speed_dependent;
-mod tangential_response;
+mod remedies;
+mod without_friction;
 
-pub(crate) use body::{Body, Material, after, collide_bodies, contact_of, momentum};
 pub use contact::Contact;
-pub use contact_duration::ContactDuration;
-pub use elastic::Elastic;
-pub use elastic_below::ElasticBelow;
-pub(crate) use encounter::collide_after;
+pub(crate) use encounter::{Body, Material, after, collide_after, collide_bodies, contact_of, momentum};
 pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
-pub use friction::Friction;
-pub use frictional::Frictional;
-pub use from_fn::{FromFn, from_fn};
+pub use frictional::{Friction, Frictional, SpeedDependent};
 pub use impulse::{Impulse, Regime};
-pub use known::KnownRule;
-pub use least_rebound::LeastRebound;
-pub use rolling_friction::RollingFriction;
-pub use rough::Rough;
-pub use rules_by_kind::RulesByKind;
-pub use smooth::Smooth;
-pub use speed_dependent::SpeedDependent;
-pub use tangential_response::TangentialResponse;
+pub use known::{FromFn, KnownRule, RulesByKind, from_fn};
+pub use remedies::{ContactDuration, ElasticBelow, LeastRebound, RollingFriction, TangentialResponse};
+pub use without_friction::{Elastic, Rough, Smooth};
 
 use std::sync::Arc;
 

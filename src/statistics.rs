@@ -29,8 +29,7 @@ mod estimate;
 mod histogram;
 mod running_mean;
 
-pub use blocking::BlockedMean;
-pub use blocking::block_average;
+pub use blocking::{BlockedMean, block_average};
 pub use estimate::Estimate;
 pub(crate) use histogram::Bins;
 pub use histogram::{Histogram, HistogramBin};

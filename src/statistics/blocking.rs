@@ -1,5 +1,6 @@
 //! Blocks of correlated numbers: their means, errors and plateaus.
 
+use super::estimate::FEWEST_INDEPENDENT;
 use super::{Estimate, RunningMean};
 use crate::ParameterError;
 use crate::quantity::accept;
@@ -72,13 +73,6 @@ pub fn block_average(samples: &[f64]) -> Result<Estimate, ParameterError> {
 
 /// Smallest number of blocks with a meaningful scatter. The error of eight blocks is uncertain by a quarter.
 const FEWEST_BLOCKS: u64 = 8;
-
-/// Smallest number of independent samples from which an error can be trusted.
-///
-/// In one case in a thousand, blocks made from 50 independent samples look like blocks made from 120 or more.
-/// If half of this number were enough, every tenth series of 30 independent samples would be called
-/// converged, with an error too small by a third.
-pub(super) const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Relative excess of a trusted error over the error from its blocks, times the number of independent
 /// samples.
