@@ -17,13 +17,11 @@ mod bucket_queue;
 mod by_size;
 mod entry;
 pub mod laws;
-mod linear_scan;
 mod tournament_tree;
 
 pub use bucket_queue::BucketQueue;
-pub use by_size::BySize;
 pub(crate) use by_size::LARGE_SYSTEM;
-pub use linear_scan::LinearScan;
+pub use by_size::{BySize, LinearScan};
 pub use tournament_tree::TournamentTree;
 
 use crate::forward::forward;

@@ -38,39 +38,27 @@
 //! velocity and reach, it needs only bounds on the acceleration over intervals of time. See [`WallMotion`]
 //! for an example, and [`laws`] for a check of a custom motion.
 
-mod bi_parabolic;
 mod combined;
 mod finite;
 mod first_touch;
-mod fixed;
-mod forward;
-mod jumps;
 mod known;
 pub mod laws;
 mod motion;
 mod oscillation;
 mod piston;
-mod sawtooth;
-mod sinusoidal;
-mod stroke;
 mod tabulated;
-mod triangular;
 
-pub use bi_parabolic::BiParabolic;
 pub use combined::Combined;
 pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
-pub use fixed::Fixed;
 pub use known::KnownMotion;
 #[cfg(feature = "serde")]
 pub(crate) use known::motion_or_piston;
 pub(crate) use motion::Motion;
+pub use oscillation::{BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular};
 pub use piston::Piston;
 pub(crate) use piston::Stroke;
-pub use sawtooth::Sawtooth;
-pub use sinusoidal::Sinusoidal;
 pub use tabulated::Tabulated;
-pub use triangular::Triangular;
 
 use crate::Fingerprint;
 
@@ -236,7 +224,7 @@ pub trait WallMotion {
     ///
     /// The default examines the first period, or the first thousand pieces if these end earlier.
     fn jumps(&self) -> bool {
-        jumps::seen(self)
+        finite::seen_to_jump(self)
     }
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.

@@ -5,8 +5,6 @@
 //! `grid.rs`). The function `prediction::cell_exit` gives this time. The disk then searches the three cells
 //! ahead (`Cells::ahead`).
 
-mod block;
-mod cell_size;
 mod contents;
 mod cost;
 mod crowd;
@@ -18,22 +16,19 @@ mod layers;
 mod layout;
 mod prefetching;
 mod reach;
-mod size_class;
 
 use glam::DVec2;
 
 use super::state::Exit;
 use crate::boundary::{Boundary, Region};
-pub(super) use cell_size::CellSize;
 use contents::Contents;
 use division::classes;
 pub(super) use grid::{Grid, Place};
 pub(super) use layers::Layouts;
 use layers::{Layers, layouts};
 pub(crate) use layout::FEWEST;
-pub(super) use layout::{CELLS_PER_DISK, Layout, SPARE_CELLS};
-pub(super) use size_class::SizeClass;
-use size_class::{class_of, count, together};
+pub(super) use layout::{CELLS_PER_DISK, CellSize, Layout, SPARE_CELLS, SizeClass};
+use layout::{class_of, count, together};
 
 /// Number of disks that may be added or removed before the numbers of disks are compared with the numbers for
 /// which the cells were made.

@@ -1,12 +1,21 @@
-//! A motion in owned form, which several walls can share.
+//! Motions in owned form, and forwarding: a boxed or borrowed motion is a motion, too.
 
+use super::{AccelerationBounds, Fixed, Stroke, WallMotion, WallState, check_finite};
+use crate::forward::forward;
+use crate::{Fingerprint, Violation};
 use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::{Fixed, Stroke, WallMotion, check_finite};
-use crate::Violation;
+forward! { WallMotion for [&T, Box<T>, Arc<T>] {
+    fn state(&self, phase: f64) -> WallState;
+    fn acceleration(&self, phase: f64) -> AccelerationBounds;
+    fn reach(&self) -> (f64, f64);
+    fn period(&self) -> Option<f64>;
+    fn jumps(&self) -> bool;
+    fn fingerprint(&self) -> Option<Fingerprint>;
+}}
 
 /// A motion whose type can be found at run time, since files hold motions of the crate's types.
 pub(crate) trait Owned: WallMotion + Any + Send + Sync {}

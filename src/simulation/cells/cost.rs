@@ -4,8 +4,8 @@
 //! factor of two here or there does no harm. It must depend on the radii alone: a resumed run divides its
 //! disks into classes anew, and must find the same ones.
 
-use super::cell_size::{CellSize, FREE_PATHS, SPARE_SMALL_CELLS};
-use super::size_class::SizeClass;
+use super::layout::SizeClass;
+use super::layout::{CellSize, FREE_PATHS, SPARE_SMALL_CELLS};
 
 /// Assumed area fraction. It is fixed, so that the classes depend on the disks alone.
 const AREA_FRACTION: f64 = 0.4;

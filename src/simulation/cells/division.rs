@@ -1,7 +1,7 @@
 //! The division of disks into classes of similar size, each with cells that suit it.
 
 use super::cost::{Group, area, cost};
-use super::size_class::SizeClass;
+use super::layout::SizeClass;
 
 /// Ratio of the smallest to the largest diameter in a narrow class. It is smaller if there would otherwise be
 /// very many classes.
@@ -86,7 +86,7 @@ fn width(largest: f64, smallest: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{SizeClass, classes, narrow_classes};
-    use crate::simulation::cells::size_class::class_of;
+    use crate::simulation::cells::layout::class_of;
 
     #[test]
     fn classes_reach_from_the_largest_disk_down_to_a_part_of_it() {

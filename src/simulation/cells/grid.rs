@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::cell_size::CellSize;
 use super::edges::{edges, row_edges, widen};
+use super::layout::CellSize;
 use super::layout::{Layout, margin};
 use crate::boundary::{Domain, Region};
 use crate::prefetch::prefetch;

@@ -13,12 +13,12 @@ use std::f64::consts::SQRT_2;
 
 use glam::DVec2;
 
-use super::cell_size::{CellSize, FREE_PATHS};
 use super::contents::Contents;
 use super::grid::{Grid, Place};
+use super::layout::SizeClass;
+use super::layout::{CellSize, FREE_PATHS};
 use super::layout::{LEAST_PITCH, Layout};
 use super::reach::{Homes, Reach};
-use super::size_class::SizeClass;
 use crate::boundary::{Boundary, Domain, Region};
 
 /// Largest number of homes per disk. More would cost time, since searches also visit empty homes.

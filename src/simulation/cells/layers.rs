@@ -30,13 +30,13 @@
 
 use glam::DVec2;
 
-use super::cell_size::{CellSize, SPARE_SMALL_CELLS};
 use super::contents::Contents;
 use super::grid::{Grid, Place};
 use super::layer::{Layer, LayerLayout, widest};
+use super::layout::{CellSize, SPARE_SMALL_CELLS};
 use super::layout::{LEAST_PITCH, Layout};
+use super::layout::{SizeClass, class_of};
 use super::reach::{Distances, Homes, Reach};
-use super::size_class::{SizeClass, class_of};
 use crate::boundary::{Boundary, Domain};
 
 /// Returns the largest number of cells for each disk of the smallest class.

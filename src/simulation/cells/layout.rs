@@ -1,9 +1,95 @@
-//! The dimensions of a grid of cells.
+//! The dimensions of a grid: sizes of cells, and classes of disks of similar size.
 
+use crate::boundary::Domain;
 use glam::DVec2;
 
-use super::cell_size::CellSize;
-use crate::boundary::Domain;
+/// Number of cells of the smallest class that is allowed however few disks there are.
+pub(super) const SPARE_SMALL_CELLS: f64 = 64.0;
+
+/// Width of a cell in free paths, per unit of [`CellSize::pitch`].
+pub(super) const FREE_PATHS: f64 = 3.0;
+
+/// The size of the cells. Small cells hold fewer neighbors, and large cells are left less often.
+///
+/// The smallest cells are best where disks crowd, and the largest cells in a dilute gas.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) enum CellSize {
+    Small,
+    #[default]
+    Medium,
+    Large,
+}
+
+impl CellSize {
+    /// Returns the size of a cell in diameters of the largest disk.
+    pub(in crate::simulation) const fn pitch(self) -> f64 {
+        match self {
+            Self::Small => 1.08,
+            Self::Medium => 1.4,
+            Self::Large => 2.0,
+        }
+    }
+
+    /// Returns the size that suits disks with these numbers of cell crossings and collisions in the same
+    /// time.
+    ///
+    /// At each bound, runs with either size take equally long. The bounds are far enough apart that no run
+    /// alternates between two sizes.
+    pub(in crate::simulation) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
+        // Without collisions, this is NaN or infinite. NaN leaves the size unchanged, since all comparisons
+        // fail, and infinity means the largest cells, as it should.
+        let passed = cell_crossings as f64 / collisions as f64;
+        match self {
+            Self::Small if passed > 1.2 => Self::Medium,
+            Self::Medium if passed > 1.45 => Self::Large,
+            Self::Medium if passed < 0.45 => Self::Small,
+            Self::Large if passed < 0.55 => Self::Medium,
+            _ => self,
+        }
+    }
+}
+
+/// Disks of similar size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) struct SizeClass {
+    /// The largest diameter.
+    pub(in crate::simulation) largest: f64,
+    /// The smallest diameter.
+    pub(in crate::simulation) smallest: f64,
+    /// Number of disks.
+    pub(in crate::simulation) count: usize,
+}
+
+impl SizeClass {
+    /// Returns the class for which cells are made if there are no disks. Any cells for which the domain has
+    /// room will do, even where it is periodic.
+    pub(super) fn of_nobody(domain: &Domain) -> Self {
+        let any = 0.125 * domain.width().min(domain.height());
+        Self { largest: any, smallest: any, count: 0 }
+    }
+
+    /// Returns the union of this class and a class of larger disks.
+    pub(super) fn with(&self, larger: &Self) -> Self {
+        Self { largest: larger.largest, smallest: self.smallest, count: self.count + larger.count }
+    }
+}
+
+/// Returns one class of all disks, or `None` if there are no disks.
+pub(super) fn together(classes: &[SizeClass]) -> Option<SizeClass> {
+    classes.iter().copied().reduce(|together, class| together.with(&class))
+}
+
+/// Returns the number of disks in all classes.
+pub(super) fn count(classes: &[SizeClass]) -> usize {
+    classes.iter().map(|class| class.count).sum()
+}
+
+/// Returns the class of disks of this diameter.
+pub(super) fn class_of(classes: &[SizeClass], diameter: f64) -> u8 {
+    classes.partition_point(|class| class.largest < diameter) as u8
+}
 
 /// Largest number of cells per disk. More cells would cost memory and save nothing.
 pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;

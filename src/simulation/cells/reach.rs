@@ -239,8 +239,8 @@ mod tests {
 
     use super::{Distances, Homes, Reach, around, between, within};
     use crate::boundary::{Boundary, Container};
-    use crate::simulation::cells::cell_size::CellSize;
     use crate::simulation::cells::grid::{Grid, Place};
+    use crate::simulation::cells::layout::CellSize;
     use crate::simulation::cells::layout::Layout;
 
     /// Returns a grid of cells of this size on a square of side 60.

@@ -10,7 +10,7 @@
 use glam::DVec2;
 
 use super::forecast::{Earliest, Exit, Forecast};
-use super::identities::Identities;
+use super::properties::Identities;
 use super::properties::Properties;
 use crate::boundary::Domain;
 use crate::collision::{Body, Material};
