@@ -276,8 +276,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Replaces the walls from now on.
     ///
-    /// Moving walls take the positions of their motions at the present time. A new [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of
-    /// the present boundary, it continues.
+    /// Moving walls take the positions of their motions at the present time. A new
+    /// [`Piston`](crate::wall::Piston) begins now, in its initial state; in a clone of the present boundary,
+    /// it continues.
     ///
     /// # Errors
     /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation

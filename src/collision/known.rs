@@ -1,4 +1,5 @@
-//! Rules of any kind: closures, tables by the kinds of both partners, and the list of the rules that files can hold.
+//! Rules of any kind: closures, tables by the kinds of both partners, and the list of the rules that files
+//! can hold.
 
 use super::{
     CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Frictional, Impulse, LeastRebound,

@@ -85,8 +85,8 @@ impl Combined {
 
     /// Lets the phase count from this absolute time instead of 0.
     ///
-    /// A base that replaces another between runs can in this way begin at its own phase 0, without a jump. The
-    /// start is not a delay: before it, the wall goes through the phases before 0.
+    /// A base that replaces another between runs can in this way begin at its own phase 0, without a jump.
+    /// The start is not a delay: before it, the wall goes through the phases before 0.
     ///
     /// # Errors
     /// If the time is not finite.
