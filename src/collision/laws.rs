@@ -23,14 +23,12 @@
 //! [`check_friction_cone`]; to compare the fingerprints of two rules, [`check_fingerprints`].
 //! With the feature `proptest`, the module `strategies` makes random contacts.
 
-mod hostile;
-mod random;
+mod contacts;
 mod rule;
-mod simplest;
 
-pub use hostile::hostile_contacts;
+pub use contacts::hostile_contacts;
 #[cfg(feature = "proptest")]
-pub(crate) use random::{Partner, meeting};
+pub(crate) use contacts::{Partner, meeting};
 pub use rule::{Promises, check, check_fingerprints};
 
 use super::{Contact, Impulse};
