@@ -3,10 +3,10 @@
 
 use proptest::prelude::*;
 
-use crate::cases::config;
-use crate::schedulers::SCHEDULERS;
 use crate::script::{Actor, script};
 use crate::systems::system;
+use support::cases::config;
+use support::schedulers::SCHEDULERS;
 
 proptest! {
     #![proptest_config(config(160))]

@@ -1,12 +1,11 @@
 //! The number of random cases, and their choice.
-#![allow(dead_code, reason = "each target needs some of it")]
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 /// Returns a configuration with the same cases on every run and machine, unless the environment asks for more
 /// (`PROPTEST_CASES`) or others (`PROPTEST_RNG_SEED`).
-pub(crate) fn config(cases: u32) -> ProptestConfig {
+pub fn config(cases: u32) -> ProptestConfig {
     let asked = ProptestConfig::default();
     let rng_seed = match asked.rng_seed {
         RngSeed::Random => RngSeed::Fixed(72_011_305),
@@ -17,6 +16,6 @@ pub(crate) fn config(cases: u32) -> ProptestConfig {
 }
 
 /// Numbers spread evenly over the decades `10^low..10^high`.
-pub(crate) fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
+pub fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..=high).prop_map(|exponent| 10f64.powf(exponent))
 }
