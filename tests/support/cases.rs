@@ -11,8 +11,21 @@ pub fn config(cases: u32) -> ProptestConfig {
         RngSeed::Random => RngSeed::Fixed(72_011_305),
         given @ RngSeed::Fixed(_) => given,
     };
-    let cases = if std::env::var_os("PROPTEST_CASES").is_some() { asked.cases } else { cases };
+    let cases = if more_are_asked() { asked.cases } else { cases };
     ProptestConfig { cases, rng_seed, failure_persistence: None, max_shrink_iters: 2000, ..asked }
+}
+
+fn more_are_asked() -> bool {
+    std::env::var_os("PROPTEST_CASES").is_some()
+}
+
+/// Returns every `stride`-th of these cases, or all of them if the environment asks for more
+/// (`PROPTEST_CASES`).
+///
+/// In the product of two lists, a stride without a common factor with the length of the inner list goes
+/// through all values of both.
+pub fn few<T>(cases: impl IntoIterator<Item = T>, stride: usize) -> impl Iterator<Item = T> {
+    cases.into_iter().step_by(if more_are_asked() { 1 } else { stride })
 }
 
 /// Numbers spread evenly over the decades `10^low..10^high`.
