@@ -1,9 +1,6 @@
 //! Errors say each thing once: a message never repeats that of its source, which a report shows after it.
 #![cfg(feature = "serde")]
 
-#[path = "support/report.rs"]
-mod report;
-
 use std::error::Error;
 use std::io;
 use std::path::Path;
@@ -14,7 +11,7 @@ use granular_edmd::observable::SampleTimes;
 use granular_edmd::simulation::{BoundaryFault, Checkpoint};
 use granular_edmd::trajectory::{ExtendedXyz, Reader, Recorder};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
-use report::{messages, report};
+use support::report::{messages, report};
 
 fn tells_each_thing_once(error: &(dyn Error + 'static)) {
     let said = messages(error);

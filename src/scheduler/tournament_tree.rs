@@ -65,7 +65,7 @@ impl EventScheduler for TournamentTree {
     }
 
     // The method is inlined, so that each event makes only one call: to the code for this processor.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn set(&mut self, disk: usize, due: f64) {
         match &mut self.form {
             Form::Fours(fours) => fours.set(disk, due),
@@ -74,7 +74,7 @@ impl EventScheduler for TournamentTree {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn earliest(&self) -> (usize, f64) {
         match &self.form {
             Form::Fours(fours) => fours.earliest(),

@@ -1,8 +1,5 @@
 //! Errors say each thing once: a message never repeats that of its source, which a report shows after it.
 
-#[path = "support/report.rs"]
-mod report;
-
 use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,7 +10,7 @@ use granular_edmd::collision::Frictional;
 use granular_edmd::simulation::{BuildError, CheckpointError};
 use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use granular_edmd_study::{Plan, PlanError, Protocol, Study, StudyError};
-use report::{messages, report};
+use support::report::{messages, report};
 
 fn tells_each_thing_once(error: &(dyn Error + 'static)) {
     let said = messages(error);

@@ -41,7 +41,7 @@ fn square(center: DVec2, half: f64) -> Region {
 
 /// Checks the area against the share of random places that are free, within five deviations.
 fn by_chance(boundary: &impl Boundary, region: &Region, radius: f64, time: f64) {
-    const PLACES: u32 = 100_000;
+    const PLACES: u32 = 20_000;
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(7);
     let mut uniform = || generator.next_u64() as f64 / 2.0_f64.powi(64);
     let size = region.max - region.min;

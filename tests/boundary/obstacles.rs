@@ -5,6 +5,7 @@ use granular_edmd::collision::{Contact, Elastic, Impulse, from_fn};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Kind, Simulation, initial};
+use support::cases::few;
 
 fn peg(x: f64, y: f64, radius: f64) -> Disk {
     Disk::new(DVec2::new(x, y), radius).unwrap()
@@ -22,11 +23,12 @@ fn obstacles_keep_the_contract() {
         .with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).unwrap())
         .unwrap();
     let periodic = Container::open(12.0).unwrap().with_periodic_sides().unwrap();
-    for container in [moving, periodic, Container::periodic(12.0, 9.0).unwrap()] {
-        for seed in 0..4 {
-            let mut board = Obstacles::new(container.clone(), pegs());
-            assert_eq!(laws::check(&mut board, 0.5, 1.0, seed), Ok(()));
-        }
+    let containers = [moving, periodic, Container::periodic(12.0, 9.0).unwrap()];
+    for (container, seed) in
+        few(containers.iter().flat_map(|container| (0..4).map(move |seed| (container, seed))), 5)
+    {
+        let mut board = Obstacles::new(container.clone(), pegs());
+        assert_eq!(laws::check(&mut board, 0.5, 1.0, seed), Ok(()));
     }
 }
 

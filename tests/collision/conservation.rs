@@ -1,8 +1,8 @@
 //! Momentum and angular momentum, which an impulse at the contact point cannot change under any rule.
 
-use glam::DVec2;
 use granular_edmd::Disk;
 use granular_edmd::collision::{CollisionRule, Contact, Impulse, collide, from_fn};
+use granular_edmd::glam::DVec2;
 use granular_edmd::strategies::{decades, direction, touching_pair};
 use proptest::prelude::*;
 

@@ -95,7 +95,7 @@ fn every_rule_of_the_crate_returns_on_a_wall() {
         walls_return(mixed.known().unwrap()),
         walls_return(mixed),
     ];
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/collision");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../src/collision");
     for file in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
         let text = if file.is_file() { std::fs::read_to_string(&file).unwrap() } else { String::new() };
         let rules = text.lines().filter(|line| line.starts_with("impl"));

@@ -1,7 +1,7 @@
 //! Mechanics of two touching bodies, written with vectors and without the library's formulas.
 
-use glam::DVec2;
 use granular_edmd::Disk;
+use granular_edmd::glam::DVec2;
 
 /// Rounding of one operation; each bound below is a number of operations times the magnitudes that enter
 /// them.

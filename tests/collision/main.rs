@@ -2,8 +2,6 @@
 //! symmetry over hostile inputs; worked collisions; the checks for rules of users, against planted faults;
 //! the contact-duration model; refused parameters and files.
 
-#[path = "../support/cases.rs"]
-mod cases;
 mod conservation;
 mod contact_duration;
 mod elastic_below;

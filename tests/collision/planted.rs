@@ -8,6 +8,7 @@ use granular_edmd::collision::{
     LeastRebound, Rough, Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 use granular_edmd::{Kind, Violation};
+use support::cases::few;
 
 fn caught(rule: impl Fn(&Contact) -> Impulse, promises: Promises) -> Violation {
     check(&from_fn(rule), &promises).expect_err("the fault was not caught")
@@ -26,38 +27,82 @@ fn rubbing(friction: impl Fn(&Contact, f64) -> f64) -> impl Fn(&Contact) -> Impu
     }
 }
 
-#[test]
-fn the_rules_of_the_library_pass() {
-    let frictionless = Promises::new().with_friction(0.0);
-    check(&Elastic, &frictionless).unwrap();
+/// Numbers of a rule: inelasticities along the normal and the tangent, static and dynamic friction, a speed.
+type Numbers = [f64; 5];
+
+/// Returns numbers of each size in their combinations, by default a few of these.
+fn numbers() -> impl Iterator<Item = Numbers> {
+    let frictions = [(0.0, 0.0), (0.3, 0.3), (0.5, 0.1), (1e9, 0.0), (f64::MAX, f64::MAX)];
+    let mut all = Vec::new();
     for inelasticity in [0.0, 1e-15, 0.1, 0.5] {
-        check(&Smooth::from_inelasticity(inelasticity).unwrap(), &frictionless).unwrap();
         for tangential in [0.0, 0.3, 1.0] {
-            let rough = Rough::from_inelasticity(inelasticity, tangential).unwrap();
-            check(&rough, &Promises::new().with_opposed_slip()).unwrap();
-            for (held, slid) in [(0.0, 0.0), (0.3, 0.3), (0.5, 0.1), (1e9, 0.0), (f64::MAX, f64::MAX)] {
-                let rule = Frictional::from_inelasticity(inelasticity, tangential, held).unwrap();
-                let rule = rule.with_dynamic_friction(slid).unwrap();
-                let promises = Promises::new().with_friction(held);
-                check(&rule, &promises).unwrap();
-                let model = ContactDuration::new(rule, 1e-6).unwrap();
-                check(&model, &promises).unwrap();
-                check(&model.with_tangential_response(TangentialResponse::Unchanged), &promises).unwrap();
-                for speed in [1e-60, 0.5, 1e60] {
-                    let remedy = ElasticBelow::new(rule, speed).unwrap();
-                    check(&remedy, &promises).unwrap();
-                    check(&remedy.with_tangential_response(TangentialResponse::Unchanged), &promises)
-                        .unwrap();
-                    let rebound = LeastRebound::new(rule, speed).unwrap();
-                    check(&rebound, &promises.with_energy_gain()).unwrap();
-                    let friction = Friction::from_inelasticity(tangential, held).unwrap();
-                    let friction = friction.with_dynamic_friction(slid).unwrap();
-                    let bizon = SpeedDependent::from_inelasticity(inelasticity, speed).unwrap();
-                    check(&bizon.with_friction(friction), &promises).unwrap();
-                }
+            for (held, slid) in frictions {
+                all.extend([1e-60, 0.5, 1e60].map(|speed| [inelasticity, tangential, held, slid, speed]));
             }
         }
     }
+    few(all, 26)
+}
+
+fn frictional([inelasticity, tangential, held, slid, _]: Numbers) -> Frictional {
+    let rule = Frictional::from_inelasticity(inelasticity, tangential, held).unwrap();
+    rule.with_dynamic_friction(slid).unwrap()
+}
+
+/// Checks a rule with the numbers, which promises their friction.
+fn passes<R: CollisionRule>(make: impl Fn(Numbers) -> R) {
+    for numbers in numbers() {
+        let promises = Promises::new().with_friction(numbers[2]);
+        assert_eq!(check(&make(numbers), &promises), Ok(()), "{numbers:?}");
+    }
+}
+
+#[test]
+fn rules_without_a_limit_of_friction_pass() {
+    let frictionless = Promises::new().with_friction(0.0);
+    check(&Elastic, &frictionless).unwrap();
+    for [inelasticity, tangential, ..] in numbers() {
+        check(&Smooth::from_inelasticity(inelasticity).unwrap(), &frictionless).unwrap();
+        let rough = Rough::from_inelasticity(inelasticity, tangential).unwrap();
+        check(&rough, &Promises::new().with_opposed_slip()).unwrap();
+    }
+}
+
+#[test]
+fn frictional_passes() {
+    passes(frictional);
+}
+
+#[test]
+fn contact_duration_passes() {
+    let model = |numbers| ContactDuration::new(frictional(numbers), 1e-6).unwrap();
+    passes(model);
+    passes(|numbers| model(numbers).with_tangential_response(TangentialResponse::Unchanged));
+}
+
+#[test]
+fn elastic_below_passes() {
+    let remedy = |numbers: Numbers| ElasticBelow::new(frictional(numbers), numbers[4]).unwrap();
+    passes(remedy);
+    passes(|numbers| remedy(numbers).with_tangential_response(TangentialResponse::Unchanged));
+}
+
+#[test]
+fn least_rebound_passes() {
+    for numbers in numbers() {
+        let rule = LeastRebound::new(frictional(numbers), numbers[4]).unwrap();
+        let promises = Promises::new().with_friction(numbers[2]).with_energy_gain();
+        assert_eq!(check(&rule, &promises), Ok(()), "{numbers:?}");
+    }
+}
+
+#[test]
+fn speed_dependent_passes() {
+    passes(|[inelasticity, tangential, held, slid, speed]| {
+        let friction = Friction::from_inelasticity(tangential, held).unwrap();
+        let friction = friction.with_dynamic_friction(slid).unwrap();
+        SpeedDependent::from_inelasticity(inelasticity, speed).unwrap().with_friction(friction)
+    });
 }
 
 #[test]

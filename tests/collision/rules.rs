@@ -6,7 +6,7 @@ use granular_edmd::collision::{
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
 
-use crate::cases;
+use support::cases;
 
 /// The same cases on every run and machine.
 pub(crate) fn config() -> ProptestConfig {

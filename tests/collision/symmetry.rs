@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
 use granular_edmd::Disk;
 use granular_edmd::collision::{CollisionRule, Encounter, collide};
+use granular_edmd::glam::DVec2;
 use granular_edmd::strategies::{direction, touching_pair};
 use proptest::prelude::*;
 

@@ -1,8 +1,8 @@
 //! A wall is a partner of infinite mass.
 
-use glam::DVec2;
 use granular_edmd::Disk;
 use granular_edmd::collision::{WallEncounter, collide, collide_with_wall};
+use granular_edmd::glam::DVec2;
 use granular_edmd::strategies::disk_closing_on_wall;
 use proptest::prelude::*;
 

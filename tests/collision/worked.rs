@@ -2,9 +2,9 @@
 //!
 //! Radius 1/2 and mass 1 unless said; $`\hat n`$ from the second body to the first.
 
-use glam::DVec2;
 use granular_edmd::Disk;
 use granular_edmd::collision::{Encounter, Frictional, Regime, WallEncounter, collide, collide_with_wall};
+use granular_edmd::glam::DVec2;
 
 /// The figures carry ten decimals.
 const TOLERANCE: f64 = 1e-10;

@@ -16,7 +16,7 @@ use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation, initial};
 
-use crate::schedulers::SCHEDULERS;
+use support::schedulers::SCHEDULERS;
 
 /// Sizes from the smallest number to the largest.
 const SIZES: [f64; 12] = [5e-324, 1e-310, 1e-200, 1e-30, 1e-20, 1e-6, 0.5, 1.0, 1e6, 1e30, 1e200, f64::MAX];

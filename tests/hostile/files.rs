@@ -3,8 +3,8 @@
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
 use proptest::prelude::*;
 
-use crate::cases::config;
 use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, sealed};
+use support::cases::config;
 
 #[test]
 fn a_sealed_file_is_resealed_as_the_library_does() {

@@ -8,7 +8,7 @@ use granular_edmd::collision::{
 };
 use proptest::prelude::*;
 
-use crate::cases::decades;
+use support::cases::decades;
 
 pub(crate) type Rule = Arc<dyn CollisionRule + Send + Sync>;
 

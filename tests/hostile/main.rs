@@ -4,8 +4,6 @@
 //! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, and `PROPTEST_RNG_SEED` sets another seed.
 //! With them, these tests become runs of hours (docs/validation.md, “Hostile runs”).
 
-#[path = "../support/cases.rs"]
-mod cases;
 mod constructors;
 mod edits;
 mod few;
@@ -16,8 +14,6 @@ mod laws;
 mod log;
 mod random_runs;
 mod regressions;
-#[path = "../support/schedulers.rs"]
-mod schedulers;
 mod script;
 #[cfg(feature = "serde")]
 mod specimens;

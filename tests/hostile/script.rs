@@ -9,9 +9,9 @@ use proptest::prelude::*;
 use crate::invariants::{Change, check_state, farthest};
 use crate::laws::{Law, law};
 use crate::log::{KEPT, Log};
-use crate::schedulers::SCHEDULERS;
 use crate::systems::{Run, System, gravity};
 use crate::walls::{Walls, walls};
+use support::schedulers::SCHEDULERS;
 
 /// Number of collisions after which a run ends.
 const ENOUGH: usize = 10_000;

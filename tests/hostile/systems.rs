@@ -7,10 +7,10 @@ use proptest::prelude::*;
 
 use granular_edmd::boundary::Container;
 
-use crate::cases::decades;
 use crate::laws::{Law, Rule, law};
-use crate::schedulers::Scheduler;
 use crate::walls::{Walls, walls};
+use support::cases::decades;
+use support::schedulers::Scheduler;
 
 pub(crate) type Run = Simulation<Rule, Container, Scheduler>;
 

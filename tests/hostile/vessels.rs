@@ -10,7 +10,7 @@ use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
 use granular_edmd::{Flight, Simulation, initial};
 use proptest::prelude::*;
 
-use crate::cases::config;
+use support::cases::config;
 
 /// A way in which a part moves.
 #[derive(Debug, Clone, Copy)]

@@ -4,8 +4,8 @@ use granular_edmd::boundary::{Container, Thermal, Wall, WallError};
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use proptest::prelude::*;
 
-use crate::cases::decades;
 use crate::laws::{Law, law};
+use support::cases::decades;
 
 #[derive(Debug, Clone, Copy)]
 enum Shape {

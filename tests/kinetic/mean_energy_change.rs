@@ -1,6 +1,5 @@
 //! The mean energy loss per collision: two ways to it, and the paper's figures of it.
 
-use crate::cases;
 use granular_edmd::collision::{
     CollisionRule, Contact, Elastic, Encounter, Frictional, Impulse, RollingFriction, Rough, RulesByKind,
     Smooth, collide, from_fn,
@@ -17,6 +16,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use support::cases;
 
 type Outcome = Result<(), ParameterError>;
 
@@ -100,8 +100,8 @@ fn monte_carlo_and_closed_form_agree_everywhere() {
     let distances = distances(2000, 1 << 18);
     let mean_square = distances.iter().map(|distance| distance * distance).sum::<f64>() / 2000.0;
     let far = distances.iter().filter(|distance| distance.abs() > 4.0).count();
-    crate::measured::measured("mean square distance", mean_square);
-    crate::measured::measured("beyond 4 errors", far);
+    support::measured::measured("mean square distance", mean_square);
+    support::measured::measured("beyond 4 errors", far);
     assert!(far <= 1 && (0.9..1.1).contains(&mean_square));
 }
 

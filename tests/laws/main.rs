@@ -5,8 +5,6 @@
 
 mod alarms;
 mod faults;
-#[path = "../support/measured.rs"]
-mod measured;
 mod shares;
 mod survivors;
 

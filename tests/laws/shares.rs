@@ -13,8 +13,8 @@ use crate::faults::blind::boundaries::Walled;
 use crate::faults::blind::fingerprints::{Pair, Parts};
 use crate::faults::blind::{self, motions::Motion, rules::Promised, schedulers::Maker};
 use crate::faults::{Planted, informed};
-use crate::measured::measured;
 use crate::survivors::SURVIVORS;
+use support::measured::measured;
 
 type Verdict = Result<(), Violation>;
 

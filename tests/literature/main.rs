@@ -16,8 +16,6 @@ mod equilibrium;
 mod figure_2;
 mod gas;
 mod layer;
-#[path = "../support/measured.rs"]
-mod measured;
 mod mixtures;
 mod order_parameters;
 mod piston;
@@ -30,7 +28,7 @@ mod thermal_walls;
 mod transport;
 mod velocities;
 
-use measured::measured;
+use support::measured::measured;
 
 /// The result of a test.
 type Outcome = Result<(), Box<dyn std::error::Error>>;

@@ -9,12 +9,8 @@ mod measures;
 mod observables;
 mod observers;
 mod profiles_and_fields;
-#[path = "../support/report.rs"]
-mod report;
 mod right;
 mod settings;
 mod stress_and_velocities;
-#[path = "../support/table.rs"]
-mod table;
 mod tables;
 mod walls_by_kind;

@@ -101,7 +101,7 @@ fn each_measure_is_right_in_each_setting_or_refuses_by_name() {
         refused += cells.iter().filter(|&&cell| cell == "refused").count();
         table.extend(["| ", measure.0, " | ", &cells.join(" | "), " |\n"]);
     }
-    crate::table::table("measures in settings", &table);
+    support::table::table("measures in settings", &table);
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     let all = measures().len() * settings.len();
     assert!(10 * refused <= all, "{refused} of {all} cells refuse");

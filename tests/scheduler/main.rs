@@ -1,19 +1,15 @@
 //! Every scheduler against the obvious one: by the public check, and over scripts that are shrunk when they
 //! fail.
 
-#[path = "../support/cases.rs"]
-mod cases;
 mod liars;
-#[path = "../support/schedulers.rs"]
-mod schedulers;
 
 use granular_edmd::scheduler::{
     BucketQueue, BySize, EventScheduler, LinearScan, NOTHING_DUE, TournamentTree, laws,
 };
 use proptest::prelude::*;
 
-use cases::config;
-use schedulers::SCHEDULERS;
+use support::cases::config;
+use support::schedulers::SCHEDULERS;
 
 #[test]
 fn every_scheduler_keeps_the_laws() {

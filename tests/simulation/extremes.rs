@@ -10,7 +10,7 @@ use granular_edmd::{Disk, Gravity, Simulation};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::schedulers::{SCHEDULERS, Scheduler};
+use support::schedulers::{SCHEDULERS, Scheduler};
 
 type Rule = std::sync::Arc<dyn CollisionRule>;
 type Run = Simulation<Rule, Container, Scheduler>;

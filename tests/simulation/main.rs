@@ -4,8 +4,6 @@
 mod agreement;
 mod balances;
 mod bouncing;
-#[path = "../support/cases.rs"]
-mod cases;
 mod changes;
 mod counting;
 mod crowds;
@@ -32,8 +30,6 @@ mod rest;
 #[cfg(feature = "serde")]
 mod resuming;
 mod rotor;
-#[path = "../support/schedulers.rs"]
-mod schedulers;
 #[cfg(feature = "serde")]
 #[path = "../trajectory/scratch.rs"]
 mod scratch;

@@ -6,6 +6,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::scheduler::{BucketQueue, LinearScan, TournamentTree};
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation, initial};
+use oracles::deepest_overlap;
 use proptest::prelude::*;
 
 use crate::setups::config;
@@ -55,22 +56,8 @@ fn mixture(radii: &[f64], sides: u8, filling: f64, seed: u64) -> (Container, Vec
     }
 }
 
-/// The deepest overlap of any two disks, relative to the distance at which they touch.
-fn deepest(container: &Container, disks: &[Disk]) -> f64 {
-    let domain = container.domain();
-    let mut deepest = f64::NEG_INFINITY;
-    for (k, a) in disks.iter().enumerate() {
-        for b in &disks[..k] {
-            let touching = a.radius() + b.radius();
-            let distance = domain.separation(a.position(), b.position()).length();
-            deepest = deepest.max(1.0 - distance / touching);
-        }
-    }
-    deepest
-}
-
 proptest! {
-    #![proptest_config(config(48))]
+    #![proptest_config(config(12))]
 
     #[test]
     fn no_meeting_is_missed(
@@ -91,7 +78,7 @@ proptest! {
         for _ in 0..200 {
             run.run_until(run.time() + step, &mut ()).unwrap();
             step = if run.counters().disk_collisions < 20_000 { 1.2 * step } else { step };
-            let overlap = deepest(&container, &run.disks());
+            let overlap = deepest_overlap(&container.domain(), &run.disks());
             prop_assert!(overlap < 1e-9, "{overlap:e} at {}", run.time());
             // A floor that moves heats a gas that loses nothing: it gets higher and higher.
             if run.counters().disk_collisions > 30_000 || run.counters().wall_collisions > 30_000 {

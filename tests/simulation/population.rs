@@ -11,8 +11,8 @@ use granular_edmd::trajectory::{Reader, State};
 use granular_edmd::{Disk, Kind, Simulation};
 use proptest::prelude::*;
 
-use crate::schedulers::{SCHEDULERS, Scheduler};
 use crate::setups::{Rule, Setup, config, elastic_gas, setup};
+use support::schedulers::{SCHEDULERS, Scheduler};
 
 type Run = Simulation<Rule, Container, Scheduler>;
 

@@ -10,7 +10,7 @@ use granular_edmd::wall::{BiParabolic, Sinusoidal};
 use granular_edmd::{Disk, Gravity, Simulation, initial};
 use proptest::prelude::*;
 
-pub(crate) use crate::cases::config;
+pub(crate) use support::cases::config;
 
 pub(crate) type Rule = ContactDuration<Frictional>;
 

@@ -8,8 +8,8 @@ use granular_edmd::collision::Frictional;
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 use granular_edmd::simulation::RunEnd;
 
-use crate::schedulers::{SCHEDULERS, Scheduler};
 use crate::setups::shaken_and_heated;
+use support::schedulers::{SCHEDULERS, Scheduler};
 
 type Run = Simulation<Frictional, Container, Scheduler>;
 

@@ -15,7 +15,7 @@ use granular_edmd::simulation::{BuildError, Inlet, RunError, Warning};
 use granular_edmd::wall::{BiParabolic, Combined, Sinusoidal, WallMotion};
 use granular_edmd::{Disk, Kind, Simulation};
 
-use crate::schedulers::{SCHEDULERS, Scheduler};
+use support::schedulers::{SCHEDULERS, Scheduler};
 
 type Silo = Simulation<LeastRebound<Frictional>, Vessel, Scheduler>;
 

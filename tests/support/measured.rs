@@ -8,7 +8,7 @@ use std::thread;
 
 /// Prints a value, and writes it to the file of the current test in the folder that `VALIDATION` names, if
 /// any, for `.ci/validation`. A test has a file of its own, since tests run at the same time.
-pub(crate) fn measured(quantity: &str, value: impl Display) {
+pub fn measured(quantity: &str, value: impl Display) {
     println!("{quantity}: {value}");
     let Some(folder) = std::env::var_os("VALIDATION") else { return };
     let test = thread::current().name().expect("a test runs in a thread of its name").replace("::", ".");

@@ -2,10 +2,10 @@
 
 use granular_edmd::scheduler::{BucketQueue, BySize, EventScheduler, LinearScan, TournamentTree};
 
-pub(crate) type Scheduler = Box<dyn EventScheduler>;
+pub type Scheduler = Box<dyn EventScheduler>;
 
 /// Functions that make each of them; the first is the default.
-pub(crate) const SCHEDULERS: [fn() -> Scheduler; 4] = [
+pub const SCHEDULERS: [fn() -> Scheduler; 4] = [
     || Box::new(BySize::new()),
     || Box::new(TournamentTree::new()),
     || Box::new(BucketQueue::new()),

@@ -4,7 +4,7 @@ use std::fs::{create_dir_all, write};
 use std::path::Path;
 
 /// Prints a table, and writes it to the folder that `VALIDATION` names, if any, for `.ci/validation`.
-pub(crate) fn table(name: &str, lines: &str) {
+pub fn table(name: &str, lines: &str) {
     println!("{lines}");
     let Some(folder) = std::env::var_os("VALIDATION") else { return };
     create_dir_all(&folder).expect("the folder of measured values");

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use granular_edmd::Disk;
 use granular_edmd::trajectory::{ReadError, Reader, State};
 
-use crate::report::report;
+use support::report::report;
 
 /// Writes what a file says: box, time and gravity if it has them; then each disk, without what is as in
 /// [`Disk::new`]; then the notes.

@@ -8,11 +8,11 @@ use granular_edmd::observable::SampleTimes;
 use granular_edmd::trajectory::{ByEnding, Reader, Recorder, State, TimedLammpsDump};
 
 use crate::corpus::shown;
-use crate::report::report;
 use crate::scratch::Scratch;
+use support::report::report;
 
 pub(crate) fn path(name: &str) -> PathBuf {
-    [env!("CARGO_MANIFEST_DIR"), "tests/trajectory/files", name].iter().collect()
+    [env!("CARGO_MANIFEST_DIR"), "trajectory/files", name].iter().collect()
 }
 
 /// Checks what files say, without their paths in refusals.

@@ -10,8 +10,8 @@ use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadErro
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::report::report;
 use crate::states::{domain, random_disks};
+use support::report::report;
 
 const UNKNOWN: &str = "line 1: the file must be extended XYZ, a dump or a data file of LAMMPS, GSD, or a table whose \
                        first line names columns such as x, y and radius, but is \"weight,height\"";

@@ -7,9 +7,9 @@ use granular_edmd::boundary::Domain;
 use granular_edmd::observable::{SampleTimes, Snapshot};
 use granular_edmd::trajectory::{Gsd, RecordError, Recorder};
 
-use crate::report::report;
 use crate::scratch::Scratch;
 use crate::states::{domain, mixture, random_disks};
+use support::report::report;
 
 /// Bytes of the entries of a frame with a moving wall.
 const FRAME: usize = 24 * 32;

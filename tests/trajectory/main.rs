@@ -1,9 +1,6 @@
 //! Files of disks: they read back to the same bits, lose nothing when a drive is full or a process is killed,
 //! and every fault of a file is reported with its line.
 
-#[path = "../support/report.rs"]
-mod report;
-
 mod corpus;
 mod corpus_data;
 mod corpus_dumps;

@@ -12,9 +12,9 @@ use granular_edmd::trajectory::{
     self, ByEnding, ExtendedXyz, Format, Frame, Gsd, LammpsDump, Reader, RecordError, Recorder, Vtk,
 };
 
-use crate::report::report;
 use crate::scratch::Scratch;
 use crate::states::mixture;
+use support::report::report;
 
 fn times() -> SampleTimes {
     SampleTimes::every(0.5).unwrap()

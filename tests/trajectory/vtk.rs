@@ -10,9 +10,9 @@ use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State, Vtk};
 use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion as _};
 use granular_edmd::{Disk, Simulation};
 
-use crate::report::report;
 use crate::scratch::Scratch;
 use crate::states::mixture;
+use support::report::report;
 
 fn times() -> SampleTimes {
     SampleTimes::every(0.5).unwrap()

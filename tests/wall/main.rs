@@ -1,8 +1,6 @@
 //! Wall motions: first touches with a disk, of which none is missed or early; the contract, which each
 //! planted fault breaks; the roots that they rest on.
 
-#[path = "../support/cases.rs"]
-mod cases;
 mod combined;
 mod engine;
 mod first_touch;

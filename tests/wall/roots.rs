@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::cases::config;
+use support::cases::config;
 
 #[test]
 fn closed_parabolas_count_only_while_they_close() {

@@ -147,11 +147,7 @@ impl Promises {
 
     /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and in its mirror
     /// image.
-    fn check_answer<R: CollisionRule + ?Sized>(
-        &self,
-        rule: &R,
-        contact: &Contact,
-    ) -> Result<Impulse, Violation> {
+    fn check_answer(&self, rule: &dyn CollisionRule, contact: &Contact) -> Result<Impulse, Violation> {
         let impulse = self.check_both_orders(rule, contact)?;
         if self.mirror {
             let other = rule.impulse(&mirrored(contact));
@@ -162,11 +158,7 @@ impl Promises {
     }
 
     /// Checks the impulse of a rule in a contact, and in the contact with partners exchanged.
-    fn check_both_orders<R: CollisionRule + ?Sized>(
-        &self,
-        rule: &R,
-        contact: &Contact,
-    ) -> Result<Impulse, Violation> {
+    fn check_both_orders(&self, rule: &dyn CollisionRule, contact: &Contact) -> Result<Impulse, Violation> {
         let impulse = rule.impulse(contact);
         self.check(contact, impulse)?;
         let is_between_disks = contact.radii()[1] > 0.0 && !contact.kinds().contains(&Kind::WALL);
@@ -213,6 +205,11 @@ impl Promises {
 /// # Errors
 /// The first broken promise, at the simplest contact that the check finds for the same promise.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
+    check_any(&rule, promises)
+}
+
+/// Checks a rule of any type, so that the check is compiled once.
+fn check_any(rule: &dyn CollisionRule, promises: &Promises) -> Result<(), Violation> {
     let answer = |contact: &Contact| promises.check_answer(rule, contact);
     let simplify = |contact, violation| simplest(contact, violation, |contact| answer(contact).err());
     let mut answers = Vec::new();
@@ -316,7 +313,7 @@ fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<()
 }
 
 /// Returns the violation of a rule that returns another impulse when it is called again several times.
-fn forgetful<R: CollisionRule + ?Sized>(rule: &R, contact: &Contact, impulse: Impulse) -> Option<Violation> {
+fn forgetful(rule: &dyn CollisionRule, contact: &Contact, impulse: Impulse) -> Option<Violation> {
     (0..4).find_map(|_| check_again(contact, impulse, rule.impulse(contact)).err())
 }
 

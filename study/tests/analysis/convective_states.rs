@@ -21,7 +21,7 @@ use granular_edmd_study::analysis::{
     Classification, ConvectiveRegime, ConvectiveState, StateCriteria, thermal_noise,
 };
 
-use crate::measured::measured;
+use support::measured::measured;
 
 const DISKS: usize = 1000;
 const PERIOD: f64 = TAU / 10.0;

@@ -2,8 +2,6 @@
 
 mod clusters;
 mod convective_states;
-#[path = "../support/measured.rs"]
-mod measured;
 mod parts;
 mod states;
 

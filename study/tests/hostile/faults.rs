@@ -18,8 +18,8 @@ use granular_edmd_study::{Axis, Control, Experiment, Plan, Protocol, Study};
 use crate::limits::{Limits, in_child};
 use crate::logs::{self, contents};
 use crate::mixture::{Mixture, mixture};
-use crate::report::report;
 use crate::specimens::{Scratch, checkpoint, container, rule};
+use support::report::report;
 
 const FOLDER: &str = "GRANULAR_EDMD_HOSTILE_FOLDER";
 

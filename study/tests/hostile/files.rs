@@ -6,12 +6,12 @@ use granular_edmd_study::vibrated_box::VibratedBox;
 use granular_edmd_study::{Plan, Study, StudyError};
 use proptest::prelude::*;
 
-use crate::cases::config;
 use crate::edits::{edit, edited};
 use crate::logs;
 use crate::mixture::Mixture;
 use crate::specimens::Scratch;
 use crate::studies::{done_study, own_plan, plan};
+use support::cases::config;
 
 /// Files with one bit flipped, each `stride`-th one, and all beginnings.
 fn damaged(bytes: &[u8], stride: usize) -> impl Iterator<Item = Vec<u8>> {

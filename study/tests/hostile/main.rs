@@ -2,8 +2,6 @@
 //!
 //! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, and `PROPTEST_RNG_SEED` sets another seed.
 
-#[path = "../support/cases.rs"]
-mod cases;
 mod cuts;
 mod edits;
 #[cfg(unix)]
@@ -17,8 +15,6 @@ mod logs;
 mod mixture;
 mod numbers;
 mod records;
-#[path = "../support/report.rs"]
-mod report;
 #[allow(dead_code, reason = "shared with the tests of the core")]
 mod specimens;
 mod studies;

@@ -5,8 +5,8 @@ use std::fs;
 use granular_edmd_study::vibrated_box::VibratedBox;
 use granular_edmd_study::{Control, Plan, Protocol, Study, StudyError};
 
-use crate::report::report;
 use crate::support::{AnyError, Scratch, TEMPORARY, contents, done, small_box, small_plan};
+use support::report::report;
 
 #[test]
 fn only_temporary_files_of_the_library_are_removed() -> Result<(), AnyError> {

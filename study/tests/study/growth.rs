@@ -8,8 +8,8 @@ use granular_edmd_study::{Axis, Control, Course, Experiment, Plan, PlanError, Pr
 
 use crate::logs;
 use crate::mixture::{Mixture, mixture};
-use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, small_box};
+use support::report::report;
 
 /// Returns the number of values that the logs say were taken over.
 fn taken<E: Experiment>(study: &Study<E>) -> usize {

@@ -1,7 +1,5 @@
 //! Studies: the plan as data, the same bytes however they come about, and damage that is noticed.
 
-#[path = "../support/cases.rs"]
-mod cases;
 mod damage;
 mod folders;
 mod growth;
@@ -18,8 +16,6 @@ mod plans;
 mod processes;
 mod random;
 mod refinement;
-#[path = "../support/report.rs"]
-mod report;
 mod riders;
 mod support;
 mod tables;

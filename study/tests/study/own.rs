@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::logs;
 use crate::mixture::{Mixture, Sticky, mixture};
-use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions};
+use support::report::report;
 
 /// Coupled parameters: the weight is ramped, the loss and the mixture differ between ramps.
 fn plan() -> Plan<Mixture> {

@@ -10,8 +10,8 @@ use granular_edmd_study::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, run_with_interruptions};
+use support::report::report;
 
 const HEIGHT: f64 = 40.0;
 

@@ -9,9 +9,9 @@ use granular_edmd_study::{Axis, Control, Course, Plan, Protocol, Ramp, Scalar, S
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::cases::config;
-use crate::report::report;
 use crate::support::{AnyError, BASE, Scratch, small_box};
+use support::cases::config;
+use support::report::report;
 
 const PLAN: &str = r#"
 seed = 1

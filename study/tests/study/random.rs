@@ -5,9 +5,9 @@ use granular_edmd_study::{Axis, Control, Course, Plan, PlanError, Protocol, Ramp
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-use crate::cases::config;
 use crate::logs;
 use crate::support::{BASE, Scratch, assert_same, done, run_with_interruptions};
+use support::cases::config;
 
 fn plan() -> impl Strategy<Value = Plan<VibratedBox>> {
     let base = select(vec![BASE, Base::Thermal { temperature: 1.0, slip: true }]);

@@ -9,8 +9,8 @@ use granular_edmd_study::{
 
 use crate::logs;
 use crate::mixture::{Mixture, mixture};
-use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions, small_box};
+use support::report::report;
 
 const WIDTH: f64 = 0.002;
 

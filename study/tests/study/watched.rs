@@ -16,8 +16,8 @@ use granular_edmd_study::{
 use serde::{Deserialize, Serialize};
 
 use crate::logs;
-use crate::report::report;
 use crate::support::{AnyError, Scratch};
+use support::report::report;
 
 /// Number of files that are still refused.
 static REFUSED: AtomicU32 = AtomicU32::new(0);

@@ -12,7 +12,7 @@ use granular_edmd::wall::{Piston, Sinusoidal};
 use granular_edmd::{Disk, Gravity, Kind, Simulation, initial};
 
 use super::log::{Log, State};
-use crate::report::report;
+use support::report::report;
 
 type Failure = Box<dyn std::error::Error>;
 pub(super) type Run = Simulation<BoxedRule, BoxedBoundary>;
