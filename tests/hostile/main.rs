@@ -7,7 +7,6 @@
 #[path = "../support/cases.rs"]
 mod cases;
 mod constructors;
-mod edits;
 mod few;
 #[cfg(feature = "serde")]
 mod files;
@@ -22,6 +21,5 @@ mod script;
 #[cfg(feature = "serde")]
 mod specimens;
 mod systems;
-mod texts;
 mod vessels;
 mod walls;

@@ -35,7 +35,7 @@ mod rotor;
 #[path = "../support/schedulers.rs"]
 mod schedulers;
 #[cfg(feature = "serde")]
-#[path = "../trajectory/scratch.rs"]
+#[path = "../support/scratch.rs"]
 mod scratch;
 mod setups;
 mod sled;

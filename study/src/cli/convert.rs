@@ -5,8 +5,8 @@ use std::io;
 use std::path::Path;
 
 use granular_edmd::observable::SampleTimes;
-use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump, Reader, Recorder, State};
 use granular_edmd::{Disk, ParameterError};
+use granular_edmd_files::{ByEnding, ExtendedXyz, Frame, FrameFormat, LammpsDump, Reader, Recorder, State};
 
 use super::arguments::Convert;
 use super::terminal::{tell, write_new};

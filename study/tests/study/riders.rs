@@ -8,7 +8,7 @@ use granular_edmd::Fingerprint;
 use granular_edmd::observable::{Observer, ObserverError, SampleTimes, Snapshot, on_collision};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::{Inlet, WhiteNoise};
-use granular_edmd::trajectory::{ExtendedXyz, Recorder};
+use granular_edmd_files::{ExtendedXyz, Recorder};
 use granular_edmd_study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Interval, Outcome, Plan, Protocol, Ramp, Run,
     SavedDriving, Start, Study,

@@ -3,7 +3,6 @@
 
 pub(crate) mod boundaries;
 pub(crate) mod fingerprints;
-pub(crate) mod formats;
 pub(crate) mod motions;
 pub(crate) mod observers;
 pub(crate) mod rules;
