@@ -20,7 +20,6 @@ pub(crate) fn names() -> Vec<String> {
         named("boundary", &boundaries::catalogue()),
         named("scheduler", &schedulers::catalogue()),
         named("observer", &observers::catalogue()),
-        named("format", &formats::catalogue()),
         named("fingerprint", &fingerprints::catalogue()),
     ]
     .concat()
