@@ -9,7 +9,7 @@ use std::path::Path;
 use super::found::{Found, Frames, Settings};
 use super::{ReadError, State, disks, source};
 use granular_edmd::ParameterError;
-use granular_edmd::quantity::{accept, non_negative};
+use granular_edmd::quantity::{accept, non_negative, positive};
 
 /// Reads disks from files of this crate and of other programs.
 ///
@@ -256,5 +256,5 @@ impl fmt::Debug for States<'_> {
 
 /// Returns a radius or a density in the range that a [`Disk`](granular_edmd::Disk) accepts.
 fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
-    accept((1e-30..=1e30).contains(&value), name, "in [1e-30, 1e30]", value)
+    accept((1e-30..=1e30).contains(&positive(name, value)?), name, "in [1e-30, 1e30]", value)
 }
