@@ -41,15 +41,15 @@ const NAMES: [(Quantity, &str); 17] = {
         (Q::Kind, "kind"),
         (Q::Type, "type types particletype atomtype typeid"),
         (Q::Name, "species element name"),
-        (Q::Position, "pos position positions points"),
+        (Q::Position, "pos position positions points center centre"),
         (Q::Unwrapped, "unwrapped unwrappedposition"),
         (Q::Velocity, "velo vel velocity velocities v"),
         (Q::Momentum, "momenta momentum"),
         (Q::Angle, "angle"),
         (Q::Orientation, "orientation orientations"),
         (Q::AngularVelocity, "omega angularvelocity angularvelocities w"),
-        (Q::Radius, "radius radii r"),
-        (Q::Diameter, "diameter diameters d"),
+        (Q::Radius, "radius radii r rad"),
+        (Q::Diameter, "diameter diameters d equivalentdiameter equivalentdiameterarea"),
         (Q::Mass, "mass masses m"),
         (Q::Density, "density densities"),
         (Q::InertiaFactor, "inertiafactor"),
@@ -58,7 +58,7 @@ const NAMES: [(Quantity, &str); 17] = {
 };
 
 impl Quantity {
-    const fn size(self) -> usize {
+    pub(super) const fn size(self) -> usize {
         match self {
             Self::Position
             | Self::Scaled
@@ -73,7 +73,7 @@ impl Quantity {
         }
     }
 
-    fn named(name: &str) -> Option<Self> {
+    pub(super) fn named(name: &str) -> Option<Self> {
         let known = NAMES.iter().find(|(_, names)| names.split(' ').any(|known| known == name));
         known.map(|(quantity, _)| *quantity)
     }
@@ -96,13 +96,64 @@ pub(super) struct Column {
 impl Column {
     /// Returns the columns for a name with this number of components.
     pub(super) fn of(name: &str, count: usize) -> impl Iterator<Item = Self> {
-        let plain = name.to_lowercase().replace([' ', '_', '-', '"'], "");
+        let plain = plain(name);
         let name = Some(name.trim().trim_matches('"')).filter(|name| !name.is_empty());
         (0..count).map(move |component| {
             let slot = if count == 1 { single(&plain) } else { vector(&plain, component, count) };
             Self { name: name.unwrap_or("(without a name)").to_owned(), slot }
         })
     }
+}
+
+/// Returns a name in lower case, without quotes and without what divides its words.
+pub(super) fn plain(name: &str) -> String {
+    name.to_lowercase().replace([' ', '_', '-', '"'], "")
+}
+
+/// Names of columns that number the frames of a table, and of columns of their times.
+pub(super) const FRAMES: &str = "frame frames framenumber frameid step timestep slice";
+pub(super) const TIMES: &str = "time t seconds positiont";
+
+/// Units that may follow a name after `_`.
+const UNITS: [&str; 11] = ["um", "µm", "micron", "microns", "mm", "cm", "m", "px", "pixel", "pixels", "s"];
+
+/// Divides the heading of a column into its name and its unit, which is empty if there is none.
+pub(super) fn name_and_unit(heading: &str) -> (&str, &str) {
+    let inner = heading.strip_suffix([']', ')', '}']).and_then(|text| text.rsplit_once(['[', '(', '{']));
+    let after = heading.rsplit_once('_').filter(|(_, unit)| UNITS.contains(unit));
+    match inner.or(heading.split_once('/')).or(after) {
+        // A number in brackets is a component.
+        Some((name, unit)) if !unit.chars().all(|letter| letter.is_ascii_digit()) => (name.trim(), unit),
+        _ => (heading, ""),
+    }
+}
+
+/// Settles what depends on the other columns: numbers of particles, and what programs that track particles
+/// call mass and angle. Returns notes about it.
+pub(super) fn settle(columns: &mut [Column]) -> Vec<String> {
+    let names: Vec<String> = columns.iter().map(|column| plain(&column.name)).collect();
+    let has = |known: &[&str]| names.iter().any(|name| known.contains(&name.as_str()));
+    let has_spots = has(&["ecc", "signal", "rawmass"]);
+    let has_shapes = has(&["major", "minor", "feret"]);
+    let has_id = columns.iter().any(|column| column.slot == Quantity::Id.slot(0));
+    let mut notes = Vec::new();
+    for (column, name) in columns.iter_mut().zip(&names) {
+        let found = match name.as_str() {
+            "mass" if has_spots => "the brightness of a spot here, and ignored",
+            "angle" if has_shapes => "in degrees here, and ignored",
+            "d" if column.name == "D" => "read as the diameter",
+            "particle" | "track" | "trackid" if !has_id => {
+                column.slot = Quantity::Id.slot(0);
+                continue;
+            }
+            _ => continue,
+        };
+        if found.ends_with("ignored") {
+            column.slot = None;
+        }
+        notes.push(format!("`{}` is {found}", column.name));
+    }
+    notes
 }
 
 /// Returns the slot of a column with a separate name, such as `radius`, `xs` or `velocity.x`.
@@ -120,6 +171,11 @@ fn single(name: &str) -> Option<usize> {
         if let Some(quantity) = quantity {
             return quantity.slot(component);
         }
+    }
+    match name {
+        "cx" | "centroid1" => return Quantity::Position.slot(0),
+        "cy" | "centroid0" => return Quantity::Position.slot(1),
+        _ => {}
     }
     match Quantity::named(name) {
         Some(Quantity::Orientation) => return Quantity::Angle.slot(0),

@@ -23,7 +23,16 @@ const ALIKE: f64 = 1e-4;
 const FLAT: f64 = 1e-9;
 
 /// Returns the state that a table holds.
-pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, ReadError> {
+pub(super) fn state(table: Table, settings: &Settings) -> Result<State, ReadError> {
+    let frame = table.binary_frame;
+    state_of(table, settings).map_err(|error| match frame {
+        Some(frame) => ReadError::Frame { frame, source: Box::new(error) },
+        None => error,
+    })
+}
+
+fn state_of(mut table: Table, settings: &Settings) -> Result<State, ReadError> {
+    scale(&mut table, settings.scale);
     let mut disks = disks(&table, settings)?;
     if table.has(Id, 0) && number(&mut disks, &table.lines)? {
         table.notes.push("ids begin with 0 in the file, and are greater by 1 here".to_owned());
@@ -34,6 +43,8 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
     {
         table.notes.push("unwrapped positions are ignored, since the file has no box".to_owned());
     }
+    let notes = given(&table, settings, &disks);
+    table.notes.extend(notes);
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
     let ordered = table::ordered(&table).filter(|_| !is_numbered).unwrap_or_default();
     let ordered: Vec<String> = ordered.into_iter().map(str::to_owned).collect();
@@ -50,6 +61,55 @@ pub(super) fn state(mut table: Table, settings: &Settings) -> Result<State, Read
     let settings = with_rounding(settings, table.rounding, &state.disks);
     settle(&mut state, &table.into_lines(), &settings)?;
     Ok(state)
+}
+
+/// Multiplies all lengths of a table by a factor.
+fn scale(table: &mut Table, factor: f64) {
+    if factor == 1.0 {
+        return;
+    }
+    let per_area = if table.is_of_lammps { factor.powi(-3) } else { factor.powi(-2) };
+    for (quantity, factor) in [
+        (Position, factor),
+        (Unwrapped, factor),
+        (Velocity, factor),
+        (Momentum, factor),
+        (Radius, factor),
+        (Diameter, factor),
+        (Density, per_area),
+    ] {
+        table.scale(quantity, factor);
+    }
+    for domain in [&mut table.domain, &mut table.extent].into_iter().flatten() {
+        for edge in [&mut domain.left, &mut domain.right, &mut domain.bottom, &mut domain.top] {
+            *edge *= factor;
+        }
+    }
+    table.gravity = table.gravity.map(|gravity| (factor * gravity.acceleration()).into());
+    table.rounding *= factor;
+}
+
+/// Returns notes about settings that the file makes useless, and about masses that nobody gave.
+fn given(table: &Table, settings: &Settings, disks: &[Disk]) -> Vec<String> {
+    let [has_radii, has_masses] =
+        [[Radius, Diameter], [Mass, Density]].map(|pair| pair.iter().any(|&it| table.has(it, 0)));
+    let radii = || disks.iter().map(Disk::radius);
+    let (least, most) = (radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max));
+    let notes = [
+        (
+            settings.radius.is_some() && has_radii && table.binary_frame.is_none(),
+            "the radius that was given is ignored, since the file has radii",
+        ),
+        (
+            settings.density.is_some() && has_masses,
+            "the density that was given is ignored, since the file has masses",
+        ),
+        (
+            settings.density.is_none() && !has_masses && most > least && table.binary_frame.is_none(),
+            "all masses are 1, since the file has none; a density (with_density, --density) gives them by size",
+        ),
+    ];
+    notes.into_iter().filter(|(is_so, _)| *is_so).map(|(_, note)| note.to_owned()).collect()
 }
 
 /// Returns the settings with a tolerance for positions of few digits, if nothing else is set.
@@ -69,7 +129,8 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
         }
     }
     if !either(&[Radius, Diameter], 0) && settings.radius.is_none() {
-        return missing("radius");
+        let what = "the column `radius`, or one radius for all (with_radius, --radius),";
+        return Err(ReadError::missing(table.line, what));
     }
     if either(&[Momentum], 0) && !either(&[Mass, Density], 0) && settings.density.is_none() {
         let what = "a column of masses, or a density (with_density, --density), for the momenta";
@@ -151,6 +212,7 @@ fn check_plane(table: &Table, settings: &Settings) -> Result<(), ReadError> {
             let requirement = if is_place { lie } else { stay };
             let name = table.known().find(|(_, slot)| Some(*slot) == quantity.slot(axis));
             let name = name.map_or("", |(column, _)| &column.name);
+            let requirement = format!("{requirement}{}", table.advice);
             return Err(ReadError::unexpected(line, name, requirement, value.to_string()));
         }
     }

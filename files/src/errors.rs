@@ -44,7 +44,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// The name ends in `.gz`, but this build cannot compress.
-    #[error("{} would be compressed, which needs the feature `gzip` of granular-edmd", path.display())]
+    #[error("{} would be compressed, which needs the feature `gzip` of granular-edmd-files", path.display())]
     Gzip {
         /// The path.
         path: PathBuf,
@@ -137,13 +137,21 @@ pub enum ReadError {
         /// The error of the system.
         source: io::Error,
     },
+    /// A frame of a binary file does not describe disks.
+    #[error("frame {frame}, whose lines are its disks")]
+    Frame {
+        /// Number of the frame.
+        frame: u64,
+        /// The error, which names the disk.
+        source: Box<ReadError>,
+    },
     /// The input cannot be read, or is not text.
-    #[error("cannot read line {line}")]
+    #[error("cannot read line {line}: {cause}")]
     Io {
         /// Number of the line.
         line: usize,
-        /// The error of the system.
-        source: io::Error,
+        /// The error of the system or of the compression.
+        cause: io::Error,
     },
     /// The input is cut short.
     #[error("the file ends after line {line}, where {what} should follow")]

@@ -5,12 +5,14 @@ use super::lines::Text;
 use super::table::Table;
 
 /// Settings of a reader for data that a file lacks, or gives in few digits.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Settings {
     pub(super) tolerance: Option<f64>,
     pub(super) shrinks: bool,
     pub(super) density: Option<f64>,
     pub(super) radius: Option<f64>,
+    /// The factor of all lengths in the file.
+    pub(super) scale: f64,
 }
 
 /// A frame that was found in a file, and is read only on request.
@@ -34,8 +36,7 @@ impl<'a> Found<'a> {
                     return Err(ReadError::End { line, what: "a line break".to_owned() });
                 }
                 (true, ..) => {
-                    let note = "the last line has no line break: its last number may be cut short";
-                    table.notes.push(note.to_owned());
+                    table.notes.push(TORN.to_owned());
                 }
                 _ => {}
             }
@@ -44,6 +45,9 @@ impl<'a> Found<'a> {
         Self { step, read: Box::new(read) }
     }
 }
+
+/// The note about a text without a last line break.
+pub(super) const TORN: &str = "the last line has no line break: its last number may be cut short";
 
 /// The function that reads a frame.
 pub(super) type Reading<'a> = Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>;

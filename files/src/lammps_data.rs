@@ -21,8 +21,8 @@ impl State {
     /// The file has the box, the diameters, densities, positions, images, velocities and angular velocities.
     /// The type of an atom is the number of its [`Kind`](granular_edmd::Kind) plus 1. LAMMPS interprets the density
     /// as the density of a sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a state
-    /// without a box gets one around the disks. The format has no place for angles, inertia factors, periodic
-    /// directions and walls.
+    /// without a box gets one around the disks. The title names the time and the periodic directions, which
+    /// LAMMPS ignores. The format has no place for angles, inertia factors and walls.
     ///
     /// A [`Reader`](super::Reader) reads the file back to the same bits, except that a mass may differ by a
     /// rounding error.
@@ -36,6 +36,9 @@ impl State {
         let types = disks.iter().map(|disk| u32::from(disk.kind().number()) + 1).max().unwrap_or(1);
         write!(out, "LAMMPS data file, atom_style sphere, {WRITER}")?;
         self.time.map_or(Ok(()), |time| write!(out, ", time = {time:?}"))?;
+        let sides = [(domain.periodic_sides, "x"), (domain.periodic_ends, "y")];
+        let sides: String = sides.into_iter().filter(|(is_so, _)| *is_so).map(|(_, name)| name).collect();
+        write!(out, ", periodic = {}", if sides.is_empty() { "none" } else { &sides })?;
         writeln!(out, "\n\n{} atoms\n{types} atom types\n", disks.len())?;
         writeln!(out, "{:?} {:?} xlo xhi\n{:?} {top:?} ylo yhi", domain.left, domain.right, domain.bottom)?;
         writeln!(out, "{:?} {half:?} zlo zhi", -half)?;

@@ -37,7 +37,7 @@ impl<R: BufRead> Input<R> {
     pub(super) fn copy(&mut self, text: &mut Text) -> Result<bool, ReadError> {
         let (line, start) = (self.line + 1, text.bytes.len());
         let read = self.input.by_ref().take(LONGEST).read_until(b'\n', &mut text.bytes);
-        let length = read.map_err(|source| ReadError::Io { line, source })?;
+        let length = read.map_err(|cause| ReadError::Io { line, cause })?;
         if length as u64 == LONGEST {
             let most = format!("of fewer than {LONGEST} bytes");
             return Err(ReadError::unexpected(line, "the line", most, lossy(&text.bytes[start..])));
@@ -124,7 +124,7 @@ pub(super) fn lossy(bytes: &[u8]) -> String {
 }
 
 /// An iterator over the lines of a [`Text`].
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Lines<'a> {
     rest: &'a str,
     line: usize,
@@ -166,7 +166,8 @@ impl<'a> Iterator for Lines<'a> {
 pub(super) fn number(what: &str, text: &str, line: usize) -> Result<f64, ReadError> {
     let text = text.trim();
     let number = text.parse().or_else(|_| text.replace(['d', 'D'], "e").parse());
-    number.map_err(|_| ReadError::unexpected(line, what, "a number", text))
+    let requirement = if text.contains(',') { "a number with a decimal point" } else { "a number" };
+    number.map_err(|_| ReadError::unexpected(line, what, requirement, text))
 }
 
 /// Reads a whole number, which may be written as a float, such as `2.0` or `2.0e+00`.

@@ -28,10 +28,12 @@ use granular_edmd::quantity::{accept, non_negative, positive};
 /// | mass | `mass`, `masses`, `m`; `density`, as mass per area, or of a sphere in files of LAMMPS |
 /// | angle | `angle`; `orientation`, as an angle or a quaternion x, y, z, w |
 /// | angular velocity | `angular_velocity`, `omega`, `omegaz`, `wz`; of three components the third |
-/// | id | `id`, `identifier` |
+/// | id | `id`, `identifier`; without these `particle`, `track_id` |
 /// | kind | `kind`; `type`, from 1 in LAMMPS; `species`, `element`, `name`: numbers, or names in order |
 /// | periods passed | `image`, `ix iy` |
 /// | factor of the moment of inertia | `inertia_factor` |
+///
+/// A table has frames if a column is named `frame`, `step`, `slice`, `time` or `t`.
 ///
 /// The letter or number of a component may follow the name of the property, as in `vel_x`, `Position.X` or
 /// `velocity:0`. Two columns of the same quantity must agree. Disks keep the order of the file. They must lie
@@ -96,7 +98,7 @@ impl Default for Reader {
 impl Reader {
     /// Creates a reader of the last frame of a file.
     pub const fn new() -> Self {
-        let settings = Settings { tolerance: None, shrinks: false, density: None, radius: None };
+        let settings = Settings { tolerance: None, shrinks: false, density: None, radius: None, scale: 1.0 };
         Self { frame: Choice::Number(-1), settings }
     }
 
@@ -153,6 +155,16 @@ impl Reader {
     /// If the radius is not in `[1e-30, 1e30]`.
     pub fn with_radius(mut self, radius: f64) -> Result<Self, ParameterError> {
         self.settings.radius = Some(scale("radius", radius)?);
+        Ok(self)
+    }
+
+    /// Returns the same reader, which multiplies all lengths of the file by this factor: positions, radii,
+    /// velocities, gravity and the box. Masses and times stay; a density is a mass per area of the file.
+    ///
+    /// # Errors
+    /// If the factor is not in `[1e-30, 1e30]`.
+    pub fn with_scale(mut self, factor: f64) -> Result<Self, ParameterError> {
+        self.settings.scale = scale("scale", factor)?;
         Ok(self)
     }
 

@@ -13,7 +13,7 @@ const HEAD: u64 = 1 << 14;
 
 /// Returns the frames of a file. A GSD file is not read completely.
 pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
-    let failed = |source| ReadError::Io { line: 1, source };
+    let failed = |cause| ReadError::Io { line: 1, cause };
     let mut head = Vec::new();
     file.by_ref().take(8).read_to_end(&mut head).map_err(failed)?;
     file.rewind().map_err(failed)?;
@@ -36,7 +36,7 @@ type Boxed<'a> = Box<dyn BufRead + 'a>;
 fn with_head(mut input: Boxed<'_>) -> Result<(Vec<u8>, Boxed<'_>), ReadError> {
     let mut head = Vec::new();
     let read = input.by_ref().take(HEAD).read_to_end(&mut head);
-    read.map_err(|source| ReadError::Io { line: 1, source })?;
+    read.map_err(|cause| ReadError::Io { line: 1, cause })?;
     Ok((head.clone(), Box::new(Cursor::new(head).chain(input))))
 }
 
@@ -48,8 +48,9 @@ fn inflated(input: Boxed<'_>) -> Result<Boxed<'_>, ReadError> {
 
 #[cfg(not(feature = "gzip"))]
 fn inflated(_: Boxed<'_>) -> Result<Boxed<'_>, ReadError> {
-    let source = std::io::Error::other("it is compressed, which needs the feature `gzip` of granular-edmd");
-    Err(ReadError::Io { line: 1, source })
+    let cause =
+        std::io::Error::other("it is compressed, which needs the feature `gzip` of granular-edmd-files");
+    Err(ReadError::Io { line: 1, cause })
 }
 
 /// Returns the frames of an input that begins with these bytes.
@@ -67,10 +68,12 @@ fn of_format<'a>(head: &[u8], input: Boxed<'a>) -> Frames<'a> {
     if is_count || second.contains("Properties") {
         return Box::new(extended_xyz::frames(Input::new(input)));
     }
-    let read = if lammps_data::is_data(&text) { lammps_data::table } else { csv::table };
-    let once = move || {
-        let text = Input::new(input).rest()?;
-        Ok(Found::in_text(text, None, read))
-    };
-    Box::new(std::iter::once_with(once))
+    if lammps_data::is_data(&text) {
+        let read = || Ok(Found::in_text(Input::new(input).rest()?, None, lammps_data::table));
+        return Box::new(std::iter::once_with(read));
+    }
+    match Input::new(input).rest().and_then(|text| csv::frames(&text)) {
+        Ok(frames) => Box::new(frames.into_iter().map(Ok)),
+        Err(error) => Box::new(std::iter::once(Err(error))),
+    }
 }

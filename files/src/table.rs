@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::ReadError;
-use super::column::{Column, Quantity};
+use super::column::{Column, Quantity, settle};
 use super::lines::{LARGEST_ID, as_whole, number, whole};
 use granular_edmd::Gravity;
 use granular_edmd::boundary::Domain;
@@ -33,8 +33,12 @@ pub(super) struct Table {
     /// The box to which scaled positions refer, if it is not the domain.
     pub(super) extent: Option<Domain>,
     pub(super) time: Option<f64>,
-    /// The name of a column of the time, which is the same for all disks; empty if the format has none.
-    pub(super) time_column: &'static str,
+    /// Indices of the columns of the time and of the number of the frame, which are the same for all disks.
+    pub(super) labels: Vec<usize>,
+    /// The way out that refusals name.
+    pub(super) advice: &'static str,
+    /// The number of the frame in a binary file, where disks count as lines.
+    pub(super) binary_frame: Option<u64>,
     pub(super) gravity: Option<Gravity>,
     /// Largest error of a position, from the precision of the file.
     pub(super) rounding: f64,
@@ -46,12 +50,13 @@ impl Table {
     /// Creates a table of these columns.
     pub(super) fn new(columns: impl IntoIterator<Item = Column>, line: usize) -> Self {
         let mut columns: Vec<Column> = columns.into_iter().collect();
+        let notes = settle(&mut columns);
         // Only LAMMPS counts types from 1; elsewhere, a type is a name.
         if columns.iter().all(|column| column.slot != Quantity::Name.slot(0)) {
             let types = columns.iter_mut().filter(|column| column.slot == Quantity::Type.slot(0));
             types.for_each(|column| column.slot = Quantity::Name.slot(0));
         }
-        Self { columns, line, ..Self::default() }
+        Self { columns, line, notes, ..Self::default() }
     }
 
     /// Creates a table of columns that have one component each, with the conventions of LAMMPS.
@@ -101,6 +106,18 @@ impl Table {
         place.into_iter().flat_map(|place| self.rows().map(move |(row, line)| (row[place], line)))
     }
 
+    /// Multiplies all values of a quantity by a factor.
+    pub(super) fn scale(&mut self, quantity: Quantity, factor: f64) {
+        let slots: Vec<usize> = self.known().map(|(_, slot)| slot).collect();
+        let is_of = |slot: usize| (0..3).any(|component| quantity.slot(component) == Some(slot));
+        for row in self.values.chunks_mut(slots.len().max(1)) {
+            row.iter_mut()
+                .zip(&slots)
+                .filter(|(_, slot)| is_of(**slot))
+                .for_each(|(value, _)| *value *= factor);
+        }
+    }
+
     /// Returns whether a component of a quantity is among the columns.
     pub(super) fn has(&self, quantity: Quantity, component: usize) -> bool {
         self.known().any(|(_, slot)| Some(slot) == quantity.slot(component))
@@ -108,14 +125,13 @@ impl Table {
 
     /// Returns the names of columns that do not determine a property of a disk.
     pub(super) fn ignored(&self) -> Vec<String> {
-        let is_idle = |column: &Column| {
+        let is_idle = |(place, column): &(usize, &Column)| {
             let is_name = column.slot == Some(Quantity::Name as usize);
-            let is_time = column.name.eq_ignore_ascii_case(self.time_column);
-            column.slot.is_none() && !is_time
+            column.slot.is_none() && !self.labels.contains(place)
                 || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };
-        let idle = self.columns.iter().filter(|column| is_idle(column));
-        let mut names: Vec<String> = idle.map(|column| column.name.clone()).collect();
+        let idle = self.columns.iter().enumerate().filter(is_idle);
+        let mut names: Vec<String> = idle.map(|(_, column)| column.name.clone()).collect();
         names.dedup();
         names
     }
@@ -143,6 +159,11 @@ impl Table {
 /// else their positions in alphabetical order, which are the same for all frames with these names.
 pub(super) fn kinds_of_names(table: &Table) -> Result<Vec<u16>, ReadError> {
     let names = table.names();
+    let is_decimal = |name: &&&str| name.contains('.') && name.parse::<f64>().is_ok();
+    if let Some(name) = names.iter().filter(|name| as_whole::<i64>(name).is_none()).find(is_decimal) {
+        let requirement = format!("a name or a whole number{}", table.advice);
+        return Err(ReadError::unexpected(table.line, "each kind", requirement, *name));
+    }
     let ordered = ordered(table);
     let kind = |name: &&str| match &ordered {
         Some(ordered) => ordered.binary_search(name).ok().and_then(|place| u16::try_from(place).ok()),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use granular_edmd::glam::DVec2;
 
 use crate::ReadError;
-use crate::column::{Column, Quantity};
+use crate::column::{Column, Quantity, plain};
 use crate::lines::{checked_box, finite, is_upright, number};
 use crate::table::Table;
 use granular_edmd::Gravity;
@@ -36,7 +36,7 @@ impl<'a> Keys<'a> {
             let (value, after) = word(after, char::is_whitespace).ok_or_else(|| {
                 ReadError::unexpected(line, format!("the value of `{name}`"), "within two quotes", after)
             })?;
-            pairs.push((name, value));
+            pairs.push((name, value.trim_end_matches(',')));
             rest = after.trim_start();
         }
         Ok(Self { pairs, line })
@@ -76,7 +76,13 @@ impl<'a> Keys<'a> {
         let properties = self.value(&["Properties"])?;
         let columns = columns(properties.unwrap_or("species:S:1:pos:R:3"), self.line)?;
         let mut table = Table::new(columns, self.line);
-        table.time = self.time()?;
+        match self.time() {
+            // The comment of a plain XYZ file may hold anything.
+            Err(ReadError::Unexpected { found, .. }) if properties.is_none() => {
+                table.notes.push(format!("the time {found:?} is no number, and ignored"));
+            }
+            time => table.time = time?,
+        }
         table.gravity = self.value(&["Gravity"])?.map(|value| self.gravity(value)).transpose()?;
         table.domain = self.domain(&mut table.notes)?;
         table.is_own = self.value(&["Domain"])?.is_some();
@@ -123,14 +129,14 @@ impl<'a> Keys<'a> {
         let (sides, tilts) = match self.numbers("Lattice", lattice, numbers)?[..] {
             [width, height] | [width, height, _] => ([width, height], [0.0; 4]),
             [width, a, b, height] => ([width, height], [a, 0.0, b, 0.0]),
-            [width, a, b, c, height, d, ..] => ([width, height], [a, b, c, d]),
+            [width, a, b, c, height, d, _, _, _] => ([width, height], [a, b, c, d]),
             _ => return Err(ReadError::unexpected(self.line, "Lattice", numbers, lattice)),
         };
         if !is_upright(sides, tilts) {
             return Err(ReadError::unexpected(self.line, "Lattice", "a rectangle", lattice));
         }
         let origin = self.value(&["Origin"])?.unwrap_or("0 0 0");
-        let [left, bottom, ..] = self.numbers("Origin", origin, "3 numbers")?[..] else {
+        let [left, bottom, _] = self.numbers("Origin", origin, "3 numbers")?[..] else {
             return Err(ReadError::unexpected(self.line, "Origin", "3 numbers", origin));
         };
         Ok(Domain::new(left, left + sides[0], bottom, bottom + sides[1]))
@@ -155,8 +161,11 @@ impl<'a> Keys<'a> {
     fn numbers(&self, what: &str, text: &str, requirement: &str) -> Result<Vec<f64>, ReadError> {
         let numbers: Vec<f64> =
             value_words(text).map(|text| number(what, text, self.line)).collect::<Result<_, _>>()?;
-        let is_some = !numbers.is_empty() && numbers.len() < 10;
-        is_some.then_some(numbers).ok_or_else(|| ReadError::unexpected(self.line, what, requirement, text))
+        // Only the top of a box may be infinite.
+        let is_finite = what == "Domain" || numbers.iter().all(|number| number.is_finite());
+        is_finite.then_some(numbers).ok_or_else(|| {
+            ReadError::unexpected(self.line, what, format!("{requirement}, all of them finite"), text)
+        })
     }
 }
 
@@ -211,6 +220,10 @@ fn columns(properties: &str, line: usize) -> Result<Vec<Column>, ReadError> {
         if columns.len() + count > MOST_COLUMNS {
             let most = format!("of at most {MOST_COLUMNS} columns");
             return Err(ReadError::unexpected(line, "`Properties`", most, properties));
+        }
+        let size = Quantity::named(&plain(name)).map_or(1, Quantity::size);
+        if size == 3 && count > 3 {
+            return Err(ReadError::unexpected(line, name, "of 2 or 3 columns", part.join(":")));
         }
         columns.extend(Column::of(name, count));
     }

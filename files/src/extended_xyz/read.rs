@@ -29,6 +29,9 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
 fn table(keys: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
     let keys = Keys::parse(keys, line)?;
     let mut table = keys.table()?;
+    if !keys.has_properties() {
+        table.advice = "; the columns of plain XYZ are a name, x, y and z, and `Properties=` names others";
+    }
     // A plain XYZ file may have more columns than the usual ones.
     let known = table.columns.len();
     let most = if keys.has_properties() { usize::MAX } else { known };

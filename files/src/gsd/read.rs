@@ -120,6 +120,7 @@ impl<R: Read + Seek> View<'_, R> {
         let (center, columns) = (self.center()?, self.columns(count)?);
         let names = columns.iter().map(|column| (column.name, column.size)).chain([("pos", 3)]);
         let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1);
+        table.binary_frame = Some(self.frame);
         self.space(center, &mut table)?;
         for row in 0..count {
             let values =

@@ -8,6 +8,8 @@ use granular_edmd::boundary::Domain;
 #[derive(Debug, Default)]
 pub(super) struct Header<'a> {
     pub(super) time: Option<f64>,
+    /// Whether the box is periodic in x and in y, if the title says so.
+    pub(super) periodic: Option<[bool; 2]>,
     atoms: Found<usize>,
     sides: Found<[f64; 2]>,
     ends: Found<[f64; 2]>,
@@ -29,10 +31,16 @@ impl<'a> Header<'a> {
     /// Reads the header, and returns it with the name of the first section, if the file has a section.
     pub(super) fn read(lines: &mut Lines<'a>) -> Result<(Self, Option<&'a str>), ReadError> {
         let (title, line) = lines.need("the title")?;
-        let time = title.split_once(", time = ").map(|(_, time)| finite("time", time, line)).transpose();
+        let (rest, periodic) = match title.rsplit_once(", periodic = ") {
+            Some((rest, sides)) if title.contains(super::WRITER) => {
+                (rest, Some(["x", "y"].map(|side| sides.contains(side))))
+            }
+            _ => (title, None),
+        };
+        let time = rest.split_once(", time = ").map(|(_, time)| finite("time", time, line)).transpose();
         // In a title that another program wrote, words may follow instead of a number.
         let time = if title.contains(super::WRITER) { time? } else { time.unwrap_or(None) };
-        let mut header = Self { time, ..Self::default() };
+        let mut header = Self { time, periodic, ..Self::default() };
         while let Some((text, line)) = lines.next_filled() {
             if text.starts_with(char::is_alphabetic) {
                 return Ok((header, Some(text)));

@@ -45,6 +45,8 @@ struct Sections<'a> {
     line: usize,
     atoms: Section<'a>,
     velocities: Option<Section<'a>>,
+    /// Masses by type, of styles in which an atom has no density.
+    masses: HashMap<&'a str, &'a str>,
     /// Numbers of types by their labels.
     labels: HashMap<&'a str, &'a str>,
     /// An item that only other styles have, with its line.
@@ -62,12 +64,12 @@ pub(crate) fn table(text: &Text) -> Result<Table, ReadError> {
         section = sections.read(&mut lines, name)?;
     }
     sections.check(count, lines.line())?;
-    let mut table = sections.table(domain)?;
+    let mut table = sections.table(domain, header.periodic)?;
     table.time = header.time;
     if !sections.columns.1 {
-        table.notes.push(
-            "the atoms are read as those of the style `sphere`, since the file does not name it".to_owned(),
-        );
+        table.notes.push(format!(
+            "the atoms are read as those of the style `sphere` ({SPHERE}), since the file does not name it"
+        ));
     }
     Ok(table)
 }
@@ -75,7 +77,7 @@ pub(crate) fn table(text: &Text) -> Result<Table, ReadError> {
 impl<'a> Sections<'a> {
     /// Reads a section, and returns the name of the next section, or `None` after the last one.
     fn read(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<Option<&'a str>, ReadError> {
-        let Self { atoms, labels, .. } = self;
+        let Self { atoms, labels, masses, .. } = self;
         match words(name)[..] {
             ["Atoms"] => {
                 (self.columns, self.line) = (columns(name, lines.line())?, lines.line());
@@ -96,7 +98,16 @@ impl<'a> Sections<'a> {
                 }
                 Ok(())
             }),
-            ["Masses" | "Bodies" | "Ellipsoids" | "Lines" | "Triangles" | "Bonds"] => {
+            ["Masses"] => {
+                self.other = self.other.or(Some((name, lines.line())));
+                read_section(lines, |row, _| {
+                    if let [number, mass] = words(row)[..] {
+                        masses.insert(number, mass);
+                    }
+                    Ok(())
+                })
+            }
+            ["Bodies" | "Ellipsoids" | "Lines" | "Triangles" | "Bonds"] => {
                 self.other = self.other.or(Some((name, lines.line())));
                 read_section(lines, |_, _| Ok(()))
             }
@@ -115,31 +126,46 @@ impl<'a> Sections<'a> {
         velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
     }
 
-    /// Returns the table of the disks. An image other than 0 makes the box periodic, since disks cross only
-    /// periodic sides.
-    fn table(&self, mut domain: Domain) -> Result<Table, ReadError> {
+    /// Returns the table of the disks. If the file does not say where the box is periodic, an image other than
+    /// 0 makes it periodic, since disks cross only periodic sides.
+    fn table(&self, mut domain: Domain, periodic: Option<[bool; 2]>) -> Result<Table, ReadError> {
         let mut names: Vec<&str> = self.columns.0.split_whitespace().collect();
         let (kind, size) = (names.iter().position(|&name| name == "type"), names.len());
         let has_images = self.atoms.rows.first().is_some_and(|(row, _)| words(row).len() == size + 3);
         names.extend(["ix", "iy", "iz"].iter().filter(|_| has_images));
-        let others = if self.velocities.is_some() { "vx vy vz wx wy wz" } else { "" };
-        let mut table = Table::of_lammps(names.iter().copied().chain(others.split_whitespace()), self.line);
+        let has_spins = names.contains(&"diameter");
+        let others = match &self.velocities {
+            Some(_) if has_spins => "vx vy vz wx wy wz",
+            Some(_) => "vx vy vz",
+            None => "",
+        };
+        let has_masses = !has_spins && !self.masses.is_empty();
+        let others = others.split_whitespace().chain(has_masses.then_some("mass"));
+        let mut sides = periodic.unwrap_or_default();
+        let mut table = Table::of_lammps(names.iter().copied().chain(others), self.line);
         for &(row, line) in &self.atoms.rows {
             let mut atom = words(row);
             if atom.len() != names.len() {
-                let columns = format!("of {size} or {} columns, as `sphere` has them", size + 3);
+                let columns = format!("of {size} or {} columns ({})", size + 3, self.columns.0);
                 return Err(ReadError::unexpected(line, "an atom", columns, atom.join(" ")));
             }
             if let Some(kind) = kind.and_then(|kind| atom.get_mut(kind)) {
                 *kind = self.labels.get(kind).copied().unwrap_or(kind);
             }
-            if let [right, up, _] = atom[size..] {
-                domain.periodic_sides |= right != "0";
-                domain.periodic_ends |= up != "0";
+            if let (None, [right, up, _]) = (periodic, &atom[size..]) {
+                sides[0] |= whole::<i32>("an image", right, line)? != 0;
+                sides[1] |= whole::<i32>("an image", up, line)? != 0;
             }
-            table.push(atom.into_iter().chain(self.velocity(id(row, line)?)?), line)?;
+            let mass =
+                kind.filter(|_| has_masses).map(|kind| self.masses.get(atom[kind]).copied().unwrap_or("1"));
+            table
+                .push(atom.into_iter().chain(self.velocity(id(row, line)?, has_spins)?).chain(mass), line)?;
         }
+        [domain.periodic_sides, domain.periodic_ends] = sides;
         table.domain = Some(domain);
+        if periodic.is_none() {
+            table.notes.push(guess(sides));
+        }
         // The names of kinds, from number 0 to the first missing name.
         let of_number: HashMap<&str, &str> =
             self.labels.iter().map(|(label, number)| (*number, *label)).collect();
@@ -149,15 +175,31 @@ impl<'a> Sections<'a> {
     }
 
     /// Returns the velocity and the angular velocity of an atom, if the file has velocities.
-    fn velocity(&self, id: u64) -> Result<Vec<&'a str>, ReadError> {
+    fn velocity(&self, id: u64, has_spins: bool) -> Result<Vec<&'a str>, ReadError> {
         let found = self.velocities.as_ref().and_then(|section| Some(section.rows[*section.of_id.get(&id)?]));
         let Some((row, line)) = found else { return Ok(Vec::new()) };
         let cells = words(row);
-        match cells.len() {
-            7 => Ok(cells[1..].to_vec()),
-            _ => Err(ReadError::unexpected(line, "a velocity", "of 7 columns", cells.join(" "))),
+        let size = if has_spins { 7 } else { 4 };
+        if cells.len() == size {
+            return Ok(cells[1..].to_vec());
         }
+        Err(ReadError::unexpected(line, "a velocity", format!("of {size} columns"), cells.join(" ")))
     }
+}
+
+/// Returns the note about a box whose file does not say where it is periodic.
+fn guess(sides: [bool; 2]) -> String {
+    let directions = match sides {
+        [true, true] => "x and y",
+        [true, false] => "x only",
+        [false, true] => "y only",
+        [false, false] => {
+            return "no side is periodic, since the file does not say which are, and all images are 0"
+                .to_owned();
+        }
+    };
+    let reason = "since the file does not say where it is, and images along it are not 0";
+    format!("the box is periodic in {directions}, {reason}")
 }
 
 /// Reads the rows of a section, and returns the name of the next section, or `None` after the last one.
@@ -197,6 +239,16 @@ fn id(row: &str, line: usize) -> Result<u64, ReadError> {
     whole("id", row.split_whitespace().next().unwrap_or_default(), line)
 }
 
+/// Columns of styles without radii.
+const STYLES: [(&str, &str); 6] = [
+    ("atomic", "id type x y z"),
+    ("charge", "id type q x y z"),
+    ("bond", "id molecule type x y z"),
+    ("angle", "id molecule type x y z"),
+    ("molecular", "id molecule type x y z"),
+    ("full", "id molecule type q x y z"),
+];
+
 /// Returns the columns of the style that the comment after `Atoms` names, and whether it names the style
 /// `sphere`. The comment may list the names of the columns after the style. LAMMPS writes the style `hybrid`
 /// without names.
@@ -209,6 +261,9 @@ fn columns(name: &str, line: usize) -> Result<(&str, bool), ReadError> {
         ["hybrid"] => Ok((HYBRID, false)),
         ["hybrid", "sphere"] => Ok((HYBRID, true)),
         ["sphere", ..] if words.contains(&"diameter") => Ok((style.trim_start_matches("sphere"), true)),
-        _ => Err(ReadError::unexpected(line, "the style of atoms", "`sphere`", style)),
+        _ => {
+            let known = STYLES.iter().find(|(name, _)| *name == style).map(|(_, columns)| (*columns, true));
+            known.ok_or_else(|| ReadError::unexpected(line, "the style of atoms", "`sphere`", style))
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::io::BufRead;
 use crate::ReadError;
 use crate::column::Quantity;
 use crate::found::Found;
-use crate::lines::{Input, Text, checked_box, finite, is_upright, whole};
+use crate::lines::{Input, Text, as_whole, checked_box, finite, is_upright, number, whole};
 use crate::table::Table;
 use granular_edmd::boundary::Domain;
 
@@ -36,7 +36,8 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
         match [name, rest] {
             ["TIMESTEP", _] => {
                 let (text, line) = input.need(&value)?;
-                step = Some(whole("the time step", &text, line)?);
+                let number = number("the time step", &text, line)?;
+                step = as_whole(&text).or(Some(number as u64).filter(|_| number >= 0.0));
             }
             ["NUMBER OF ATOMS", _] => {
                 let (text, line) = input.need(&value)?;
@@ -73,7 +74,7 @@ impl Head {
     /// Reads the disks.
     fn table(&self, names: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
         let mut table = Table::of_lammps(names.split_whitespace(), line);
-        table.time_column = TIME;
+        table.labels.extend(names.split_whitespace().position(|name| name == TIME));
         table.is_own = table.has(Quantity::Angle, 0);
         table.time = self.time.as_ref().map(|(time, line)| finite("the time", time, *line)).transpose()?;
         if let Some((words, bounds)) = &self.bounds {
@@ -111,6 +112,9 @@ fn domains(words: &str, bounds: &[(String, usize); 3]) -> Result<[Domain; 2], Re
     };
     let [x, y, z] = [read(&bounds[0])?, read(&bounds[1])?, read(&bounds[2])?];
     let line = bounds[1].1;
+    if words.contains("xy") && [&x, &y, &z].iter().any(|side| side.len() != 3) {
+        return Err(ReadError::unexpected(bounds[0].1, "the box", "three lines of 3 numbers", &bounds[0].0));
+    }
     let (sides, tilts) = match [&x[..], &y[..], &z[..]] {
         [&[left, right], &[bottom, top], _] => ([left, right, bottom, top], [0.0; 3]),
         [&[left, right, a], &[bottom, top, b], &[_, _, c]] => ([left, right, bottom, top], [a, b, c]),

@@ -17,6 +17,7 @@ mod corpus_xyz;
 mod edits;
 mod faults;
 mod gsd;
+mod meanings;
 mod recording;
 mod round_trips;
 #[path = "../../../tests/support/scratch.rs"]
