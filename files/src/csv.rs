@@ -68,10 +68,10 @@ pub(super) fn frames<'a>(text: &Text) -> Result<Vec<Found<'a>>, ReadError> {
     }
     groups.sort_by(|a, b| a.key.total_cmp(&b.key));
     let count = groups.len();
-    let found = groups.into_iter().map(|Group { key, mut table, .. }| {
+    let found = groups.into_iter().enumerate().map(|(number, Group { key, mut table, .. })| {
         if let (Ok(table), Some(&place)) = (&mut table, head.labels.first()) {
             let name = &head.columns[place].name;
-            table.notes.extend((count > 1).then(|| format!("the table has {count} frames by `{name}`")));
+            table.notes.extend((count > 1).then(|| format!("this is frame {number} of {count} by `{name}`")));
         }
         if let (Ok(table), true) = (&mut table, text.is_torn()) {
             table.notes.push(TORN.to_owned());
@@ -129,7 +129,7 @@ impl Head {
             }
             columns.extend(column);
         }
-        let labels = [FRAMES, TIMES].iter().flat_map(|names| {
+        let labels = [FRAMES, TIMES].iter().filter_map(|names| {
             columns.iter().position(|column| column.slot.is_none() && is_one(column, names))
         });
         let labels = labels.collect();

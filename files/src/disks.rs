@@ -10,7 +10,7 @@ use super::column::Quantity::{
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
 use super::column::SLOTS;
-use super::found::Settings;
+use super::found::{RADIUS_IGNORED, Settings};
 use super::table::Table;
 use super::{ReadError, State, table};
 use granular_edmd::boundary::Domain;
@@ -63,23 +63,8 @@ fn state_of(mut table: Table, settings: &Settings) -> Result<State, ReadError> {
     Ok(state)
 }
 
-/// Multiplies all lengths of a table by a factor.
+/// Multiplies the lengths of a table's box and gravity by a factor.
 fn scale(table: &mut Table, factor: f64) {
-    if factor == 1.0 {
-        return;
-    }
-    let per_area = if table.is_of_lammps { factor.powi(-3) } else { factor.powi(-2) };
-    for (quantity, factor) in [
-        (Position, factor),
-        (Unwrapped, factor),
-        (Velocity, factor),
-        (Momentum, factor),
-        (Radius, factor),
-        (Diameter, factor),
-        (Density, per_area),
-    ] {
-        table.scale(quantity, factor);
-    }
     for domain in [&mut table.domain, &mut table.extent].into_iter().flatten() {
         for edge in [&mut domain.left, &mut domain.right, &mut domain.bottom, &mut domain.top] {
             *edge *= factor;
@@ -89,6 +74,22 @@ fn scale(table: &mut Table, factor: f64) {
     table.rounding *= factor;
 }
 
+/// Returns the factor of a value if all lengths are multiplied by `length`.
+fn factor(slot: usize, length: f64, is_of_lammps: bool) -> f64 {
+    if length == 1.0 {
+        return 1.0;
+    }
+    let is_of = |quantity: Quantity| (0..3).any(|component| quantity.slot(component) == Some(slot));
+    if [Position, Unwrapped, Velocity, Momentum, Radius, Diameter].into_iter().any(is_of) {
+        return length;
+    }
+    match (is_of(Density), is_of_lammps) {
+        (true, true) => 1.0 / (length * length * length),
+        (true, false) => 1.0 / (length * length),
+        _ => 1.0,
+    }
+}
+
 /// Returns notes about settings that the file makes useless, and about masses that nobody gave.
 fn given(table: &Table, settings: &Settings, disks: &[Disk]) -> Vec<String> {
     let [has_radii, has_masses] =
@@ -96,10 +97,7 @@ fn given(table: &Table, settings: &Settings, disks: &[Disk]) -> Vec<String> {
     let radii = || disks.iter().map(Disk::radius);
     let (least, most) = (radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, f64::max));
     let notes = [
-        (
-            settings.radius.is_some() && has_radii && table.binary_frame.is_none(),
-            "the radius that was given is ignored, since the file has radii",
-        ),
+        (settings.radius.is_some() && has_radii && table.binary_frame.is_none(), RADIUS_IGNORED),
         (
             settings.density.is_some() && has_masses,
             "the density that was given is ignored, since the file has masses",
@@ -140,7 +138,7 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     let kinds = table::kinds_of_names(table)?;
     let mut disks = Vec::with_capacity(table.lines.len());
     for (values, line) in table.rows() {
-        let row = Row { slots: slots(table, values, line)?, table, settings, line };
+        let row = Row { slots: slots(table, values, settings.scale, line)?, table, settings, line };
         disks.push(row.disk(row.kind(&kinds)?)?);
     }
     Ok(disks)
@@ -150,9 +148,10 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
 type Slots = [Option<f64>; SLOTS];
 
 /// Returns the values of a row, indexed by slot, or an error if two columns contradict each other.
-fn slots(table: &Table, values: &[f64], line: usize) -> Result<Slots, ReadError> {
+fn slots(table: &Table, values: &[f64], length: f64, line: usize) -> Result<Slots, ReadError> {
     let mut slots: Slots = [None; SLOTS];
     for ((column, slot), &value) in table.known().zip(values) {
+        let value = value * factor(slot, length, table.is_of_lammps);
         let Some(other) = slots[slot].replace(value) else { continue };
         if slot == Name as usize && other != value {
             let names = [other, value].map(|index| table.names()[index as usize]);

@@ -49,6 +49,9 @@ impl<'a> Found<'a> {
 /// The note about a text without a last line break.
 pub(super) const TORN: &str = "the last line has no line break: its last number may be cut short";
 
+/// The note about a radius that was given for a file with radii.
+pub(super) const RADIUS_IGNORED: &str = "the radius that was given is ignored, since the file has radii";
+
 /// The function that reads a frame.
 pub(super) type Reading<'a> = Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>;
 

@@ -106,18 +106,6 @@ impl Table {
         place.into_iter().flat_map(|place| self.rows().map(move |(row, line)| (row[place], line)))
     }
 
-    /// Multiplies all values of a quantity by a factor.
-    pub(super) fn scale(&mut self, quantity: Quantity, factor: f64) {
-        let slots: Vec<usize> = self.known().map(|(_, slot)| slot).collect();
-        let is_of = |slot: usize| (0..3).any(|component| quantity.slot(component) == Some(slot));
-        for row in self.values.chunks_mut(slots.len().max(1)) {
-            row.iter_mut()
-                .zip(&slots)
-                .filter(|(_, slot)| is_of(**slot))
-                .for_each(|(value, _)| *value *= factor);
-        }
-    }
-
     /// Returns whether a component of a quantity is among the columns.
     pub(super) fn has(&self, quantity: Quantity, component: usize) -> bool {
         self.known().any(|(_, slot)| Some(slot) == quantity.slot(component))

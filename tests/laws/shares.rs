@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use granular_edmd::Violation;
 use granular_edmd::boundary::laws as boundary_laws;
 use granular_edmd::collision::laws as collision_laws;
+use granular_edmd::observable;
 use granular_edmd::scheduler::laws as scheduler_laws;
 use granular_edmd::wall::laws as wall_laws;
-use granular_edmd::observable;
 
 use crate::faults::blind::boundaries::Walled;
 use crate::faults::blind::fingerprints::{Pair, Parts};

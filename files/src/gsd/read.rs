@@ -10,7 +10,7 @@ use granular_edmd::glam::DVec2;
 use super::archive::{Archive, Chunk};
 use crate::ReadError;
 use crate::column::Column;
-use crate::found::{Found, Frames, Settings};
+use crate::found::{Found, Frames, RADIUS_IGNORED, Settings};
 use crate::lines::{as_whole, checked_box, is_upright};
 use crate::table::Table;
 use granular_edmd::Disk;
@@ -223,7 +223,8 @@ impl<R: Read + Seek> View<'_, R> {
             self.notes
                 .push("the box is left out, since the file does not say where it is periodic".to_owned());
         } else {
-            let domain = checked_box(own.unwrap_or(seen), 1)?;
+            let wrong = |error| ReadError::Frame { frame: self.frame, source: Box::new(error) };
+            let domain = checked_box(own.unwrap_or(seen), 1).map_err(wrong)?;
             let [sides, ends] = periodic.unwrap_or([1.0; 2]);
             let domain = if sides == 0.0 { domain } else { domain.with_periodic_sides() };
             table.domain = Some(if ends == 0.0 { domain } else { domain.with_periodic_ends() });
@@ -251,6 +252,9 @@ impl<R: Read + Seek> View<'_, R> {
         let default = self.settings.radius.map_or(1.0, |radius| 2.0 * radius);
         if shapes.is_empty() && given.is_none() && self.settings.radius.is_none() {
             self.notes.push("all diameters are 1, since the file has none".to_owned());
+        }
+        if self.settings.radius.is_some() && (given.is_some() || !shapes.is_empty()) {
+            self.notes.push(RADIUS_IGNORED.to_owned());
         }
         let of_disk = |row| {
             let kind = kinds.as_ref().map_or(0, |kinds| kinds.number(row, 0) as usize);

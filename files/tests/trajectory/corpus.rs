@@ -223,8 +223,6 @@ fn radii_and_masses_from_the_reader() {
                 "kinds 0 H; (1 2) r0.5 m3.141592653589793 | kinds are numbered by name: H 0 | ignored: 5 to 6",
             ),
             ("x y\n1 2\n", "(1 2) r0.5 m3.141592653589793"),
-            // A file knows better.
-            ("x,y,radius,mass\n1,2,0.25,1\n", "(1 2) r0.25"),
         ],
     );
     assert!(Reader::new().with_radius(0.0).is_err());

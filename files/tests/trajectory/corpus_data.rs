@@ -15,14 +15,21 @@ fn data(header: &str, sections: &str) -> String {
 const BOX: &str = "2 atoms\n0 8 xlo xhi\n0 6 ylo yhi\n-0.5 0.5 zlo zhi";
 const ATOMS: &str = "\n\n1 1 1 6 2 3 0\n2 2 0.5 6 5 3 0\n";
 
-/// Adds what is said where a file does not name the style of its atoms.
+/// Adds what is said where a file does not name the style of its atoms, or its periodic sides.
 fn guessed((text, said): (String, String)) -> (String, String) {
-    let guess = " | the atoms are read as those of the style `sphere`, since the file does not name it";
-    if said.starts_with("refused") || text.contains("sphere") {
+    let style = " | the atoms are read as those of the style `sphere` (id type diameter density x y z), since the file does \
+                 not name it";
+    let style = if text.contains("sphere") { "" } else { style };
+    if said.starts_with("refused") {
         return (text, said);
     }
+    let sides = if said.contains("8p ") {
+        "the box is periodic in x only, since the file does not say where it is, and images along it are not 0"
+    } else {
+        "no side is periodic, since the file does not say which are, and all images are 0"
+    };
     let notes = said.find(" | ").unwrap_or(said.len());
-    let said = format!("{}{guess}{}", &said[..notes], &said[notes..]);
+    let said = format!("{} | {sides}{style}{}", &said[..notes], &said[notes..]);
     (text, said)
 }
 
@@ -44,9 +51,13 @@ fn data_of_lammps_by_sections_and_styles() {
         (plain(" # sphere"), two.clone()),
         (plain("   #sphere  "), two.clone()),
         (plain(" # sphere id type diameter density x y z"), two.clone()),
-        (plain(" # I like comments"), style(8, "I like comments")),
+        (plain(" # line"), style(8, "line")),
         (plain(" # body"), style(8, "body")),
-        (plain(" # full"), style(8, "full")),
+        (
+            plain(" # full"),
+            "refused: line 8: the column `radius`, or one radius for all (with_radius, --radius), is missing"
+                .into(),
+        ),
         (plain(" # hybrid sphere charge"), style(8, "hybrid sphere charge")),
         (data(BOX, "Atoms # hybrid sphere\n\n1 1 2 3 0 1 6 0 0 0\n2 2 5 3 0 0.5 6 0 0 0\n"), two.clone()),
         (data(BOX, "Atoms # hybrid\n\n1 1 2 3 0 1 6\n2 2 5 3 0 0.5 6\n"), two.clone()),
@@ -57,7 +68,6 @@ fn data_of_lammps_by_sections_and_styles() {
         // Other styles have 7 columns, too.
         (with("2 bodies"), style(7, "one with `bodies`")),
         (with("2 ellipsoids"), style(7, "one with `ellipsoids`")),
-        (with("1 lines"), style(7, "one with `lines`")),
         (with("1 bonds"), style(7, "one with `bonds`")),
         (with("0 bodies\n0 bonds"), two.clone()),
         (after("Bodies\n\n1 1 12\n4\n"), style(13, "one with `Bodies`")),

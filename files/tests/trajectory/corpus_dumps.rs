@@ -47,7 +47,11 @@ fn dumps_of_lammps_and_liggghts() {
         ),
         ("id x y radius", "1 1 6 0.5", "refused: line 10: the disk at (1.0, 6.0) is outside the box"),
         ("id type x y radius", "1 0 1 2 0.5", "refused: line 10: type must be from 1 to 65536, but is \"0\""),
-        ("id type x y", "1 1 1 2", "refused: line 9: the column `radius` is missing"),
+        (
+            "id type x y",
+            "1 1 1 2",
+            "refused: line 9: the column `radius`, or one radius for all (with_radius, --radius), is missing",
+        ),
         (
             "id x y z radius",
             "1 1 2 0 0.5 / 2 3 2 0.5",

@@ -58,7 +58,7 @@ fn files_of_gsd() {
             ),
             (
                 "hoomd_3d.gsd",
-                "refused: line 2: pos must be the same for all disks, which lie in a plane, but is \"1\"",
+                "refused: frame 0, whose lines are its disks: line 2: pos must be the same for all disks, which lie in a plane, but is \"1\"",
             ),
             ("hoomd_plane_3d.gsd", &plain("")),
             ("hoomd_diameters_missing.gsd", &plain("")),
@@ -71,7 +71,7 @@ fn files_of_gsd() {
             ),
             (
                 "hoomd_overlap.gsd",
-                "refused: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
+                "refused: frame 0, whose lines are its disks: line 3: the disk overlaps the disk of line 2 by 0.447224, a share of 0.198766 of their \
                  distance at contact; it is the deepest of 1 such overlaps; set a tolerance or shrink the radii to accept them",
             ),
             ("hoomd_empty.gsd", &format!("-4..4p -3..3p; {none}")),
@@ -94,8 +94,23 @@ fn files_of_gsd() {
                     "0..8p 0..6p; t 2.5; g [0, -1]; (2 4) r0.5 #5; (4 3) r0.5 k1 #2; (5.5 2) r0.5 #9{none}"
                 ),
             ),
-            ("doubled_ids.gsd", "refused: line 3: the disk 5 is already in line 1"),
-            ("outside.gsd", "refused: line 1: the disk at (-2.0, 5.0) is outside the box"),
+        ],
+    );
+}
+
+#[test]
+fn files_of_gsd_that_are_refused() {
+    check_files(
+        &Reader::new(),
+        &[
+            (
+                "doubled_ids.gsd",
+                "refused: frame 0, whose lines are its disks: line 3: the disk 5 is already in line 1",
+            ),
+            (
+                "outside.gsd",
+                "refused: frame 1, whose lines are its disks: line 1: the disk at (-2.0, 5.0) is outside the box",
+            ),
             (
                 "short.gsd",
                 "refused: frame 0: the chunk `particles/diameter` has 2 rows of 1 numbers, not 3 of 1",
@@ -107,11 +122,11 @@ fn files_of_gsd() {
             ("no_positions.gsd", "refused: frame 0: the chunk `particles/position` is missing"),
             (
                 "bad_radius.gsd",
-                "refused: line 2 does not describe a disk: radius must be finite and positive, but is 0",
+                "refused: frame 0, whose lines are its disks: line 2 does not describe a disk: radius must be finite and positive, but is 0",
             ),
             (
                 "bad_mass.gsd",
-                "refused: line 2 does not describe a disk: mass must be finite and positive, but is -1",
+                "refused: frame 0, whose lines are its disks: line 2 does not describe a disk: mass must be finite and positive, but is -1",
             ),
             ("bad_time.gsd", "refused: frame 0: the chunk `log/time` must be finite, but is [NaN]"),
             (
@@ -121,10 +136,16 @@ fn files_of_gsd() {
             ("bad_center.gsd", "refused: frame 0: the chunk `log/center` must be finite, but is [NaN, 3.0]"),
             (
                 "bad_domain.gsd",
-                "refused: line 1: the box must be from smaller to larger numbers, but is \"0 to NaN and 0 to 6\"",
+                "refused: frame 0, whose lines are its disks: line 1: the box must be from smaller to larger numbers, but is \"0 to NaN and 0 to 6\"",
             ),
-            ("moving_out.gsd", "refused: line 2: velo must be 0, for disks move in a plane, but is \"1\""),
-            ("types.gsd", "refused: line 2: kind must be from 0 to 65535, but is \"70000\""),
+            (
+                "moving_out.gsd",
+                "refused: frame 0, whose lines are its disks: line 2: velo must be 0, for disks move in a plane, but is \"1\"",
+            ),
+            (
+                "types.gsd",
+                "refused: frame 0, whose lines are its disks: line 2: kind must be from 0 to 65535, but is \"70000\"",
+            ),
             (
                 "other_schema.gsd",
                 "refused: GSD must be version 1 or 2 with the schema \"hoomd\", not 2 with the schema \"other\"",
@@ -140,7 +161,9 @@ fn settings_for_files_of_gsd() {
     let plain = "-4..4p -3..3p; (-2 1) r0.25; (0 0) r0.25; (1.5 -1) r0.25";
     check_files(&reader, &[("hoomd_plane_3d.gsd", plain), ("hoomd_diameters_missing.gsd", plain)]);
     let reader = Reader::new().with_radius(0.1).unwrap().with_density(4.0).unwrap();
-    let file = "-4..4p -3..3p; kinds 0 A, 1 B; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2)".to_owned() + NAMED;
+    let file = "-4..4p -3..3p; kinds 0 A, 1 B; (-2 1) r0.5 v(1 0) i(1 0); (0 0) r0.35 m0.49 v(0 2) k1; (1.5 -1) r0.5 i(-1 2) \
+                | the radius that was given is ignored, since the file has radii | the density that was given is ignored, \
+                since the file has masses".to_owned() + NAMED;
     check_files(&reader.clone().with_frame(0), &[("hoomd_plain.gsd", &file)]);
     let told = " | masses follow from the density, since the file has none (all may be 1)";
     let dense = plain.replace("r0.25", "r0.1 m0.12566370614359174");

@@ -73,21 +73,14 @@ fn an_atomic_number_is_no_coordinate() {
 }
 
 #[test]
-fn a_table_holds_one_state() {
-    for name in ["time", "Time", "frame", "step", "timestep"] {
-        let text = format!("{name},x,y,radius\n0,1,2,0.5\n0,3,2,0.5\n1,5,2,0.5\n");
-        let told = format!(
-            "refused: line 4: {name} must be the same in all rows, since a table holds one state, but is \"1\""
-        );
-        check(&Reader::new(), &[(&text, &told)]);
-    }
+fn the_time_of_a_table_is_read() {
     check(
         &Reader::new(),
         &[
             ("time,x,y,radius\n2.5,1,2,0.5\n2.5,3,2,0.5\n", "t 2.5; (1 2) r0.5; (3 2) r0.5"),
             // Units may follow the names.
             ("x [sigma],y [sigma],radius [sigma],time [time]\n1,2,0.5,3\n", "t 3; (1 2) r0.5"),
-            ("step,x,y,radius\n7,1,2,0.5\n", "(1 2) r0.5 | ignored: step"),
+            ("step,x,y,radius\n7,1,2,0.5\n", "(1 2) r0.5"),
             ("time,x,y,radius\nnoon,1,2,0.5\n", "refused: line 2: time must be a number, but is \"noon\""),
         ],
     );

@@ -60,7 +60,11 @@ fn columns_of_extended_xyz() {
         // Numbers as Fortran and C write them.
         ["Properties=pos:R:3:radius:R:1", "1.0D+00 +2. 0 .5d0", "(1 2) r0.5"],
         // A plain XYZ has no radii.
-        ["a comment", "H 1 2 0", "refused: line 2: the column `radius` is missing"],
+        [
+            "a comment",
+            "H 1 2 0",
+            "refused: line 2: the column `radius`, or one radius for all (with_radius, --radius), is missing",
+        ],
     ]);
 }
 

@@ -28,7 +28,7 @@ fn assert_told<T: std::fmt::Debug>(read: Result<T, ReadError>, expected: &str) {
 fn faults_of_tables() {
     let cases = [
         ("", "the file ends after line 0, where a frame should follow"),
-        ("x,y\n", "line 1: the column `radius` is missing"),
+        ("x,y\n", "line 1: the column `radius`, or one radius for all (with_radius, --radius), is missing"),
         ("x,y,radius\n1,2,0.5\n\n1,zwei,0.5\n", "line 4: y must be a number, but is \"zwei\""),
         ("x,y,radius\n1,2\n", "line 2: the number of values must be 3, one for each column, but is \"2\""),
         (
@@ -74,9 +74,15 @@ fn faults_of_extended_xyz() {
         "line 1: the first line of a frame must be the number of its disks, but is \"two\"",
     );
     told("1\n", "the file ends after line 1, where the keys of a frame should follow");
-    told("1\nTime=1\n1 1 0 1\n", "line 2: the column `radius` is missing");
+    told(
+        "1\nTime=1\n1 1 0 1\n",
+        "line 2: the column `radius`, or one radius for all (with_radius, --radius), is missing",
+    );
     told("two\nTime=1\n1 1 0 1\n", &UNKNOWN.replace("weight,height", "two"));
-    told("1\nProperties=pos:R:3\n1 1 0\n", "line 2: the column `radius` is missing");
+    told(
+        "1\nProperties=pos:R:3\n1 1 0\n",
+        "line 2: the column `radius`, or one radius for all (with_radius, --radius), is missing",
+    );
     told(
         "0\nProperties=pos:R\n",
         "line 2: each of `Properties` must be a name, a type and a number, but is \"pos:R\"",
@@ -168,12 +174,12 @@ fn faults_of_data_of_lammps() {
         "line 6: the box must be a rectangle, but is \"1 0 0 xy xz yz\"",
     );
     told(
-        &format!("{head}Atoms # atomic\n\n1 1 0 0 0\n"),
-        "line 8: the style of atoms must be `sphere`, but is \"atomic\"",
+        &format!("{head}Atoms # line\n\n1 1 0 0 0\n"),
+        "line 8: the style of atoms must be `sphere`, but is \"line\"",
     );
     told(
         &format!("{one}Atoms\n\n1 1 0 0 0\n"),
-        "line 10: an atom must be of 7 or 10 columns, as `sphere` has them, but is \"1 1 0 0 0\"",
+        "line 10: an atom must be of 7 or 10 columns (id type diameter density x y z), but is \"1 1 0 0 0\"",
     );
     told(&format!("{one}Atoms\n\n1 0 1 1 2 2 0\n"), "line 10: type must be from 1 to 65536, but is \"0\"");
     told(

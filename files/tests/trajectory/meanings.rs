@@ -34,7 +34,7 @@ fn frames_of_tables_are_frames() {
         let read = |reader: Reader| shown(reader.read_from(text.as_bytes()));
         let last = read(Reader::new());
         assert!(last.contains("(1 3) r0.5; (3 3) r0.5"), "{name}: {last}");
-        assert!(last.contains(&format!(" | the table has 2 frames by `{name}`")), "{name}: {last}");
+        assert!(last.contains(" | this is frame 1 of 2 by `"), "{name}: {last}");
         let first = read(Reader::new().with_frame(0));
         assert!(first.contains("(1 2) r0.5; (3 2) r0.5"), "{name}: {first}");
         assert_eq!(read(Reader::new().with_step(1)), last, "{name}");
@@ -45,7 +45,7 @@ fn frames_of_tables_are_frames() {
         &with_radius().with_frame(0),
         &[(
             "particle,x,y,frame,time\n1,1,2,0,0.5\n1,1,3,1,1.5\n2,3,2,0,0.5\n2,3,3,1,1.5\n",
-            "t 0.5; (1 2) r0.5 #1; (3 2) r0.5 #2 | the table has 2 frames by `frame`",
+            "t 0.5; (1 2) r0.5 #1; (3 2) r0.5 #2 | this is frame 0 of 2 by `frame`",
         )],
     );
     check(
