@@ -365,7 +365,7 @@ fn compression_needs_its_feature() {
     fs::write(&path, [0x1f, 0x8b]).unwrap();
     assert!(
         report(&Reader::new().read(&path).unwrap_err())
-            .ends_with("it is compressed, which needs the feature `gzip` of granular-edmd")
+            .ends_with("it is compressed, which needs the feature `gzip` of granular-edmd-files")
     );
 }
 

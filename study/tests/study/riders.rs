@@ -188,7 +188,8 @@ impl Experiment for Silo {
     fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
         let path = start.folder.join(format!("frames-{}-{}.xyz", start.ramp, start.value));
         let times = SampleTimes::every(1.5)?;
-        Ok(Some(Box::new(Recorder::create_or_append(path, ExtendedXyz, times)?)))
+        let recorder = Recorder::create_or_append(path, ExtendedXyz, times).map_err(ExperimentError::new)?;
+        Ok(Some(Box::new(recorder)))
     }
     fn columns() -> Vec<Column<Self>> {
         vec![
