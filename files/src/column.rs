@@ -112,18 +112,19 @@ pub(super) fn plain(name: &str) -> String {
 
 /// Names of columns that number the frames of a table, and of columns of their times.
 pub(super) const FRAMES: &str = "frame frames framenumber frameid step timestep slice";
-pub(super) const TIMES: &str = "time t seconds positiont";
+pub(super) const TIMES: &str = "time times t seconds positiont";
 
-/// Units that may follow a name after `_`.
-const UNITS: [&str; 11] = ["um", "µm", "micron", "microns", "mm", "cm", "m", "px", "pixel", "pixels", "s"];
+/// Units that may follow a name after `_` or `/`.
+const UNITS: [&str; 10] = ["um", "µm", "micron", "microns", "mm", "cm", "m", "px", "pixel", "pixels"];
 
 /// Divides the heading of a column into its name and its unit, which is empty if there is none.
 pub(super) fn name_and_unit(heading: &str) -> (&str, &str) {
     let inner = heading.strip_suffix([']', ')', '}']).and_then(|text| text.rsplit_once(['[', '(', '{']));
-    let after = heading.rsplit_once('_').filter(|(_, unit)| UNITS.contains(unit));
-    match inner.or(heading.split_once('/')).or(after) {
-        // A number in brackets is a component.
-        Some((name, unit)) if !unit.chars().all(|letter| letter.is_ascii_digit()) => (name.trim(), unit),
+    let after = heading.rsplit_once(['_', '/']).filter(|(_, unit)| UNITS.contains(unit));
+    // A number or an axis in brackets is a component.
+    let is_component = |unit: &str| unit.parse::<usize>().is_ok() || ["x", "y", "z", "w"].contains(&unit);
+    match inner.or(after) {
+        Some((name, unit)) if !is_component(unit) => (name.trim(), unit),
         _ => (heading, ""),
     }
 }

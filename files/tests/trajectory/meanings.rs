@@ -138,6 +138,7 @@ fn headers_with_units_names_of_rows_and_comments() {
                  \"1,2,0.5\"",
             ),
             ("x,y,D\n1,2,1\n", "(1 2) r0.5 | `D` is read as the diameter"),
+            ("position[x],position[y],radius,d/dt\n1,2,0.5,7\n", "(1 2) r0.5 | ignored: d/dt"),
             ("x,y,radius,theta\n1,2,0.5,30\n", "(1 2) r0.5 | ignored: theta"),
         ],
     );
