@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use super::column::{Column, FRAMES, TIMES, name_and_unit, plain};
 use super::found::{Found, Settings, TORN};
-use super::lines::{Lines, Text, as_whole, finite, lossy, number};
+use super::lines::{Lines, Text, as_whole, finite, lossy};
 use super::shown::numbered;
 use super::table::Table;
 use super::{ReadError, State};
@@ -14,81 +14,71 @@ use super::{ReadError, State};
 const UNITS: [&str; 10] =
     ["", "1", "rad", "length", "sigma", "time", "mass", "length/time", "1/time", "rad/time"];
 
-/// A frame of a table: its number or time, its disks or the first error in them, and the cells of its labels.
-struct Group<'a> {
-    key: f64,
-    table: Result<Table, ReadError>,
-    labels: Vec<&'a str>,
-}
-
-/// Reads a table whose first line names the columns. A column that numbers frames, or holds times, divides
-/// the rows into frames.
+/// Reads a table whose first line names the columns. A column that numbers frames, or else one of times,
+/// divides the rows into frames.
 ///
 /// Commas, semicolons, tabs or spaces separate the cells; the line of names shows which. A line that begins
 /// with `#` is a comment, unless it holds the names.
 pub(super) fn frames<'a>(text: &Text) -> Result<Vec<Found<'a>>, ReadError> {
     let mut lines = text.lines()?;
-    let head = Head::read(&mut lines)?;
-    let rows = lines.map(|(text, line)| (text.trim(), line));
-    let rows = rows.filter(|(text, _)| !text.is_empty() && !text.starts_with('#'));
-    let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+    let mut head = Head::read(&mut lines)?;
+    let [frame, time] = [FRAMES, TIMES].map(|names| head.place_of(names));
+    let divider = head.divider;
+    let rows = lines.map(|(row, line)| (row.trim(), line));
+    let mut rows = rows.filter(|(row, _)| !row.is_empty() && !row.starts_with('#')).peekable();
+    let is_word = |cell: &str| cell.parse::<f64>().is_err();
+    let has_words =
+        |row| cells(row, divider).all(is_word) && cells(row, divider).count() == head.columns.len();
     // TrackMate writes more names and units below the names.
-    let mut rows = rows.skip_while(|(text, _)| {
-        let count = cells(text, head.divider).count();
-        count == head.columns.len() && !cells(text, head.divider).any(is_number) && count > 1
-    });
-    let mut groups: Vec<Group<'_>> = Vec::new();
-    let mut of_key: HashMap<u64, usize> = HashMap::new();
-    rows.try_for_each(|(text, line)| -> Result<(), ReadError> {
-        let cells_of = || cells(text, head.divider);
-        let labels: Vec<&str> = head.labels.iter().filter_map(|&place| cells_of().nth(place)).collect();
-        let key = match (labels.first(), head.labels.first()) {
-            (Some(cell), Some(&place)) => finite(&head.columns[place].name, cell, line)?,
-            _ => 0.0,
-        };
-        let index = *of_key.entry((key + 0.0).to_bits()).or_insert_with(|| {
-            groups.push(Group { key, table: Ok(head.table()), labels: labels.clone() });
-            groups.len() - 1
-        });
-        let Group { table, labels: first, .. } = &mut groups[index];
-        let pushed = match table {
-            Ok(table) if labels.len() == head.labels.len() => {
-                head.push(table, cells_of(), [first.as_slice(), labels.as_slice()], line)
-            }
-            Ok(table) => return table.push(cells_of(), line),
-            Err(_) => Ok(()),
-        };
-        if let Err(error) = pushed {
-            *table = Err(error);
-        }
-        Ok(())
-    })?;
-    if groups.is_empty() {
-        groups.push(Group { key: 0.0, table: Ok(head.table()), labels: Vec::new() });
+    let skipped = std::iter::from_fn(|| rows.next_if(|(row, _)| has_words(row))).count();
+    if skipped > 0 {
+        head.notes.push(format!("lines without numbers below the names, skipped: {skipped}"));
     }
-    groups.sort_by(|a, b| a.key.total_cmp(&b.key));
-    let count = groups.len();
-    let found = groups.into_iter().enumerate().map(|(number, Group { key, mut table, .. })| {
-        if let (Ok(table), Some(&place)) = (&mut table, head.labels.first()) {
-            let name = &head.columns[place].name;
-            table.notes.extend((count > 1).then(|| format!("this is frame {number} of {count} by `{name}`")));
+    let mut groups: Vec<(f64, Table)> = Vec::new();
+    let mut of_key: HashMap<u64, usize> = HashMap::new();
+    for (row, line) in rows {
+        let number = |place: Option<usize>| {
+            let found = place.and_then(|place| Some((place, cells(row, divider).nth(place)?)));
+            found.map(|(place, cell)| finite(&head.columns[place].name, cell, line)).transpose()
+        };
+        let now = number(time)?;
+        let key = number(frame)?.or(now).unwrap_or_default() + 0.0;
+        let index = *of_key.entry(key.to_bits()).or_insert(groups.len());
+        if index == groups.len() {
+            groups.push((key, head.table(now)));
         }
-        if let (Ok(table), true) = (&mut table, text.is_torn()) {
+        let table = &mut groups[index].1;
+        table.push(cells(row, divider), line)?;
+        if let (Some(place), Some(now)) = (time.filter(|_| table.time != now), now) {
+            let requirement = "the same in all rows of a frame";
+            return Err(ReadError::unexpected(line, &head.columns[place].name, requirement, now.to_string()));
+        }
+    }
+    if groups.is_empty() {
+        groups.push((0.0, head.table(None)));
+    }
+    groups.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = groups.len();
+    let found = groups.into_iter().enumerate().map(|(number, (key, mut table))| {
+        table.labels.extend([frame, time].into_iter().flatten());
+        if let (Some(place), true) = (frame.or(time), count > 1) {
+            let name = &head.columns[place].name;
+            table.notes.push(format!("this is frame {number} of {count} by `{name}`"));
+        }
+        if text.is_torn() {
             table.notes.push(TORN.to_owned());
         }
-        Found { step: as_whole(&key.to_string()), read: Box::new(|_: &Settings| table) }
+        Found { step: as_whole(&key.to_string()), read: Box::new(|_: &Settings| Ok(table)) }
     });
     Ok(found.collect())
 }
 
-/// The names of the columns.
+/// The names of the columns, and notes about them.
 struct Head {
     columns: Vec<Column>,
     line: usize,
     divider: Option<char>,
-    /// Indices of the columns that number the frames or hold their times; the first divides the rows.
-    labels: Vec<usize>,
-    foreign: Vec<String>,
+    notes: Vec<String>,
 }
 
 impl Head {
@@ -118,22 +108,27 @@ impl Head {
 
     fn of(text: &str, line: usize) -> Self {
         let divider = [',', ';', '\t'].into_iter().find(|&divider| text.contains(divider));
-        let (mut columns, mut foreign): (Vec<Column>, Vec<String>) = (Vec::new(), Vec::new());
+        let (mut columns, mut foreign): (Vec<Column>, Vec<&str>) = (Vec::new(), Vec::new());
         for heading in cells(text, divider) {
             let (name, unit) = name_and_unit(heading);
             let column = Column::of(name, 1).next();
             let is_used =
                 column.as_ref().is_some_and(|column| column.slot.is_some() || is_one(column, TIMES));
             if is_used && !UNITS.contains(&unit) {
-                foreign.push(heading.to_owned());
+                foreign.push(heading);
             }
             columns.extend(column);
         }
-        let labels = [FRAMES, TIMES].iter().filter_map(|names| {
-            columns.iter().position(|column| column.slot.is_none() && is_one(column, names))
-        });
-        let labels = labels.collect();
-        Self { columns, line, divider, labels, foreign }
+        let mut notes = Vec::new();
+        if !foreign.is_empty() {
+            notes.push(format!("numbers are read without conversion of units: {}", foreign.join(", ")));
+        }
+        Self { columns, line, divider, notes }
+    }
+
+    /// Returns the place of the first column that has one of these names, and no other meaning.
+    fn place_of(&self, names: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.slot.is_none() && is_one(column, names))
     }
 
     /// Adds a column for names of rows, which has no name itself: as R, ImageJ and pandas write it.
@@ -143,46 +138,16 @@ impl Head {
         let has_more = cells(row, self.divider).count() == self.columns.len() + 1;
         if has_more && (has_bare_cell || is_indented) {
             self.columns.insert(0, Column { name: "(names of rows)".to_owned(), slot: None });
-            self.labels.iter_mut().for_each(|place| *place += 1);
         }
         self
     }
 
     /// Returns a table without rows.
-    fn table(&self) -> Table {
+    fn table(&self, time: Option<f64>) -> Table {
         let mut table = Table::new(self.columns.iter().cloned(), self.line);
-        table.labels.clone_from(&self.labels);
-        if !self.foreign.is_empty() {
-            let names = self.foreign.join(", ");
-            table.notes.push(format!("numbers are read without conversion of units: {names}"));
-        }
+        table.time = time;
+        table.notes.extend_from_slice(&self.notes);
         table
-    }
-
-    /// Adds a row, whose labels must be those of the first row of the frame.
-    fn push<'a>(
-        &self,
-        table: &mut Table,
-        cells: impl Iterator<Item = &'a str>,
-        [first, labels]: [&[&str]; 2],
-        line: usize,
-    ) -> Result<(), ReadError> {
-        table.push(cells, line)?;
-        for ((&place, first), cell) in self.labels.iter().zip(first).zip(labels) {
-            let column = &self.columns[place];
-            if cell != first && number(&column.name, cell, line)? != number(&column.name, first, line)? {
-                return Err(ReadError::unexpected(
-                    line,
-                    &column.name,
-                    "the same in all rows of a frame",
-                    *cell,
-                ));
-            }
-            if is_one(column, TIMES) {
-                table.time = Some(finite(&column.name, cell, line)?);
-            }
-        }
-        Ok(())
     }
 }
 

@@ -83,7 +83,7 @@ fn tables_of_programs_that_track_particles() {
                 "LABEL,ID,TRACK_ID,POSITION_X,POSITION_Y,POSITION_Z,POSITION_T,FRAME,RADIUS\n\
                  Label,Spot ID,Track ID,X,Y,Z,T,Frame,Radius\nLabel,Spot ID,Track ID,X,Y,Z,T,Frame,R\n\
                  ,,,(micron),(micron),(micron),(sec),,(micron)\nID7,7,0,1,2,0,0,0,0.25\n",
-                "t 0; (1 2) r0.25 #7 | the radius that was given is ignored, since the file has radii | ignored: LABEL, TRACK_ID",
+                "t 0; (1 2) r0.25 #7 | lines without numbers below the names, skipped: 3 | the radius that was given is ignored, since the file has radii | ignored: LABEL, TRACK_ID",
             ),
             // scikit-image's `regionprops_table`.
             (
