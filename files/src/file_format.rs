@@ -9,7 +9,7 @@ use super::{ExtendedXyz, FrameFormat, LammpsDump, RecordError, gsd, one_file, vt
 ///
 /// | value | file | opened by |
 /// |---|---|---|
-/// | a [`FrameFormat`], such as [`ExtendedXyz`] or [`LammpsDump`] | one file, frame after frame | most programs |
+/// | a [`FrameFormat`] ([`ExtendedXyz`], [`LammpsDump`]) | one file, frame after frame | most programs |
 /// | [`Gsd`] | one binary file with an index | freud, OVITO, `gsd` |
 /// | [`Vtk`] | two files for each frame, and one for the times | ParaView, VTK |
 /// | [`ByEnding`] | one of these, by the name of the file | |
@@ -21,8 +21,11 @@ use super::{ExtendedXyz, FrameFormat, LammpsDump, RecordError, gsd, one_file, vt
     note = "take `ByEnding`, `ExtendedXyz`, `LammpsDump`, `Gsd`, `Vtk`, or implement `FrameFormat` for a custom format"
 )]
 pub trait Format {
-    /// Begins a file, or continues it after its last complete frame.
-    #[doc(hidden)]
+    /// Begins a file, or continues it after its last complete frame. Only a recorder calls it.
+    ///
+    /// # Errors
+    /// The errors of [`Recorder::create`](super::Recorder::create) and
+    /// [`Recorder::append`](super::Recorder::append).
     fn open(self, path: &Path, start: Start) -> Result<Recording, RecordError>;
 }
 
@@ -80,7 +83,9 @@ impl Format for ByEnding {
 /// | `log/time`, `gravity` (x, y), `center` (x, y) | double precision; positions relative to the center |
 /// | `log/domain` | left, right, bottom and top, which may be infinite |
 /// | `log/periodic` | 1 for each direction that is periodic, else 0 |
-/// | `log/walls/index`, `x`, `y`, `phase` | [moving walls](granular_edmd::observable::Snapshot::moving_walls) |
+/// | `log/walls/index`, `x`, `y`, `phase` | [moving walls][moving] |
+///
+/// [moving]: granular_edmd::observable::Snapshot::moving_walls
 ///
 /// The format knows only boxes that are periodic in both directions, and so do its readers. Use
 /// `log/periodic` to take walls into account; [`recipes`](crate::guide::recipes) has the lines for freud.

@@ -1,6 +1,7 @@
 //! Files of [`granular_edmd`]: trajectories written for other programs, and disks read from their files.
 //!
-//! A [`Recorder`] is an [`Observer`](granular_edmd::observable::Observer) that writes a frame to a file at set times.
+//! A [`Recorder`] is an [`Observer`](granular_edmd::observable::Observer) that writes a frame to a file at
+//! set times.
 //! Its [`Format`] defines the form of a frame. Numbers are written so that they read back to the same bits.
 //!
 //! | format | file | opened by |

@@ -15,9 +15,9 @@ use super::{Format, Frame, RecordError};
 /// the file system is full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends
 /// with its last whole frame. The next run with the same recorder records the missed frame.
 ///
-/// [`OfKind`](granular_edmd::observable::OfKind) around a recorder records only the disks of one kind. Files hold the
-/// box and the moving walls ([`Snapshot::moving_walls`]). Files for ParaView also hold the other walls
-/// ([`Snapshot::wall_lines`]).
+/// [`OfKind`](granular_edmd::observable::OfKind) around a recorder records only the disks of one kind. Files
+/// hold the box and the moving walls ([`Snapshot::moving_walls`]). Files for ParaView also hold the other
+/// walls ([`Snapshot::wall_lines`]).
 ///
 /// # Continuing a file
 /// If the process was killed, resume the run from its checkpoint, and [`append`](Self::append) to its file.

@@ -8,8 +8,8 @@ use granular_edmd::{Disk, Gravity};
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
 /// A [`Reader`](super::Reader) reads it from a file. No two disks overlap by more than the reader's
-/// tolerance, and no center is outside the box. [`build`](granular_edmd::simulation::SimulationBuilder::build) checks
-/// the disks against the walls.
+/// tolerance, and no center is outside the box.
+/// [`build`](granular_edmd::simulation::SimulationBuilder::build) checks the disks against the walls.
 ///
 /// ```
 /// use granular_edmd::prelude::*;

@@ -126,8 +126,8 @@ impl<'a> Sections<'a> {
         velocities.map_or(Ok(()), |section| check_number("velocity", section.rows.len(), count, line))
     }
 
-    /// Returns the table of the disks. If the file does not say where the box is periodic, an image other than
-    /// 0 makes it periodic, since disks cross only periodic sides.
+    /// Returns the table of the disks. If the file does not say where the box is periodic, an image other
+    /// than 0 makes it periodic, since disks cross only periodic sides.
     fn table(&self, mut domain: Domain, periodic: Option<[bool; 2]>) -> Result<Table, ReadError> {
         let mut names: Vec<&str> = self.columns.0.split_whitespace().collect();
         let (kind, size) = (names.iter().position(|&name| name == "type"), names.len());

@@ -334,7 +334,7 @@ fn records_until_there_is_no_room() {
     assert!(frames > 5 && run.time() == 0.5 * (frames + 1) as f64);
 }
 
-/// A file that may not grow beyond 64 kB keeps its whole frames, and once there is room, the next one follows.
+/// A file that may not grow beyond 64 kB keeps its whole frames. Once there is room, the next one follows.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_keeps_the_whole_frames() {

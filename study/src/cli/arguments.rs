@@ -166,7 +166,8 @@ pub(super) struct Convert {
     /// Frame to read, counted from 0, or from the end if negative; `last` for −1.
     #[arg(long, default_value = "last", allow_negative_numbers = true, value_parser = frame)]
     pub(super) frame: isize,
-    /// Step of the frame to read, instead of its number: dumps, GSD files and tables number their frames by steps.
+    /// Step of the frame to read, instead of its number: dumps, GSD files and tables number their frames by
+    /// steps.
     #[arg(long, conflicts_with = "frame")]
     pub(super) step: Option<u64>,
     /// Largest overlap that is accepted, relative to the sum of the radii.
