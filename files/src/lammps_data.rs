@@ -21,8 +21,8 @@ impl State {
     /// The file has the box, the diameters, densities, positions, images, velocities and angular velocities.
     /// The type of an atom is the number of its [`Kind`](granular_edmd::Kind) plus 1. LAMMPS interprets the
     /// density as the density of a sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a
-    /// state without a box gets one around the disks. The title names the time and the periodic directions, which
-    /// LAMMPS ignores. The format has no place for angles, inertia factors and walls.
+    /// state without a box gets one around the disks. The title names the time and the periodic directions,
+    /// which LAMMPS ignores. The format has no place for angles, inertia factors and walls.
     ///
     /// A [`Reader`](super::Reader) reads the file back to the same bits, except that a mass may differ by a
     /// rounding error.
