@@ -11,9 +11,9 @@ import MarkdownIt from 'markdown-it';
 
 const [out, documentation, page] = process.argv.slice(2);
 const COPIED = new Set(['.png', '.svg', '.csv', '.txt', '.json', '.xz', '.ipynb', '.html', '.css']);
-const API = 'api/granular_edmd', GUIDE = /^(study\/)?docs\/guide\/(\w+)\.md$/;
-const DOCS_RS = /href="https:\/\/docs\.rs\/granular-edmd(?:-study)?\/latest\/([^"]*)"/g;
-const CRATE_DOC = /^(granular_edmd(_study)?|src|static\.files|search\.(index|desc)|(trait|type)\.impl)$|\.(html|js)$/;
+const API = 'api/granular_edmd', GUIDE = /^(?:(files|study)\/)?docs\/guide\/(\w+)\.md$/;
+const DOCS_RS = /href="https:\/\/docs\.rs\/granular-edmd(?:-files|-study)?\/latest\/([^"]*)"/g;
+const CRATE_DOC = /^(granular_edmd(_files|_study)?|src|static\.files|search\.(index|desc)|(trait|type)\.impl)$|\.(html|js)$/;
 const DOCS = {
   physics: 'Every equation, its source, and the notation.', 'physics-kinetic': 'The closed form of the mean energy loss ⟨dE⟩.',
   reproduction: 'The figures and the table of the paper, beside those of this library.', validation: 'How the results were checked, and what that is worth.',
@@ -93,7 +93,7 @@ function placed(path) {
 }
 function placeOf(path) {
   const guide = GUIDE.exec(path);
-  if (guide) return `${API}${guide[1] ? '_study' : ''}/guide/${guide[2] === 'index' ? '' : `${guide[2]}/`}index.html`;
+  if (guide) return `${API}${guide[1] ? `_${guide[1]}` : ''}/guide/${guide[2] === 'index' ? '' : `${guide[2]}/`}index.html`;
   if (path.endsWith('.md')) return path.replace(/README\.md$/, 'index.html').replace(/\.md$/, '.html');
   if (statSync(path).isDirectory()) return posix.join(path, 'index.html');
   return COPIED.has(extname(path)) ? path : `${path}.html`;

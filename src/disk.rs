@@ -107,6 +107,14 @@ impl Disk {
         Ok(Self { angular_velocity: bounded("angular velocity", angular_velocity)?, ..self })
     }
 
+    /// Returns the same disk with this radius. Its mass does not change.
+    ///
+    /// # Errors
+    /// If the radius is not in `[1e-30, 1e30]`.
+    pub fn with_radius(self, radius: f64) -> Result<Self, ParameterError> {
+        Ok(Self { radius: scale("radius", radius)?, ..self })
+    }
+
     /// Returns the same disk with this mass.
     ///
     /// # Errors
@@ -243,11 +251,6 @@ impl Disk {
         let (position, velocity) = (DVec2::ZERO, DVec2::ZERO);
         let (angle, angular_velocity, image, id) = (0.0, 0.0, [0; 2], 0);
         Self { position, velocity, angle, angular_velocity, radius, mass, inertia_factor, kind, image, id }
-    }
-
-    /// Returns the same disk with this radius.
-    pub(crate) fn with_radius(self, radius: f64) -> Result<Self, ParameterError> {
-        Ok(Self { radius: scale("radius", radius)?, ..self })
     }
 
     /// Returns the disk with the id that the engine gave it.

@@ -19,14 +19,12 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
-mod growing;
 mod locked;
 #[cfg(feature = "serde")]
 mod seal;
 #[cfg(feature = "serde")]
 mod whole;
 
-pub(crate) use growing::{Growing, Medium};
 pub use locked::Locked;
 #[cfg(feature = "serde")]
 pub use seal::{Damage, Seal};

@@ -8,8 +8,6 @@
 //! [`watch_it`]: self::watch_it
 //! [`believe_it`]: self::believe_it
 //! [`draw_it`]: self::draw_it
-//! [`write_files`]: self::write_files
-//! [`recipes`]: self::recipes
 //! [`bring_your_own`]: self::bring_your_own
 //! [`when_it_stalls`]: self::when_it_stalls
 //! [`when_it_is_slow`]: self::when_it_is_slow
@@ -22,6 +20,8 @@
 //! [`performance`]: self::performance
 //! [`architecture`]: self::architecture
 //! [`stability`]: self::stability
+#![doc = "[`write_files`]: https://docs.rs/granular-edmd-files/latest/granular_edmd_files/guide/write_files/index.html"]
+#![doc = "[`recipes`]: https://docs.rs/granular-edmd-files/latest/granular_edmd_files/guide/recipes/index.html"]
 #![doc = "[`sweep_it`]: https://docs.rs/granular-edmd-study/latest/granular_edmd_study/guide/sweep_it/index.html"]
 #![doc = "[`exercise_rolls`]: https://docs.rs/granular-edmd-study/latest/granular_edmd_study/guide/exercise_rolls/index.html"]
 //! [`replay`]: crate::replay
@@ -59,14 +59,6 @@ pub mod believe_it {}
 #[doc(alias("plot", "visualization", "Python"))]
 #[doc = include_str!("../docs/guide/draw_it.md")]
 pub mod draw_it {}
-
-#[doc(alias("trajectory", "restart", "checkpoint", "OVITO", "ParaView", "LAMMPS"))]
-#[doc = include_str!("../docs/guide/write_files.md")]
-pub mod write_files {}
-
-#[doc(alias("convert", "ASE", "pandas", "polars", "MDAnalysis", "freud", "HOOMD", "import", "export"))]
-#[doc = include_str!("../docs/guide/recipes.md")]
-pub mod recipes {}
 
 #[doc(alias("extension", "plugin", "custom"))]
 #[doc = include_str!("../docs/guide/bring_your_own.md")]

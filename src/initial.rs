@@ -8,7 +8,7 @@
 //! | [`random`], [`placed_at_random`] | equal ones, any | random positions, up to an area fraction of 0.5 |
 //! | [`packed_at_random`] | any | random positions, up to an area fraction of 0.8 |
 //!
-//! A [`Reader`](crate::trajectory::Reader) reads disks from files of other programs.
+//! A [`Reader`](https://docs.rs/granular-edmd-files) of the package `granular-edmd-files` reads disks from files of other programs.
 //!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
 //! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks

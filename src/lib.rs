@@ -44,7 +44,8 @@
 //!
 //! A study is many runs over the values of parameters, on all cores and in many processes. The package
 //! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, and so does
-//! its command `granular-edmd`.
+//! its command `granular-edmd`. The package [`granular-edmd-files`](https://docs.rs/granular-edmd-files) writes
+//! trajectories for other programs, and reads disks from their files.
 //!
 //! # Map
 //! | module | contents |
@@ -54,7 +55,6 @@
 //! | [`initial`] | initial states: lattices, random positions, dense packings, radii |
 //! | [`replay`] | runs played back: any collision, and where two runs differ |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
-//! | [`trajectory`] | files of disks, frame by frame, and readers |
 //! | [`observable`] | measures, and the times at which they are taken |
 //! | [`scheduler`] | the order of events |
 //! | [`boundary`], [`wall`] | the walls around the disks, and their motion |
@@ -68,7 +68,6 @@
 //! |---|---|
 //! | `serde` | parameters and checkpoints can be written and read; reading repeats all checks |
 //! | `rayon` | Monte Carlo on all cores, with the same bits as on one |
-//! | `gzip` | trajectories in files that end in `.gz` |
 //! | `proptest` | random contacts and disks for property tests of custom rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -106,7 +105,6 @@ pub mod speed;
 pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;
-pub mod trajectory;
 mod violation;
 pub mod wall;
 

@@ -158,7 +158,6 @@ pub use collision_histograms::CollisionHistograms;
 pub use contract::Observable;
 #[doc(alias("callback", "hook", "fix"))]
 pub use contract::Observer;
-pub(crate) use contract::verdict;
 pub use contract::{ObserverError, Verdict};
 #[doc(alias("counter", "flux", "throughput"))]
 pub use crossings::Crossings;

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 /// The error of a part that breaks a law, one of the sentences in the contract of its trait.
 ///
-/// All checks of contracts return it, from `collision::laws` to `trajectory::laws`. The sentence about the
+/// All checks of contracts return it, from `collision::laws` to `observable::laws`. The sentence about the
 /// fault holds the numbers that reproduce it.
 ///
 /// ```

@@ -17,7 +17,7 @@ use granular_edmd::collision::LeastRebound;
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Inlet;
-use granular_edmd::trajectory::{Gsd, Reader, Recorder};
+use granular_edmd_files::{Gsd, Reader, Recorder};
 
 struct Counting;
 

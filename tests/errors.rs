@@ -9,8 +9,8 @@ use granular_edmd::boundary::{Container, VesselError, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::simulation::{BoundaryFault, Checkpoint};
-use granular_edmd::trajectory::{ExtendedXyz, Reader, Recorder};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
+use granular_edmd_files::{ExtendedXyz, Reader, Recorder};
 use support::report::{messages, report};
 
 fn tells_each_thing_once(error: &(dyn Error + 'static)) {

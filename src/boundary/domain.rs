@@ -100,7 +100,7 @@ impl Domain {
 
     /// Returns whether a point is in the rectangle, or outside by no more than `slack`.
     #[inline]
-    pub(crate) fn contains(&self, place: DVec2, slack: f64) -> bool {
+    pub fn contains(&self, place: DVec2, slack: f64) -> bool {
         place.x >= self.left - slack
             && place.x <= self.right + slack
             && place.y >= self.bottom - slack
@@ -121,7 +121,7 @@ impl Domain {
 
     /// Returns a point moved into the rectangle by whole periods, in the directions in which the rectangle is
     /// periodic.
-    pub(crate) fn wrapped(&self, place: DVec2) -> DVec2 {
+    pub fn wrapped(&self, place: DVec2) -> DVec2 {
         let mut place = place;
         if self.periodic_sides {
             place.x = self.left + (place.x - self.left).rem_euclid(self.width());

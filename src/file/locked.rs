@@ -26,18 +26,6 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Locks a file, unless another owner holds the lock. The file is not locked where the system has no
-    /// locks, and outside Unix, where a lock could keep other programs from reading it.
-    ///
-    /// # Errors
-    /// [`WouldBlock`](io::ErrorKind::WouldBlock) if another owner holds the lock.
-    pub fn take_if_possible(file: File) -> io::Result<Self> {
-        match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
-            Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
-            Ok(()) | Err(TryLockError::Error(_)) => Ok(Self(file)),
-        }
-    }
-
     /// Returns the file.
     pub const fn file(&self) -> &File {
         &self.0

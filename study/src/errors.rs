@@ -8,7 +8,6 @@ use granular_edmd::boundary::{VesselError, WallError};
 use granular_edmd::initial::PlacementError;
 use granular_edmd::observable::ObserverError;
 use granular_edmd::simulation::{BuildError, CheckpointError, RunError};
-use granular_edmd::trajectory::{ReadError, RecordError};
 use granular_edmd::{ParameterError, Violation};
 use thiserror::Error;
 
@@ -56,8 +55,11 @@ macro_rules! from_causes {
 
 from_causes! {
     &str, String, io::Error, ParameterError, WallError, VesselError, PlacementError, BuildError, RunError,
-    CheckpointError, RecordError, ReadError, Violation, ObserverError, PlanError, StudyError
+    CheckpointError, Violation, ObserverError, PlanError, StudyError
 }
+
+#[cfg(feature = "cli")]
+from_causes! { granular_edmd_files::RecordError, granular_edmd_files::ReadError }
 
 /// The error of a plan that cannot be run.
 ///

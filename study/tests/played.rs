@@ -10,7 +10,7 @@ use granular_edmd::Fingerprint;
 use granular_edmd::observable::{Observer, SampleTimes, Snapshot, Verdict, on_collision};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::WhiteNoise;
-use granular_edmd::trajectory::{ExtendedXyz, Recorder};
+use granular_edmd_files::{ExtendedXyz, Recorder};
 use granular_edmd_study::{
     Column, Experiment, ExperimentError, Interval, Plan, Protocol, Run, SavedDriving, Start, cli,
 };

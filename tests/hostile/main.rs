@@ -5,7 +5,6 @@
 //! With them, these tests become runs of hours (docs/validation.md, “Hostile runs”).
 
 mod constructors;
-mod edits;
 mod few;
 #[cfg(feature = "serde")]
 mod files;
@@ -18,6 +17,5 @@ mod script;
 #[cfg(feature = "serde")]
 mod specimens;
 mod systems;
-mod texts;
 mod vessels;
 mod walls;

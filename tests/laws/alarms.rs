@@ -9,12 +9,11 @@ use granular_edmd::collision::{
     RollingFriction, Rough, RulesByKind, Smooth, SpeedDependent,
 };
 use granular_edmd::glam::DVec2;
-use granular_edmd::trajectory::{ExtendedXyz, LammpsDump};
 use granular_edmd::wall::{
     BiParabolic, Combined, Fixed, Piston, Sawtooth, Sinusoidal, Tabulated, Triangular, WallMotion,
     laws as wall_laws,
 };
-use granular_edmd::{Disk, Kind, trajectory};
+use granular_edmd::{Disk, Kind};
 
 type Failed = Box<dyn std::error::Error>;
 type Rules = Vec<(Box<dyn CollisionRule>, Promises)>;
@@ -148,12 +147,4 @@ fn no_check_refuses_a_part_of_the_library_in_ten_thousand_seeds() {
         check_seeds(first..first + 100);
         println!("{} seeds", first + 40);
     }
-}
-
-/// The check of formats has no seed.
-#[test]
-fn formats_of_the_library_pass() -> Result<(), Failed> {
-    trajectory::laws::check(&ExtendedXyz)?;
-    trajectory::laws::check(&LammpsDump)?;
-    Ok(())
 }

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use granular_edmd::Violation;
 use granular_edmd::boundary::laws as boundary_laws;
 use granular_edmd::collision::laws as collision_laws;
+use granular_edmd::observable;
 use granular_edmd::scheduler::laws as scheduler_laws;
 use granular_edmd::wall::laws as wall_laws;
-use granular_edmd::{observable, trajectory};
 
 use crate::faults::blind::boundaries::Walled;
 use crate::faults::blind::fingerprints::{Pair, Parts};
@@ -92,11 +92,6 @@ fn all() -> BTreeMap<(&'static str, &'static str), Verdicts> {
             judged(informed::observers::catalogue(), |_, observer| observable::laws::check(&mut **observer)),
         ),
         halves(
-            "format",
-            judged(blind::formats::catalogue(), |_, format| trajectory::laws::check(&**format)),
-            judged(informed::formats::catalogue(), |_, format| trajectory::laws::check(&**format)),
-        ),
-        halves(
             "fingerprint",
             judged(blind::fingerprints::catalogue(), check_pair),
             judged(informed::fingerprints::catalogue(), check_pair),
@@ -145,7 +140,6 @@ fn honest_parts_pass() {
         judged(informed::boundaries::honest(), check_boundary),
         judged(blind::schedulers::honest(), check_scheduler),
         judged(blind::observers::honest(), |_, observer| observable::laws::check(&mut **observer)),
-        judged(blind::formats::honest(), |_, format| trajectory::laws::check(&**format)),
         judged(blind::fingerprints::honest(), check_pair),
         judged(informed::fingerprints::honest(), check_pair),
     ];

@@ -31,7 +31,7 @@ mod rest;
 mod resuming;
 mod rotor;
 #[cfg(feature = "serde")]
-#[path = "../trajectory/scratch.rs"]
+#[path = "../support/scratch.rs"]
 mod scratch;
 mod setups;
 mod sled;

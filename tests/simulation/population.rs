@@ -6,9 +6,9 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BuildError;
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
-#[cfg(feature = "serde")]
-use granular_edmd::trajectory::{Reader, State};
 use granular_edmd::{Disk, Kind, Simulation};
+#[cfg(feature = "serde")]
+use granular_edmd_files::{Reader, State};
 use proptest::prelude::*;
 
 use crate::setups::{Rule, Setup, config, elastic_gas, setup};

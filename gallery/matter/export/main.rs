@@ -4,13 +4,12 @@
 //! files can be compared; `.ci/readers` opens them with the modules of OVITO and VTK.
 //!
 //! ```text
-//! cargo run --release -p gallery --features gzip --bin export -- --out export
-//! cargo run --release -p gallery --features gzip --bin export -- --quick --measure --out export
+//! cargo run --release -p gallery --features files --bin export -- --out export
+//! cargo run --release -p gallery --features files --bin export -- --quick --measure --out export
 //! ```
 //!
 //! The example writes `run.xyz`, `run.dump`, `run.gsd`, `run.pvd` with its folder, `end.csv`, `end.data`,
-//! `series.csv`, and with the feature `gzip` `run.xyz.gz` and `run.dump.gz`. Nothing is
-//! overwritten.
+//! `series.csv`, `run.xyz.gz` and `run.dump.gz`. Nothing is overwritten.
 
 mod measure;
 
@@ -24,7 +23,7 @@ use clap::Parser;
 use granular_edmd::Kind;
 use granular_edmd::observable::{OfKind, Temperatures, measured_by};
 use granular_edmd::prelude::*;
-use granular_edmd::trajectory::{ByEnding, RecordError, Recorder, State};
+use granular_edmd_files::{ByEnding, RecordError, Recorder, State};
 use serde_json::{Value, json};
 
 use gallery::command_line::{self, Failure, whole};
@@ -114,9 +113,8 @@ fn times(arguments: &Arguments) -> (f64, f64) {
 
 /// Begins a file of each format.
 fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordError> {
-    let packed = if cfg!(feature = "gzip") { ["run.xyz.gz", "run.dump.gz"].as_slice() } else { &[] };
-    let names = ["run.xyz", "run.dump", "run.gsd", "run.pvd"].iter().chain(packed);
-    names.map(|name| Recorder::create(folder.join(name), ByEnding, times)).collect()
+    let names = ["run.xyz", "run.dump", "run.gsd", "run.pvd", "run.xyz.gz", "run.dump.gz"];
+    names.into_iter().map(|name| Recorder::create(folder.join(name), ByEnding, times)).collect()
 }
 
 /// Creates a file, which must not exist yet.

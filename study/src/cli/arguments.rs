@@ -166,7 +166,8 @@ pub(super) struct Convert {
     /// Frame to read, counted from 0, or from the end if negative; `last` for −1.
     #[arg(long, default_value = "last", allow_negative_numbers = true, value_parser = frame)]
     pub(super) frame: isize,
-    /// Step of the frame to read, instead of its number: dumps and GSD files number their frames by steps.
+    /// Step of the frame to read, instead of its number: dumps, GSD files and tables number their frames by
+    /// steps.
     #[arg(long, conflicts_with = "frame")]
     pub(super) step: Option<u64>,
     /// Largest overlap that is accepted, relative to the sum of the radii.
@@ -182,6 +183,9 @@ pub(super) struct Convert {
     /// Radius of disks in a file without radii.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) radius: Option<f64>,
+    /// Factor of all lengths in the file, such as the size of a pixel.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) scale: Option<f64>,
 }
 
 /// Reads a frame number.

@@ -5,8 +5,8 @@ use std::io;
 use std::path::Path;
 
 use granular_edmd::observable::SampleTimes;
-use granular_edmd::trajectory::{ByEnding, ExtendedXyz, Format, Frame, LammpsDump, Reader, Recorder, State};
 use granular_edmd::{Disk, ParameterError};
+use granular_edmd_files::{ByEnding, ExtendedXyz, Frame, FrameFormat, LammpsDump, Reader, Recorder, State};
 
 use super::arguments::Convert;
 use super::terminal::{tell, write_new};
@@ -19,6 +19,7 @@ impl Convert {
         let reader = if self.shrink { reader.with_shrunk_radii() } else { reader };
         let reader =
             self.tolerance.map_or(Ok(reader.clone()), |tolerance| reader.with_tolerance(tolerance))?;
+        let reader = self.scale.map_or(Ok(reader.clone()), |factor| reader.with_scale(factor))?;
         let reader = self.density.map_or(Ok(reader.clone()), |density| reader.with_density(density))?;
         self.radius.map_or(Ok(reader.clone()), |radius| reader.with_radius(radius))
     }

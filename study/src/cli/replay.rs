@@ -8,7 +8,7 @@ use std::path::Path;
 use std::rc::Rc;
 
 use granular_edmd::observable::{Collision, Observer, Partner, on_collision};
-use granular_edmd::trajectory::State;
+use granular_edmd_files::State;
 
 use super::arguments::Replay;
 use super::convert::Ending;

@@ -11,7 +11,7 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::{CollisionRule, Regime};
 use granular_edmd::observable::{Collision, Partner, SampleTimes, Snapshot, on_sample};
 use granular_edmd::simulation::{Checkpoint, CheckpointError, RunError};
-use granular_edmd::trajectory::{ByEnding, Reader, Recorder};
+use granular_edmd_files::{ByEnding, Reader, Recorder};
 
 use super::arguments::{Place, Trajectory};
 use super::convert::Ending;

@@ -1,1 +1,1 @@
-../../../tests/hostile/edits.rs
+../../../tests/support/edits.rs

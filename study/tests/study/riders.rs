@@ -8,7 +8,7 @@ use granular_edmd::Fingerprint;
 use granular_edmd::observable::{Observer, ObserverError, SampleTimes, Snapshot, on_collision};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::{Inlet, WhiteNoise};
-use granular_edmd::trajectory::{ExtendedXyz, Recorder};
+use granular_edmd_files::{ExtendedXyz, Recorder};
 use granular_edmd_study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Interval, Outcome, Plan, Protocol, Ramp, Run,
     SavedDriving, Start, Study,
@@ -188,7 +188,8 @@ impl Experiment for Silo {
     fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
         let path = start.folder.join(format!("frames-{}-{}.xyz", start.ramp, start.value));
         let times = SampleTimes::every(1.5)?;
-        Ok(Some(Box::new(Recorder::create_or_append(path, ExtendedXyz, times)?)))
+        let recorder = Recorder::create_or_append(path, ExtendedXyz, times).map_err(ExperimentError::new)?;
+        Ok(Some(Box::new(recorder)))
     }
     fn columns() -> Vec<Column<Self>> {
         vec![

@@ -4,8 +4,8 @@ use downstream::drum::Drum;
 use downstream::viscoelastic::Viscoelastic;
 use granular_edmd::observable::{Observer, SampleTimes, Snapshot};
 use granular_edmd::simulation::Driving;
-use granular_edmd::trajectory::{ExtendedXyz, Recorder};
 use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
+use granular_edmd_files::{ExtendedXyz, Recorder};
 use granular_edmd_study::{
     Axis, Column, Control, Experiment, ExperimentError, Plan, Protocol, SavedDriving, Start, Study,
 };
@@ -70,7 +70,8 @@ impl Experiment for Tumbling {
     }
     fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
         let path = start.folder.join(format!("{}-{}.xyz", start.ramp, start.value));
-        Ok(Some(Box::new(Recorder::create_or_append(path, ExtendedXyz, SampleTimes::every(2.0)?)?)))
+        let recorder = Recorder::create_or_append(path, ExtendedXyz, SampleTimes::every(2.0)?);
+        Ok(Some(Box::new(recorder.map_err(ExperimentError::new)?)))
     }
 }
 

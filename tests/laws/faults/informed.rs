@@ -3,7 +3,6 @@
 
 pub(crate) mod boundaries;
 pub(crate) mod fingerprints;
-pub(crate) mod formats;
 pub(crate) mod motions;
 pub(crate) mod observers;
 pub(crate) mod rules;
@@ -19,7 +18,6 @@ pub(crate) fn names() -> Vec<String> {
         named("boundary", &boundaries::catalogue()),
         named("scheduler", &schedulers::catalogue()),
         named("observer", &observers::catalogue()),
-        named("format", &formats::catalogue()),
         named("fingerprint", &fingerprints::catalogue()),
     ]
     .concat()
