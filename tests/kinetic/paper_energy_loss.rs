@@ -1,5 +1,6 @@
 //! Numbers and equations of the paper's section II, from the kinetic floor alone.
 
+use approx::assert_abs_diff_eq;
 use granular_edmd::ParameterError;
 use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime};
 use granular_edmd::kinetic::{
@@ -49,7 +50,7 @@ fn loss_is_largest_near_a_friction_of_0_3() -> Outcome {
             friction_of_largest_loss(&Frictional::from_inelasticity(inelasticity, inelasticity, 0.0)?, &gas)
                 .unwrap_or(f64::NAN);
         assert!((largest - friction).abs() < 5.1e-5, "{inelasticity}: {largest}, not {friction}");
-        assert!((change(largest, inelasticity)? - loss).abs() < 5.1e-6);
+        assert_abs_diff_eq!(change(largest, inelasticity)?, loss, epsilon = 5.1e-6);
         let root = (2.0 * (1.0 - inelasticity) / (1.0 - 2.0 * inelasticity)).sqrt() - 1.0;
         let formula = root / (3.0 * (1.0 - root * root)).sqrt();
         assert!((largest / formula - 1.0).abs() < 1e-12, "closed form of the maximum");
@@ -67,12 +68,16 @@ fn maximum_moves_with_the_other_parameters() -> Outcome {
         |rule: Frictional, gas: &Maxwellian| friction_of_largest_loss(&rule, gas).unwrap_or(f64::NAN);
     for (ratio, expected) in [(0.5, 0.2145), (0.25, 0.186), (0.1, 0.166)] {
         let cold = gas.with_rotational_temperature(ratio)?;
-        assert!((largest(Frictional::from_inelasticity(0.0, 0.0, 0.0)?, &cold) - expected).abs() < 6e-4);
+        assert_abs_diff_eq!(
+            largest(Frictional::from_inelasticity(0.0, 0.0, 0.0)?, &cold),
+            expected,
+            epsilon = 6e-4
+        );
     }
-    assert!((largest(rule(0.0)?, &gas) - 0.277).abs() < 6e-4);
-    assert!((largest(rule(0.2)?, &gas) - 0.398).abs() < 6e-4);
+    assert_abs_diff_eq!(largest(rule(0.0)?, &gas), 0.277, epsilon = 6e-4);
+    assert_abs_diff_eq!(largest(rule(0.2)?, &gas), 0.398, epsilon = 6e-4);
     let half = Frictional::from_inelasticity(0.025, 0.025, 1.0)?.with_dynamic_friction(0.5)?;
-    assert!((largest(half, &gas) - 0.386).abs() < 6e-4);
+    assert_abs_diff_eq!(largest(half, &gas), 0.386, epsilon = 6e-4);
     assert_eq!(friction_of_largest_loss(&rule(0.5)?, &gas), None);
     Ok(())
 }
@@ -151,7 +156,7 @@ fn equation_6_needs_a_third() -> Outcome {
         let impulse = rule.impulse(&contact);
         assert_eq!(impulse.regime(), Regime::Sticking);
         let loss = impulse.energy_change(&contact);
-        assert!((loss - equation_6(0.1, &contact, 1.0 / 3.0)).abs() < 1e-14);
+        assert_abs_diff_eq!(loss, equation_6(0.1, &contact, 1.0 / 3.0), epsilon = 1e-14);
         let printed = equation_6(0.1, &contact, 1.0);
         assert!(
             (printed - loss + 0.06 * slip * slip).abs() < 1e-14,
@@ -172,7 +177,7 @@ fn energy_change_is_continuous_where_sticking_ends() -> Outcome {
         (contact, rule.impulse(&contact).energy_change(&contact))
     };
     let ((inside, sticking), (_, sliding)) = (at(threshold * (1.0 - 1e-9)), at(threshold * (1.0 + 1e-9)));
-    assert!((sticking - sliding).abs() < 1e-8);
+    assert_abs_diff_eq!(sticking, sliding, epsilon = 1e-8);
     let jump = 6.0 * friction * friction * q * (1.0 - q);
     assert!((equation_6(q, &inside, 1.0) - sliding + jump).abs() < 1e-8);
     Ok(())
@@ -212,7 +217,7 @@ fn transition_lines_meet_the_axis_twice() -> Outcome {
         assert!((from - low).abs() < 6e-5 && (to - high).abs() < 6e-4, "{level}: {from} {to}");
         assert!(at_low.abs() < 1e-9 && at_high.abs() < 1e-9, "ends on the axis");
         for &(friction, q) in pieces.iter().flatten() {
-            assert!((change(friction, q)? - level).abs() < 1e-13);
+            assert_abs_diff_eq!(change(friction, q)?, level, epsilon = 1e-13);
         }
     }
     assert!(

@@ -5,6 +5,7 @@ mod endless;
 mod low_bounces;
 mod motions;
 
+use approx::assert_abs_diff_eq;
 use std::f64::consts::TAU;
 
 use granular_edmd::wall;
@@ -344,7 +345,7 @@ fn a_disk_that_hovers_just_above_the_reach_of_a_sine_ends() {
         let hovering = Approach::new(0.0, AMPLITUDE + above, 0.0, 0.0);
         if let Some(touch) = first_touch(&base, &hovering, 1000.0) {
             assert!(above < 1e-14);
-            assert!((base.state(touch).displacement - AMPLITUDE).abs() < 1e-14);
+            assert_abs_diff_eq!(base.state(touch).displacement, AMPLITUDE, epsilon = 1e-14);
         }
     }
 }

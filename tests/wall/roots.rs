@@ -1,5 +1,6 @@
 //! First descents of parabolas and quartics, which steps along the gap, known zeros and flights confirm.
 
+use approx::assert_abs_diff_eq;
 use granular_edmd::glam::DVec2;
 use granular_edmd::roots::{first_descent, first_descent_of_quartic};
 use proptest::prelude::*;
@@ -191,7 +192,7 @@ fn closed_quartics_count_only_while_they_close() {
     let (low, exact) = (descent([-1.0, 1.0, 0.0, -1.0, 0.0]).unwrap(), 1.0);
     assert!((low - exact).abs() < 1e-15, "{low}");
     // A little higher, and the gap opens.
-    assert!((descent([-0.3, 1.0, 0.0, -1.0, 0.0]).unwrap() - 0.786_4).abs() < 1e-4);
+    assert_abs_diff_eq!(descent([-0.3, 1.0, 0.0, -1.0, 0.0]).unwrap(), 0.786_4, epsilon = 1e-4);
 }
 
 #[test]
