@@ -16,6 +16,9 @@ const EVENTS_BETWEEN_LOOKS: u64 = 256;
 /// Relative rounding error of times that are computed from the same decimal numbers in different ways.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// End of a run without an end time. The search for a wall that a disk at rest never meets may be due later.
+pub(super) const NEVER: f64 = 1e300;
+
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
 /// flag that another thread sets.
 ///
@@ -55,7 +58,7 @@ impl<'a> Limits<'a> {
     ///
     /// If nothing can happen any more, the run ends earlier, with [`RunEnd::Time`].
     pub const fn collisions(count: u64) -> Self {
-        Self { most_collisions: count, ..Self::until(f64::MAX) }
+        Self { most_collisions: count, ..Self::until(NEVER) }
     }
 
     /// Returns the same limits, with at most `most_collisions` collisions in the run, of disks with disks or
@@ -117,7 +120,7 @@ impl<'a> Limits<'a> {
         Self { end, ..self }
     }
 
-    /// Returns the absolute time at which the run ends; `f64::MAX` without an end time.
+    /// Returns the absolute time at which the run ends; 1e300 without an end time.
     pub const fn end(&self) -> f64 {
         self.end
     }

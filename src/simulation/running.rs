@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::engine::Engine;
 use super::errors::{Outcome, RunError};
-use super::limits::{Limits, Watch, rounded_up};
+use super::limits::{Limits, NEVER, Watch, rounded_up};
 use super::state::effort;
 use super::{Event, RunEnd, Simulation};
 use crate::boundary::Boundary;
@@ -246,7 +246,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
         }
         // A run without an end stays at its last event.
-        if stop < f64::MAX {
+        if stop < NEVER {
             self.engine.clock.advance_to(stop);
         }
         Ok(Reached::Time)

@@ -10,6 +10,7 @@ mod changes;
 mod counting;
 mod crowds;
 mod driving;
+mod ends;
 mod extremes;
 mod inputs;
 mod kinds;
@@ -37,6 +38,7 @@ mod schedulers;
 #[cfg(feature = "serde")]
 #[path = "../trajectory/scratch.rs"]
 mod scratch;
+mod seeds;
 mod setups;
 mod sled;
 mod slopes;
