@@ -132,7 +132,7 @@ impl Gas {
         rule: R,
     ) -> Result<Simulation<R>, Box<dyn Error>> {
         let disks = initial::scattered(&container, DISKS, 0.5, container.domain().top, self.seed)?;
-        let disks = initial::with_maxwellian_velocities(disks, 1.0, self.seed)?;
+        let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, self.seed)?)?;
         let mut run = Simulation::builder(rule, container).disks(disks).build()?;
         collide(&mut run, 20)?;
         Ok(run)
