@@ -22,7 +22,7 @@ fn main() -> anyhow::Result<()> {
 
     let base = Sinusoidal::new(0.1, 30.0)?;
     let container = Container::open(40.0)?.with_motion(Wall::Floor, base)?;
-    let disks = initial::placed_at_random(&container, disks, 40.0, 1)?;
+    let disks = initial::scattered_mix(&container, disks, 40.0, 1)?;
 
     // One rule for every pair that the table does not name.
     let rules = RulesByKind::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?)

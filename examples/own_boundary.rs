@@ -67,7 +67,7 @@ fn main() -> anyhow::Result<()> {
     // The check of the contract lets disks of radius 1/2 fly in the drum at speed 1.
     laws::check(&mut drum, 0.5, 1.0, 1)?;
 
-    let disks = initial::random(&drum, 150, 0.5, radius, 1)?;
+    let disks = initial::scattered(&drum, 150, 0.5, radius, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
     let mut simulation = Simulation::builder(Elastic, drum).disks(disks).build()?;
     // Elastic disks carry the heat from the hot half to the cold one, and lose none.

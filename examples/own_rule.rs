@@ -33,8 +33,8 @@ impl CollisionRule for Viscous {
 /// Returns the energy of a gas under this rule at times 0, 20, 40 and so on.
 fn cooling(rule: impl CollisionRule) -> anyhow::Result<Vec<f64>> {
     let container = Container::periodic(60.0, 60.0)?;
-    let disks = initial::random(&container, 1000, 0.5, 60.0, 1)?;
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    let disks = initial::scattered(&container, 1000, 0.5, 60.0, 1)?;
+    let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, 1)?)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
     let mut series = Series::new(Energies, SampleTimes::every(20.0)?.starting_at(0.0)?);
     simulation.run_until(200.0, &mut series)?;

@@ -64,7 +64,7 @@ fn main() -> anyhow::Result<()> {
         // The check compares position, velocity and acceleration on all pieces of 20 periods.
         laws::check(&base, 0.0, 20.0 * period)?;
         let container = Container::open(20.0)?.with_motion(Wall::Floor, base)?;
-        let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
+        let disks = initial::scattered(&container, 100, 0.5, 20.0, 1)?;
         // Grains that come to rest on the base leave it with a speed of at least 0.1; otherwise, the run
         // would stall.
         let rule = LeastRebound::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?, 0.1)?;

@@ -2,16 +2,16 @@
 //!
 //! | function | disks | where |
 //! |---|---|---|
-//! | [`lattice`] | equal ones | a square lattice from the floor up |
+//! | [`lattice`], [`triangular_lattice`] | equal ones | a square or triangular lattice from the floor up |
 //! | [`even_lattice`] | equal ones | a square lattice over the whole interior |
 //! | [`placed_in_rows`] | any | rows, small ones on top of each other |
-//! | [`random`], [`placed_at_random`] | equal ones, any | random positions, up to an area fraction of 0.5 |
-//! | [`packed_at_random`] | any | random positions, up to an area fraction of 0.8 |
+//! | [`scattered`], [`scattered_mix`] | equal ones, any | random positions, up to an area fraction of 0.5 |
+//! | [`packed_mix`] | any | random positions, up to an area fraction of 0.8 |
 //!
 //! A [`Reader`](https://docs.rs/granular-edmd-files) of the package `granular-edmd-files` reads disks from files of other programs.
 //!
-//! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
-//! [`with_maxwellian_velocities`] sets them in motion. To place disks around other disks, put the other disks
+//! [`Radii`] draws radii from distributions, and [`disks_from_radii`] makes disks of them.
+//! [`with_maxwellian_velocities`] sets disks in motion, and [`without_drift`] stops their center of mass. To place disks around other disks, put the other disks
 //! into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
 //! The functions place no disk in a wall: at time 0,
@@ -21,16 +21,16 @@
 mod lattice;
 mod packed;
 mod radii;
-mod random;
 mod rows;
+mod scattered;
 mod velocities;
 
-pub use lattice::{even_lattice, lattice};
-pub use packed::packed_at_random;
-pub use radii::{Radii, homogeneous};
-pub use random::{placed_at_random, random};
+pub use lattice::{even_lattice, lattice, triangular_lattice};
+pub use packed::packed_mix;
+pub use radii::{Radii, disks_from_radii};
 pub use rows::placed_in_rows;
-pub use velocities::with_maxwellian_velocities;
+pub use scattered::{scattered, scattered_mix};
+pub use velocities::{with_maxwellian_velocities, without_drift};
 
 use glam::DVec2;
 use thiserror::Error;
@@ -57,6 +57,21 @@ pub enum PlacementError {
         /// Number of disks that could be placed.
         placed: usize,
         /// Radius of the disks.
+        radius: f64,
+        /// Interior of the boundary, up to the height to which disks were placed.
+        interior: Domain,
+    },
+    /// No random position was found for a disk.
+    #[error(
+        "random positions were found for {placed} of {count} disks of radius {} in {interior}, after all larger \
+         disks; `initial::packed_mix` packs them more densely", Readable(*.radius)
+    )]
+    NoPosition {
+        /// Number of disks of this radius.
+        count: usize,
+        /// Number of them that have positions.
+        placed: usize,
+        /// Radius of the disk. All larger disks have positions.
         radius: f64,
         /// Interior of the boundary, up to the height to which disks were placed.
         interior: Domain,

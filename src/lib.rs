@@ -61,6 +61,7 @@
 //! | [`collision`] | the outcome of a collision |
 //! | [`Disk`] | one grain |
 //! | [`file`](mod@file) | files that are complete or absent, and locks, also for other packages |
+//! | [`random`] | the streams of random numbers that follow from a seed |
 //! | [`statistics`] | means, and errors of correlated samples |
 //!
 //! # Features
@@ -96,7 +97,7 @@ pub mod observable;
 mod prefetch;
 pub mod prelude;
 pub mod quantity;
-mod random;
+pub mod random;
 pub mod replay;
 pub mod roots;
 pub mod scheduler;
@@ -113,7 +114,7 @@ pub mod wall;
 /// Versions of the crate with the same number give the same bits for the same inputs. A version that changes
 /// a trajectory, a seed or a measured value has a larger number, and a line under “Results” in its changelog.
 /// Only versions with the same number can continue a study.
-pub const RESULTS: u32 = 1;
+pub const RESULTS: u32 = 2;
 
 pub use disk::Disk;
 pub use error::ParameterError;

@@ -103,6 +103,7 @@
 //! `float_roundtrip`).
 
 mod arrivals;
+mod by_collisions;
 mod by_kind;
 mod center_of_mass;
 mod closures;
@@ -147,6 +148,7 @@ mod wall_stress;
 
 #[doc(alias("flow", "flux", "discharge"))]
 pub use arrivals::Arrivals;
+pub use by_collisions::ByCollisions;
 pub use by_kind::{BetweenKinds, OfKind};
 pub use center_of_mass::CenterOfMass;
 pub use closures::{MeasuredBy, OnCollision, OnSample, measured_by, on_collision, on_sample};

@@ -56,6 +56,7 @@ pub use builder::SimulationBuilder;
 pub(crate) use cells::FEWEST;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
+pub(crate) use driving::drift_of;
 pub use driving::{Driving, Rescaling, WhiteNoise};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};

@@ -39,7 +39,7 @@ struct Gas {
 
 impl Gas {
     fn new(name: &'static str, boundary: impl Boundary + Send + Sync + 'static) -> Outcome<Self> {
-        let disks = initial::packed_at_random(&boundary, disks()?, 1e3, 1)?;
+        let disks = initial::packed_mix(&boundary, disks()?, 1e3, 1)?;
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
         let boundary: BoxedBoundary = Box::new(boundary);
         let mut run = Simulation::builder(Elastic, boundary).disks(disks).build()?;
@@ -58,7 +58,7 @@ impl Gas {
 }
 
 fn disks() -> Outcome<Vec<granular_edmd::Disk>> {
-    Ok(initial::homogeneous(vec![RADIUS; DISKS], 1.0)?)
+    Ok(initial::disks_from_radii(vec![RADIUS; DISKS], 1.0)?)
 }
 
 /// Returns the area of the vessel.

@@ -150,8 +150,8 @@ fn initial_disks(
     let intruder = Disk::new(DVec2::new(0.5 * WIDTH, height), radius)?;
     let intruder = intruder.with_mass(density * diameter * diameter)?.with_kind(INTRUDER);
     let around = Obstacles::new(container.clone(), [intruder]);
-    let grains = initial::homogeneous([0.5; GRAINS], 1.0)?;
-    let mut disks = initial::packed_at_random(&around, grains, PACKED, seed)?;
+    let grains = initial::disks_from_radii([0.5; GRAINS], 1.0)?;
+    let mut disks = initial::packed_mix(&around, grains, PACKED, seed)?;
     disks.push(intruder);
     Ok(initial::with_maxwellian_velocities(disks, 0.1, seed)?)
 }

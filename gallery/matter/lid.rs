@@ -94,7 +94,7 @@ fn pressed(arguments: &Arguments, pressure: f64) -> Result<Lid, Box<dyn Error>> 
     // A light lid rises; the stops are far away. The disks are packed while the lid is held.
     let piston = Piston::new(MASS, [-6.0 * HEIGHT, 0.9 * HEIGHT])?.with_force(pressure * WIDTH)?;
     let held = Container::closed(WIDTH, HEIGHT)?.with_periodic_sides()?;
-    let disks = initial::packed_at_random(&held, initial::homogeneous([0.5; DISKS], 1.0)?, HEIGHT, 1)?;
+    let disks = initial::packed_mix(&held, initial::disks_from_radii([0.5; DISKS], 1.0)?, HEIGHT, 1)?;
     let container = held.with_temperature(Wall::Floor, Thermal::new(1.0)?)?.with_piston(Wall::Lid, piston)?;
     let lid = container.index(Wall::Lid).ok_or("a lid")?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;

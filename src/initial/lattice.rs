@@ -37,6 +37,42 @@ pub fn lattice<B: Boundary + ?Sized>(
     count: usize,
     radius: f64,
 ) -> Result<Vec<Disk>, PlacementError> {
+    from_floor_up(boundary, count, radius, false)
+}
+
+/// Returns `count` equal disks at rest on a triangular lattice in the lower part of the boundary, row by row
+/// from the floor up and from left to right.
+///
+/// Each second row is shifted by half the distance between neighbors, and has one site less between walls. In
+/// all other respects, the function works like [`lattice`].
+///
+/// # Errors
+/// If the radius is not finite and positive, there are more than 2²⁸ disks, or there is no room.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::initial;
+/// let disks = initial::triangular_lattice(&Container::open(3.0)?, 5, 0.5)?;
+/// let columns: Vec<f64> = disks.iter().map(|disk| disk.position().x).collect();
+/// assert_eq!(columns, [0.5, 2.5, 1.5, 0.5, 2.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn triangular_lattice<B: Boundary + ?Sized>(
+    boundary: &B,
+    count: usize,
+    radius: f64,
+) -> Result<Vec<Disk>, PlacementError> {
+    from_floor_up(boundary, count, radius, true)
+}
+
+/// Fills a square or triangular lattice from the floor up, with the widest spacing that leaves room for all
+/// disks.
+fn from_floor_up<B: Boundary + ?Sized>(
+    boundary: &B,
+    count: usize,
+    radius: f64,
+    is_triangular: bool,
+) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
     countable(count)?;
     check_periods(&boundary.domain(), radius)?;
@@ -44,7 +80,8 @@ pub fn lattice<B: Boundary + ?Sized>(
     let room = room(&interior, radius);
     let mut most = 0;
     for spacing in spacings() {
-        let disks = free_disks(boundary, &room, 2.0 * radius * spacing, count, radius)?;
+        let spacing = 2.0 * radius * spacing;
+        let disks = free_disks(boundary, &room, spacing, is_triangular, count, radius)?;
         if disks.len() == count {
             return Ok(disks);
         }
@@ -122,19 +159,28 @@ fn free_sites<B: Boundary + ?Sized>(boundary: &B, room: &Domain, spacing: f64, r
         .collect()
 }
 
-/// Returns up to `count` disks on a square lattice with at least this spacing, where they overlap no wall.
+/// Returns up to `count` disks on a square or triangular lattice with at least this spacing, where they overlap
+/// no wall.
 fn free_disks<B: Boundary + ?Sized>(
     boundary: &B,
     room: &Domain,
     spacing: f64,
+    is_triangular: bool,
     count: usize,
     radius: f64,
 ) -> Result<Vec<Disk>, ParameterError> {
     let (columns, pitch) = columns(room, spacing);
+    let rise = if is_triangular { 0.75_f64.sqrt() * spacing } else { spacing };
+    let rows = rows(room, rise);
+    // Across periodic ends, a row has a shifted neighbor only if the number of rows is even.
+    let rows = if is_triangular && room.periodic_ends { rows - rows % 2 } else { rows };
     let (mut disks, mut empty) = (Vec::new(), 0);
-    for row in 0..rows(room, spacing) {
-        let height = room.bottom + row as f64 * spacing;
-        let sites = (0..columns).map(|column| DVec2::new(room.left + column as f64 * pitch, height));
+    for row in 0..rows {
+        let height = room.bottom + row as f64 * rise;
+        let is_shifted = is_triangular && row % 2 == 1;
+        let left = if is_shifted { room.left + 0.5 * pitch } else { room.left };
+        let columns = if is_shifted && !room.periodic_sides { columns.saturating_sub(1) } else { columns };
+        let sites = (0..columns).map(|column| DVec2::new(left + column as f64 * pitch, height));
         let free = sites.filter(|&site| boundary.overlap(&Probe::new(site, radius, 0.0)).is_none());
         let before = disks.len();
         for site in free.take(count - before) {

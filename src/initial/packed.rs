@@ -9,6 +9,7 @@ use super::{PlacementError, countable};
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::quantity::accept;
+use crate::random::{Stream, derived_seed};
 use enclosure::Enclosure;
 use packing::Packing;
 
@@ -54,15 +55,15 @@ const APART: f64 = 1e-9;
 /// // Two sizes around an intruder, at the area fraction 0.8.
 /// let container = Container::open(24.0)?;
 /// let intruder = Disk::new(DVec2::new(12.0, 6.0), 3.0)?;
-/// let disks = initial::homogeneous(Radii::two_sizes(0.5, 0.7, 0.5)?.draw(300, 1), 1.0)?;
+/// let disks = initial::disks_from_radii(Radii::two_sizes(0.5, 0.7, 0.5)?.draw(300, 1), 1.0)?;
 /// let area: f64 = disks.iter().chain([&intruder]).map(|disk| PI * disk.radius() * disk.radius()).sum();
 /// let height = area / (0.8 * container.width());
 /// let around = Obstacles::new(container, [intruder]);
-/// let packed = initial::packed_at_random(&around, disks, height, 1)?;
+/// let packed = initial::packed_mix(&around, disks, height, 1)?;
 /// assert!(packed.iter().all(|disk| disk.position().y + disk.radius() <= height));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn packed_at_random<B: Boundary + ?Sized>(
+pub fn packed_mix<B: Boundary + ?Sized>(
     boundary: &B,
     disks: Vec<Disk>,
     below: f64,
@@ -79,6 +80,7 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
         Disk::new(disk.position(), disk.radius() * (1.0 + APART)).map(|wide| wide.with_kind(disk.kind()))
     };
     let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
+    let seed = derived_seed(seed, Stream::Packing, 0);
     let packing = grown(&room, &wider, area, seed).map_err(|error| match error {
         // A heavy piston hardly moves while disks are packed, so a moving piston is reported only if the
         // packing fails.
@@ -91,13 +93,14 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     Ok(packed.collect::<Result<_, _>>()?)
 }
 
-/// Replaces the initial radius in an error by the full radius of the disk that finds no room. The largest
-/// disks are placed first.
+/// Replaces the initial radius in an error, relative to the largest, by the full radius of the disk that finds
+/// no room.
 fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
-    let PlacementError::NoRoom { count, placed, radius, interior } = error else { return error };
-    let mut radii: Vec<f64> = disks.iter().map(Disk::radius).collect();
-    radii.sort_by(|a, b| b.total_cmp(a));
-    PlacementError::NoRoom { count, placed, radius: radii.get(placed).copied().unwrap_or(radius), interior }
+    let PlacementError::NoRoom { count, placed, radius: share, interior } = error else { return error };
+    let largest = disks.iter().map(Disk::radius).fold(0.0, f64::max);
+    let off = |radius: &f64| (radius / largest - share).abs();
+    let radius = disks.iter().map(Disk::radius).min_by(|a, b| off(a).total_cmp(&off(b)));
+    PlacementError::NoRoom { count, placed, radius: radius.unwrap_or(largest), interior }
 }
 
 /// Moves and grows the disks alternately until all have reached their radii, or are jammed. `area` is the

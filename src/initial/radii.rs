@@ -1,11 +1,9 @@
 //! Radii drawn from distributions.
 
 use glam::DVec2;
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::quantity::{accept, positive};
-use crate::random::uniform;
+use crate::random::{Stream, generator, uniform};
 use crate::{Disk, ParameterError};
 
 /// Largest distance from the median of log-normal radii, in standard deviations. The normal numbers that are
@@ -21,8 +19,8 @@ const FARTHEST: f64 = 9.0;
 /// use granular_edmd::initial::{self, Radii};
 ///
 /// let radii = Radii::log_normal(0.5, 0.3, 0.2, 1.2)?.draw(500, 42);
-/// let disks = initial::homogeneous(radii, 1.0)?;
-/// let disks = initial::placed_at_random(&Container::closed(60.0, 60.0)?, disks, 40.0, 42)?;
+/// let disks = initial::disks_from_radii(radii, 1.0)?;
+/// let disks = initial::scattered_mix(&Container::closed(60.0, 60.0)?, disks, 40.0, 42)?;
 /// assert!(disks.iter().all(|disk| (0.2..=1.2).contains(&disk.radius())));
 /// assert!(disks.iter().all(|disk| disk.mass() == 4.0 * disk.radius() * disk.radius()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -106,7 +104,7 @@ impl Radii {
 
     /// Draws `count` radii in random order.
     pub fn draw(&self, count: usize, seed: u64) -> Vec<f64> {
-        let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut generator = generator(seed, Stream::Radii, 0);
         let mut uniform = || uniform(&mut generator);
         if let Law::TwoSizes { share } = self.law {
             return self.two(count, (share * count as f64).round() as usize, &mut uniform);
@@ -166,11 +164,14 @@ impl Radii {
 ///
 /// ```
 /// use granular_edmd::initial;
-/// let disks = initial::homogeneous([0.5, 1.0], 1.0)?;
+/// let disks = initial::disks_from_radii([0.5, 1.0], 1.0)?;
 /// assert_eq!([disks[0].mass(), disks[1].mass()], [1.0, 4.0]);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-pub fn homogeneous(radii: impl IntoIterator<Item = f64>, mass: f64) -> Result<Vec<Disk>, ParameterError> {
+pub fn disks_from_radii(
+    radii: impl IntoIterator<Item = f64>,
+    mass: f64,
+) -> Result<Vec<Disk>, ParameterError> {
     let disk =
         |radius: f64| Disk::new(DVec2::ZERO, radius)?.with_mass(mass * (2.0 * radius) * (2.0 * radius));
     radii.into_iter().map(disk).collect()

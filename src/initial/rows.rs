@@ -23,7 +23,7 @@ const TRIALS: usize = 100_000;
 /// ```
 /// use granular_edmd::boundary::Container;
 /// use granular_edmd::initial::{self, Radii};
-/// let disks = initial::homogeneous(Radii::two_sizes(0.5, 2.0, 0.1)?.draw(1000, 1), 1.0)?;
+/// let disks = initial::disks_from_radii(Radii::two_sizes(0.5, 2.0, 0.1)?.draw(1000, 1), 1.0)?;
 /// let placed = initial::placed_in_rows(&Container::closed(60.0, 150.0)?, disks.clone())?;
 /// assert_eq!(placed[7].radius(), disks[7].radius());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

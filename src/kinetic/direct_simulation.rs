@@ -3,13 +3,12 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
-use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::collision::{CollisionRule, collide_after};
 use crate::disk::LARGEST;
 use crate::quantity::{accept, finite, positive};
-use crate::random::uniform;
+use crate::random::{Stream, generator, uniform};
 use crate::{Disk, ParameterError};
 
 /// A homogeneous gas without correlations: direct simulation of the Boltzmann–Enskog equation (DSMC) under
@@ -78,7 +77,7 @@ impl<R: CollisionRule> DirectSimulation<R> {
     pub fn new(rule: R, disks: Vec<Disk>, density: f64, seed: u64) -> Result<Self, ParameterError> {
         accept(disks.len() > 1, "number of disks", "at least 2", disks.len() as f64)?;
         let density = positive("density", density)?;
-        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let generator = generator(seed, Stream::DirectSimulation, 0);
         let (time, collisions, last) = (0.0, 0, vec![f64::NEG_INFINITY; disks.len()]);
         Ok(Self { rule, disks, density, generator, time, collisions, last, widest: 0.0, fastest: 0.0 })
     }

@@ -1,13 +1,12 @@
 //! The mean energy change of any rule, by sampling collisions.
 
-use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::Maxwellian;
 use crate::ParameterError;
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
-use crate::random::{normal, uniform};
+use crate::random::{Stream, generator, normal, uniform};
 use crate::statistics::{Estimate, RunningMean};
 
 /// Number of strata of the angle between closing and slip speed.
@@ -33,8 +32,8 @@ const FIRST_ROUND: u64 = 16;
 /// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a
 /// speed scale, like the paper's, the only remaining scatter comes from the angle within a stratum.
 ///
-/// Collisions come in chunks of 4096. Each chunk has its own stream from one generator, and chunks are added
-/// in order. The result therefore has the same bits on any number of threads, with and without the feature
+/// Collisions come in chunks of 4096. Each chunk has its own stream of random numbers, and chunks are added in
+/// order. The result therefore has the same bits on any number of threads, with and without the feature
 /// `rayon`.
 ///
 /// ```
@@ -93,18 +92,11 @@ impl MonteCarlo {
         R: CollisionRule + Sync + ?Sized,
     {
         let chunks = self.samples.div_ceil(CHUNK).max(1);
-        // Random number generators that never overlap, one per chunk.
-        let mut next = Xoshiro256PlusPlus::seed_from_u64(self.seed);
-        let mut streams = std::iter::repeat_with(|| {
-            let stream = next.clone();
-            next.jump();
-            stream
-        });
         let mut total = Sums::default();
         while total.chunks < chunks {
             let round = total.chunks.max(FIRST_ROUND).min(chunks - total.chunks);
-            let round = streams.by_ref().take(round as usize).collect();
-            for chunk in map(round, |generator| Sums::of_chunk(rule, gas, generator)) {
+            let round = (total.chunks..total.chunks + round).collect();
+            for chunk in map(round, |chunk| Sums::of_chunk(rule, gas, self.seed, chunk)) {
                 total.add(&chunk);
             }
             let error = total.average().standard_error();
@@ -138,19 +130,19 @@ struct Sums {
 }
 
 impl Sums {
-    fn of_chunk<R>(rule: &R, gas: &Maxwellian, mut generator: Xoshiro256PlusPlus) -> Self
+    fn of_chunk<R>(rule: &R, gas: &Maxwellian, seed: u64, chunk: u64) -> Self
     where
         R: CollisionRule + ?Sized,
     {
         let mut sums = Self { chunks: 1, ..Self::default() };
         // Few rules use the relative spin. Spins have their own stream, so that the speeds of a collision do
         // not depend on them.
-        let mut spins = generator.clone();
-        spins.long_jump();
+        let [mut speeds, mut spins] =
+            [2 * chunk, 2 * chunk + 1].map(|index| generator(seed, Stream::MonteCarlo, index));
         for stratum in 0..STRATA {
             let mut energy = RunningMean::default();
             for _ in 0..SAMPLES {
-                let sample = Sample::draw(stratum, &mut generator);
+                let sample = Sample::draw(stratum, &mut speeds);
                 let contact = gas.contact(sample.closing, sample.slip, normal(&mut spins));
                 let impulse = rule.impulse(&contact);
                 energy.push(sample.weight * impulse.energy_change(&contact));

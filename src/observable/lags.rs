@@ -42,7 +42,7 @@ impl<V> Lags<V> {
         accept((1..=MOST_LAGS).contains(&longest), "number of lags", "in 1..=2^20", longest as f64)?;
         let means = vec![BlockedMean::new(); longest + 1];
         Ok(Self {
-            sample_times: times,
+            sample_times: times.equally_spaced()?,
             latest: None,
             past: VecDeque::new(),
             means,

@@ -51,7 +51,7 @@ const ROUNDING: f64 = 1e-9;
 /// use granular_edmd::{Simulation, initial};
 ///
 /// let container = Container::periodic(30.0, 30.0)?;
-/// let disks = initial::random(&container, 200, 0.5, 30.0, 1)?;
+/// let disks = initial::scattered(&container, 200, 0.5, 30.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
 /// let mut correlation = Sampled::new(PairCorrelation::new(3.0, 30)?, SampleTimes::every(1.0)?);
 /// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(50.0, &mut correlation)?;

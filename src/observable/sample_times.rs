@@ -1,7 +1,7 @@
 //! The clock that sets the sampling times of observers.
 
 use crate::ParameterError;
-use crate::quantity::{finite, positive};
+use crate::quantity::{accept, finite, positive};
 
 /// Relative rounding error of the start time of a run, and of a sampling time. Each is the sum of an offset
 /// and an origin, rounded a few times.
@@ -11,15 +11,20 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// example, the origin may be far larger than the time, and the time then has the origin's rounding error.
 const PART: f64 = 1e-9;
 
+/// Powers of ten, for the decimal places of an interval whose multiples are computed as decimal numbers.
+const POWERS_OF_TEN: [f64; 10] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+
 /// Smallest ratio of the interval to the time. Rounding then moves a sampling time by at most a sixteenth of
 /// the interval.
 const COARSEST: f64 = 16.0 * f64::EPSILON;
 
-/// A clock for observers, with equally spaced times of samples.
+/// A clock for observers: equally spaced times of samples, or times at equal ratios.
 ///
 /// The sampling times are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
 /// first time ([`Self::starting_at`]). Each time is a multiple, not a sum, so the thousandth is as exact as
-/// the first.
+/// the first. If the interval and the first time are decimal numbers of at most nine places, so are the
+/// sampling times: the third multiple of 0.1 is 0.3. [`Self::at_ratio`] gives times that are equally spaced on
+/// a logarithmic scale, and [`ByCollisions`](super::ByCollisions) samples by the number of collisions.
 ///
 /// # The start of a run
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
@@ -34,14 +39,17 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 /// If a run starts before the last sampling time, it counts as another run, and the clock begins anew.
 ///
 /// To sample at a fixed phase of a vibrating base, take a whole number of its periods as the interval, and a
-/// time of that phase as the first time. Compute the end of a run as a multiple, too
-/// (`count as f64 * interval`). Otherwise, rounding may put the last sample just after the end.
+/// time of that phase as the first time.
+///
+/// # The end of a run
+/// A time that rounding puts just after the end of a run counts as the end: the run then ends at that time, a
+/// few roundings later, and has its sample. The same holds for kicks and for the openings of inlets.
 ///
 /// # Two clocks
-/// Times of two clocks are the same only to the bit: 3 times 0.1 is 0.30000000000000004, which is later than
-/// 0.3. A sample, a kick and the opening of an inlet at such times come in the order of the bits, now one
-/// first and now the other. Where their order matters, take intervals whose multiples are exact, such as 0.25
-/// and 0.5, or put the first time of one clock between two times of the other ([`Self::starting_at`]).
+/// Times of two clocks are the same only to the bit. A sample, a kick and the opening of an inlet at times
+/// that differ by a rounding come in the order of the bits, now one first and now the other. Where their order
+/// matters, take decimal intervals, or put the first time of one clock between two times of the other
+/// ([`Self::starting_at`]).
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -60,13 +68,18 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SampleTimes {
+    /// The interval, or for times at equal ratios the ratio.
     interval: f64,
+    is_ratio: bool,
     /// The first sampling time.
     ///
     /// If it is `None`, sampling times are counted from time 0 in both directions.
     first: Option<f64>,
     /// Number of the upcoming sampling time.
     beat: i64,
+    /// The upcoming sampling time, which runs read after each collision.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    upcoming: f64,
     /// True once a run has started.
     started: bool,
 }
@@ -78,30 +91,77 @@ impl SampleTimes {
     /// If the interval is not finite and positive.
     pub fn every(interval: f64) -> Result<Self, ParameterError> {
         let interval = positive("sampling interval", interval)?;
-        Ok(Self { interval, first: None, beat: 1, started: false })
+        Ok(Self { interval, is_ratio: false, first: None, beat: 1, upcoming: interval, started: false })
+    }
+
+    /// Creates a clock whose sampling times are `first`, `first * ratio`, `first * ratio²` and so on, as for a
+    /// gas that cools.
+    ///
+    /// Observers of intervals, such as [`WallStress`](super::WallStress), and drivings need equally spaced
+    /// times.
+    ///
+    /// # Errors
+    /// If the first time is not finite and positive, or the ratio is not in (1, 1e9].
+    ///
+    /// ```
+    /// use granular_edmd::observable::SampleTimes;
+    /// let mut times = SampleTimes::at_ratio(0.5, 2.0)?;
+    /// times.start_at(0.0);
+    /// let next = |times: &mut SampleTimes| {
+    ///     let next = times.upcoming();
+    ///     times.advance_past(next);
+    ///     next
+    /// };
+    /// assert_eq!([0; 4].map(|_| next(&mut times)), [0.5, 1.0, 2.0, 4.0]);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub fn at_ratio(first: f64, ratio: f64) -> Result<Self, ParameterError> {
+        let first = Some(positive("first sampling time", first)?);
+        let interval = accept(ratio > 1.0 && ratio <= 1e9, "ratio of sampling times", "in (1, 1e9]", ratio)?;
+        Ok(Self { interval, is_ratio: true, first, beat: 0, upcoming: 0.0, started: false }.at_beat())
     }
 
     /// Returns the same clock with its first sampling time at this absolute time.
     ///
     /// # Errors
-    /// If the time is not finite.
+    /// If the time is not finite, or not positive for times at equal ratios.
     pub fn starting_at(self, first: f64) -> Result<Self, ParameterError> {
+        if self.is_ratio {
+            return Self::at_ratio(first, self.interval);
+        }
         let first = Some(finite("first sampling time", first)?);
-        Ok(Self { first, beat: 0, started: false, ..self })
+        Ok(Self { first, beat: 0, started: false, ..self }.at_beat())
     }
 
-    /// Returns the interval between two sampling times.
+    /// Returns the interval between two sampling times, or NaN for times at equal ratios.
     pub const fn interval(&self) -> f64 {
-        self.interval
+        if self.is_ratio { f64::NAN } else { self.interval }
+    }
+
+    /// Returns the same clock if its times are equally spaced.
+    pub(crate) fn equally_spaced(self) -> Result<Self, ParameterError> {
+        accept(
+            !self.is_ratio,
+            "ratio of sampling times",
+            "absent: equal intervals are needed",
+            self.interval,
+        )?;
+        Ok(self)
     }
 
     /// Returns the upcoming sampling time.
     ///
     /// It is NaN where times are too coarse for the interval, which ends a run with an error: samples would
     /// be unevenly spaced there, or missing.
-    pub fn upcoming(&self) -> f64 {
-        let beat = self.time_of(self.beat);
-        if self.interval < COARSEST * beat.abs() { f64::NAN } else { beat }
+    #[inline]
+    pub const fn upcoming(&self) -> f64 {
+        self.upcoming
+    }
+
+    fn at_beat(self) -> Self {
+        let time = self.time_of(self.beat);
+        let is_coarse = self.spacing(time) < COARSEST * time.abs();
+        Self { upcoming: if is_coarse { f64::NAN } else { time }, ..self }
     }
 
     /// Advances to the first sampling time after this absolute time.
@@ -112,10 +172,16 @@ impl SampleTimes {
         // soon even where rounding swallows single intervals.
         let mut more = 1_i64;
         while self.beat < i64::MAX && self.time_of(self.beat) <= time {
-            let skipped = ((time - self.time_of(self.beat)) / self.interval).floor().max(0.0);
-            self.beat = self.beat.saturating_add(more).saturating_add(skipped as i64);
+            let next = self.time_of(self.beat);
+            let skipped = if self.is_ratio {
+                libm::log(time / next) / libm::log(self.interval)
+            } else {
+                (time - next) / self.interval
+            };
+            self.beat = self.beat.saturating_add(more).saturating_add(skipped.floor().max(0.0) as i64);
             more = more.saturating_mul(2);
         }
+        *self = self.at_beat();
     }
 
     /// Notes that a run starts at this absolute time.
@@ -131,7 +197,7 @@ impl SampleTimes {
         } else if self.time_of(self.beat) < time - rounding {
             self.advance_past(time + rounding);
         }
-        self.started = true;
+        *self = Self { started: true, ..self.at_beat() };
     }
 
     /// Sets the first sampling time of a run that has no sample yet.
@@ -150,23 +216,45 @@ impl SampleTimes {
 
     /// Returns the difference up to which times near this one count as the same.
     pub(super) fn rounding(&self, time: f64) -> f64 {
-        ROUNDING * time.abs() + PART * self.interval
+        ROUNDING * time.abs() + PART * self.spacing(time)
+    }
+
+    /// Returns the time between the sampling times near this time.
+    fn spacing(&self, time: f64) -> f64 {
+        if self.is_ratio { (self.interval - 1.0) * time.abs() } else { self.interval }
     }
 
     fn time_of(&self, beat: i64) -> f64 {
+        let (first, interval, beat_number) = (self.first.unwrap_or(0.0), self.interval, beat as f64);
         if beat == i64::MAX {
-            return f64::INFINITY;
+            f64::INFINITY
+        } else if self.is_ratio {
+            first * libm::pow(interval, beat_number)
+        } else if let Some(scale) = self.decimal_scale() {
+            // Products of whole numbers are exact, so that only the quotient is rounded.
+            ((first * scale).round() + beat_number * (interval * scale).round()) / scale
+        } else {
+            first + beat_number * interval
         }
-        self.first.unwrap_or(0.0) + beat as f64 * self.interval
+    }
+
+    /// Returns the smallest power of ten that turns the first time and the interval into whole numbers.
+    fn decimal_scale(&self) -> Option<f64> {
+        let times = [self.first.unwrap_or(0.0), self.interval];
+        let is_whole = |scale: &f64| times.iter().all(|time| (time * scale).round() / scale == *time);
+        POWERS_OF_TEN.into_iter().find(is_whole)
     }
 }
 
 crate::gate::from_file! {
-    SampleTimes { interval: f64, first: Option<f64>, beat: i64, started: bool } => {
-        positive("sampling interval", interval)?;
-        finite("first sampling time", first.unwrap_or(0.0))?;
+    SampleTimes {
+        interval: f64, is_ratio: bool, first: Option<f64>, beat: i64, started: bool
+    } => {
+        let first_time = first.unwrap_or(0.0);
+        let clock = if is_ratio { Self::at_ratio(first_time, interval)? } else { Self::every(interval)? };
+        finite("first sampling time", first_time)?;
         let counted = first.is_none() || beat >= 0;
-        crate::quantity::accept(counted, "number of the next sample", "not negative", beat as f64)?;
-        Ok(Self { interval, first, beat, started })
+        accept(counted, "number of the next sample", "not negative", beat as f64)?;
+        Ok(Self { first, beat, started, ..clock }.at_beat())
     }
 }

@@ -63,7 +63,7 @@ pub struct StressTensor {
 ///
 /// // A gas of packing fraction 0.1 in a periodic box, whose pressure is 1.236 times an ideal gas's.
 /// let container = Container::periodic(40.0, 40.0)?;
-/// let disks = initial::random(&container, 204, 0.5, 40.0, 1)?;
+/// let disks = initial::scattered(&container, 204, 0.5, 40.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
 /// let mut stress = Stress::new(SampleTimes::every(1.0)?);
 /// let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;

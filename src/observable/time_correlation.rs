@@ -79,7 +79,7 @@ impl Observable for Velocities {
 /// use granular_edmd::{Simulation, initial};
 ///
 /// let container = Container::periodic(20.0, 20.0)?;
-/// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
+/// let disks = initial::scattered(&container, 100, 0.5, 20.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
 /// let mut correlation = TimeCorrelation::new(Velocities, 10, SampleTimes::every(0.5)?)?;
 /// let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;

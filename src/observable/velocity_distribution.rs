@@ -38,7 +38,7 @@ use crate::{Disk, ParameterError};
 /// use granular_edmd::{Simulation, initial};
 ///
 /// let container = Container::periodic(20.0, 20.0)?;
-/// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
+/// let disks = initial::scattered(&container, 100, 0.5, 20.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
 /// let velocities = VelocityDistribution::new(4.0, 20)?.about_mean();
 /// let mut velocities = Sampled::new(velocities, SampleTimes::every(2.0)?);

@@ -1,8 +1,6 @@
 //! The builder, which checks all inputs once and makes a simulation of them.
 
 use glam::DVec2;
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cells::{CellSize, Cells};
 use super::engine::{Engine, Parts};
@@ -91,8 +89,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
     /// Sets the seed of the stochastic walls, such as thermal walls; 0 unless given.
     ///
-    /// Repeats of a run need different seeds, like their initial states: with the same random numbers at the
-    /// walls, they are not independent.
+    /// The random numbers of a collision follow from the seed, the disk's [id](Disk::id), and the time and the
+    /// number of the disk's collision. Repeats of a run need different seeds, like their initial states: with
+    /// the same random numbers at the walls, they are not independent. A repeat may have one seed for
+    /// everything, since its parts draw from separate [streams](crate::random).
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
@@ -140,10 +140,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         }
         let energy = bodies.energy(0.0, &boundary.domain())[0];
         let ledger = Ledger::new(self.start_time, energy);
-        let generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
         let mut simulation = Simulation {
             parts: Parts { rule: self.rule, boundary, scheduler: self.scheduler },
-            engine: Engine::new(wall_count, bodies, cells, clock, generator, ledger),
+            engine: Engine::new(wall_count, bodies, cells, clock, self.seed, ledger),
         };
         simulation.predict_all();
         Ok(simulation)

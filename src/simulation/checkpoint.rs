@@ -11,7 +11,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
-use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use thiserror::Error;
 
@@ -27,7 +26,7 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANEDMD", 9);
+const SEAL: Seal = Seal::new(*b"GRANEDMD", 10);
 
 /// A saved run: everything on which its future depends, except its rule and its boundary. The state of walls
 /// that [react](Boundary::react) is included.
@@ -87,7 +86,7 @@ struct Saved {
     forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
-    generator: Xoshiro256PlusPlus,
+    seed: u64,
     clock: Clock,
     counters: Counters,
     ledger: Ledger,
@@ -278,7 +277,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.engine.cells.layouts(),
             places: self.engine.cells.places.clone(),
-            generator: self.engine.generator.clone(),
+            seed: self.engine.seed,
             // The number of events until the next check is not part of the state.
             clock: Clock { events_to_look: 0, ..self.engine.clock },
             counters: self.engine.counters,

@@ -15,6 +15,7 @@ pub use rescaling::Rescaling;
 
 use std::time::Instant;
 
+use super::limits::rounded_up;
 use super::{Limits, RunEnd, RunError, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -111,7 +112,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                     ParameterError::new("time of the next kick", "a number that is not too late", next);
                 return Err(failed(self.time(), error.into()));
             }
-            if next > limits.end() {
+            if next > rounded_up(limits.end(), next) {
                 return self.run(&left, observer);
             }
             let end = self.run(&left.ending_at(next), observer)?;
@@ -138,7 +139,7 @@ fn energy_of(disks: &[Disk]) -> f64 {
 }
 
 /// Returns the velocity of the center of mass; 0 without disks.
-fn drift_of(disks: &[Disk]) -> glam::DVec2 {
+pub(crate) fn drift_of(disks: &[Disk]) -> glam::DVec2 {
     let mass: f64 = disks.iter().map(Disk::mass).sum();
     let momentum: glam::DVec2 = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum();
     if mass > 0.0 { momentum / mass } else { momentum }

@@ -1,9 +1,5 @@
 //! The two halves of a simulation: the parts that its user chooses, and the engine that they drive.
 
-#[cfg(debug_assertions)]
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
-
 use super::cells::Cells;
 use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock, Ledger};
@@ -29,7 +25,8 @@ pub(super) struct Engine {
     pub(super) bodies: Bodies,
     pub(super) cells: Cells,
     pub(super) clock: Clock,
-    pub(super) generator: Xoshiro256PlusPlus,
+    /// Seed of the stochastic walls.
+    pub(super) seed: u64,
     pub(super) counters: Counters,
     pub(super) lookahead: Lookahead,
     /// Processor instructions that predictions may use. The results are the same with any of them, bit for
@@ -49,7 +46,7 @@ impl Engine {
         bodies: Bodies,
         cells: Cells,
         clock: Clock,
-        generator: Xoshiro256PlusPlus,
+        seed: u64,
         ledger: Ledger,
     ) -> Self {
         Self {
@@ -57,7 +54,7 @@ impl Engine {
             bodies,
             cells,
             clock,
-            generator,
+            seed,
             counters: Counters::default(),
             lookahead: Lookahead::default(),
             instructions: Instructions::detected(),
@@ -85,7 +82,7 @@ impl Engine {
     pub(super) fn empty() -> Self {
         let bodies = Bodies::new(&[], Gravity::NONE);
         let (clock, ledger) = (Clock::new(0.0, 1.0), Ledger::new(0.0, 0.0));
-        Self::new(0, bodies, Cells::default(), clock, Xoshiro256PlusPlus::from_seed([0; 32]), ledger)
+        Self::new(0, bodies, Cells::default(), clock, 0, ledger)
     }
 }
 

@@ -3,12 +3,11 @@
 use std::collections::VecDeque;
 
 use glam::DVec2;
-use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::observable::SampleTimes;
 use crate::quantity::{accept, finite};
-use crate::random::uniform;
+use crate::random::{Stream, generator_at, uniform};
 use crate::{Disk, Kind, ParameterError};
 
 /// An inlet: it lets disks into a run, at set times and at random positions in a rectangle.
@@ -18,6 +17,9 @@ use crate::{Disk, Kind, ParameterError};
 /// which it finds no room waits until the inlet opens again, and the other disks wait behind it. A disk that
 /// enters has a new [id](Disk::id) and the largest index, and has collided with nothing yet. An insertion
 /// takes the same time however many disks there are.
+///
+/// The random numbers of an opening follow from the seed, the number of the inlet in its run and the time of
+/// the opening. Several inlets of a run may therefore have the same seed.
 ///
 /// An inlet and its waiting disks are part of the state of a run, and therefore of its checkpoints.
 ///
@@ -44,7 +46,7 @@ pub struct Inlet {
     places: [DVec2; 2],
     source: Source,
     pub(super) times: SampleTimes,
-    generator: Xoshiro256PlusPlus,
+    pub(super) seed: u64,
     pub(super) waiting: VecDeque<Disk>,
 }
 
@@ -58,9 +60,8 @@ enum Source {
 
 crate::gate::from_file! {
     Inlet {
-        places: [DVec2; 2], source: Source, times: SampleTimes, generator: Xoshiro256PlusPlus,
-        waiting: VecDeque<Disk>
-    } => Self { places, source, times, generator, waiting }.checked()
+        places: [DVec2; 2], source: Source, times: SampleTimes, seed: u64, waiting: VecDeque<Disk>
+    } => Self { places, source, times, seed, waiting }.checked()
 }
 
 impl Inlet {
@@ -120,8 +121,7 @@ impl Inlet {
     }
 
     fn of(places: [DVec2; 2], source: Source, times: SampleTimes, seed: u64) -> Result<Self, ParameterError> {
-        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-        Self { places, source, times, generator, waiting: VecDeque::new() }.checked()
+        Self { places, source, times, seed, waiting: VecDeque::new() }.checked()
     }
 
     fn checked(self) -> Result<Self, ParameterError> {
@@ -171,19 +171,22 @@ impl Inlet {
         }
     }
 
-    /// Starts an opening at this time, and advances to the next opening.
-    pub(super) fn open(&mut self, time: f64) {
+    /// Starts an opening at this time, and advances to the next opening. Returns the random numbers of the
+    /// opening, which differ between the inlets of a run by their `number`.
+    pub(super) fn open(&mut self, time: f64, number: usize) -> Xoshiro256PlusPlus {
+        let mut random = generator_at(self.seed, Stream::Inlets, number as u64, time);
         self.times.advance_past(time);
         if let Source::New(models) = &self.source {
-            let drawn = (uniform(&mut self.generator) * models.len() as f64) as usize;
+            let drawn = (uniform(&mut random) * models.len() as f64) as usize;
             self.waiting.extend(models.get(drawn));
         }
+        random
     }
 
     /// Returns a disk without an id at a random position of the inlet.
-    pub(super) fn placed(&mut self, disk: &Disk) -> Option<Disk> {
+    pub(super) fn placed(&self, disk: &Disk, random: &mut Xoshiro256PlusPlus) -> Option<Disk> {
         let [low, high] = self.places;
-        let mut along = |low: f64, high: f64| low + (high - low) * uniform(&mut self.generator);
+        let mut along = |low: f64, high: f64| low + (high - low) * uniform(random);
         let place = DVec2::new(along(low.x, high.x), along(low.y, high.y));
         disk.with_image([0; 2]).identified(0).with_position(place).ok()
     }

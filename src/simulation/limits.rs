@@ -13,6 +13,12 @@ use crate::quantity::non_negative;
 /// immediately, even if each event takes all the steps that a search for a moving wall may take.
 const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
+/// Relative rounding error of times that are computed from the same decimal numbers in different ways.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// End of a run without an end time. The search for a wall that a disk at rest never meets may be due later.
+pub(super) const NEVER: f64 = 1e300;
+
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
 /// flag that another thread sets.
 ///
@@ -46,6 +52,13 @@ impl<'a> Limits<'a> {
     /// Creates the limits of a run that ends at the absolute time `end`, with no other limit.
     pub const fn until(end: f64) -> Self {
         Self { end, most_collisions: u64::MAX, wall_clock: None, interrupt: None, least_progress: None }
+    }
+
+    /// Creates the limits of a run of `count` collisions, of disks with disks or walls, without an end time.
+    ///
+    /// If nothing can happen any more, the run ends earlier, with [`RunEnd::Time`].
+    pub const fn collisions(count: u64) -> Self {
+        Self { most_collisions: count, ..Self::until(NEVER) }
     }
 
     /// Returns the same limits, with at most `most_collisions` collisions in the run, of disks with disks or
@@ -107,10 +120,16 @@ impl<'a> Limits<'a> {
         Self { end, ..self }
     }
 
-    /// Returns the absolute time at which the run ends.
+    /// Returns the absolute time at which the run ends; 1e300 without an end time.
     pub const fn end(&self) -> f64 {
         self.end
     }
+}
+
+/// Returns the end of a run, or the time of the next sample, kick or opening if only rounding puts it later.
+pub(super) fn rounded_up(end: f64, next: f64) -> f64 {
+    let is_same = next > end && next - end <= ROUNDING * end.abs();
+    if is_same { next } else { end }
 }
 
 /// The limits of a run that is under way.

@@ -11,7 +11,7 @@ use crate::boundary::{Impact, Response, Surface, Thermal};
 use crate::collision::{Body, CollisionRule, Impulse, Material, after, collide_bodies, contact_of, momentum};
 use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
-use crate::random::{normal, rayleigh};
+use crate::random::{Stream, derived_seed, generator_at, normal, rayleigh};
 
 /// Largest difference between the length of a surface's normal and 1.
 const UNIT: f64 = 1e-9;
@@ -112,7 +112,7 @@ fn captured(arriving: &Body, surface: &Surface<'_>, mass: f64) -> Body {
 pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     bodies: &Bodies,
     rule: &R,
-    generator: &mut Xoshiro256PlusPlus,
+    seed: u64,
     surface: &Surface<'_>,
     clock: &Clock,
     disk: usize,
@@ -136,7 +136,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let (leaving, impulse) = match surface.response {
         Response::Thermal(thermal) => {
             let properties = [mass, inertia, material.radius];
-            leading_to(emitted(&thermal, &arriving, surface, properties, generator))
+            let random = &mut of_collision(seed, bodies, clock, disk);
+            leading_to(emitted(&thermal, &arriving, surface, properties, random))
         }
         Response::Absorbing => leading_to(captured(&arriving, surface, mass)),
         Response::Rule(own) => kicked_by(own.impulse(&contact)),
@@ -227,6 +228,19 @@ pub(super) fn impact_of(collision: &Collision, wall: usize, offset: f64) -> Impa
     let impulse = collision.impulse;
     Impact::new(wall, -momentum(collision.normal, &impulse), collision.partner_position(), offset)
         .with_couple(impulse.couple())
+}
+
+/// Returns the random numbers for a disk's present collision, which do not depend on the order of events.
+fn of_collision(seed: u64, bodies: &Bodies, clock: &Clock, disk: usize) -> Xoshiro256PlusPlus {
+    // The count distinguishes two collisions at one time, and the time distinguishes them after the count has
+    // wrapped around.
+    let count = bodies.particles[disk].forecast.collisions;
+    generator_at(
+        derived_seed(seed, Stream::Walls, bodies.id(disk)),
+        Stream::Walls,
+        count.into(),
+        clock.time(),
+    )
 }
 
 /// Returns the motion with which a disk leaves a thermal wall.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::engine::Engine;
 use super::errors::{Outcome, RunError};
-use super::limits::{Limits, Watch};
+use super::limits::{Limits, NEVER, Watch, rounded_up};
 use super::state::effort;
 use super::{Event, RunEnd, Simulation};
 use crate::boundary::Boundary;
@@ -164,6 +164,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let watch = Watch::new(&limits, &self.engine.counters);
         let reached = loop {
             let opening = self.engine.next_opening()?;
+            let end = rounded_up(end, opening);
             match self.collide_until(end.min(opening), &watch, observer)? {
                 Reached::Time if opening <= end => self.open_inlets(opening, observer)?,
                 reached => break reached,
@@ -178,16 +179,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Advances from sample to sample until a limit is reached.
     #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
-        let end = watch.end();
-        loop {
-            if let Some(end) = watch.reached(&self.engine.counters) {
-                return Ok(end);
-            }
+        'samples: loop {
             let sample = observer.next_sample();
             if sample.is_nan() {
                 return Err(Box::new(RunError::SampleTime { next: sample, time: self.time() }));
             }
+            // A sample that the latest collision made due comes before the end of the run.
+            if sample > self.time()
+                && let Some(end) = watch.reached(&self.engine.counters)
+            {
+                return Ok(end);
+            }
             let opening = self.engine.next_opening()?;
+            let end = rounded_up(watch.end(), sample.min(opening));
             let stop = end.min(sample.max(self.time())).min(opening);
             loop {
                 match self.collide_until(stop, watch, observer)? {
@@ -197,6 +201,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 }
                 if self.verdict_of(observer)?.is_break() {
                     return Ok(RunEnd::Observer);
+                }
+                // An observer may count collisions and request a sample now.
+                if observer.next_sample() < stop {
+                    continue 'samples;
                 }
             }
             // Inlets open before a sample at the same time, so that the sample sees the new disks.
@@ -237,7 +245,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return Ok(Reached::Collision(event));
             }
         }
-        self.engine.clock.advance_to(stop);
+        // A run without an end stays at its last event.
+        if stop < NEVER {
+            self.engine.clock.advance_to(stop);
+        }
         Ok(Reached::Time)
     }
 

@@ -71,11 +71,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 if self.moves_otherwise(disk, wall, due) {
                     return Remedy::WallVelocity;
                 }
-                let mut generator = self.engine.generator.clone();
                 let (collision, _) = resolve_wall(
                     &self.engine.bodies,
                     &self.parts.rule,
-                    &mut generator,
+                    self.engine.seed,
                     &surface,
                     &clock,
                     disk,

@@ -6,6 +6,7 @@
 //! engine replaces them when they are due, as for any partner that has collided since.
 
 use glam::DVec2;
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::builder::{check_speeds, too_small};
 use super::engine::Engine;
@@ -62,9 +63,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if self.engine.inlets[number].times.upcoming() > time {
                 continue;
             }
-            self.engine.inlets[number].open(time);
+            let mut random = self.engine.inlets[number].open(time, number);
             while let Some(disk) = self.engine.inlets[number].waiting.front().copied()
-                && let Some(placed) = self.place_for(number, &disk)?
+                && let Some(placed) = self.place_for(number, &disk, &mut random)?
             {
                 self.put_in(&placed)?;
                 self.engine.inlets[number].waiting.pop_front();
@@ -77,14 +78,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Finds room for a disk at an inlet.
-    fn place_for(&mut self, inlet: usize, disk: &Disk) -> Outcome<Option<Disk>> {
+    fn place_for(
+        &mut self,
+        inlet: usize,
+        disk: &Disk,
+        random: &mut Xoshiro256PlusPlus,
+    ) -> Outcome<Option<Disk>> {
         let numbered = self.engine.bodies.identities.check_room(&[disk.identified(0)]);
         numbered.map_err(|source| RunError::Inlet { time: self.time(), source })?;
         if self.len() >= MOST_DISKS || !self.make_cells_suit(2.0 * disk.radius()) {
             return Ok(None);
         }
         Ok((0..TRIES).find_map(|_| {
-            let placed = self.engine.inlets[inlet].placed(disk)?;
+            let placed = self.engine.inlets[inlet].placed(disk, random)?;
             self.has_room(&placed).then_some(placed)
         }))
     }

@@ -49,7 +49,7 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
     observer: &mut (impl Observer + ?Sized),
 ) -> Result<RunReport, RunError> {
     let mut run = simulation.clone();
-    let limits = Limits::until(f64::MAX).with_most_collisions(collisions);
+    let limits = Limits::collisions(collisions);
     let meter = Meter::start(&run);
     run.run(&limits, observer)?;
     Ok(meter.report(&run))

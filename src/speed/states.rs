@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::boundary::{Boundary, Container, Part, Vessel, VesselError, Wall, WallError};
 use crate::collision::{ContactDuration, Elastic, Frictional};
 use crate::initial::{
-    PlacementError, even_lattice, homogeneous, lattice, placed_at_random, with_maxwellian_velocities,
+    PlacementError, disks_from_radii, even_lattice, lattice, scattered_mix, with_maxwellian_velocities,
 };
 use crate::quantity::accept;
 use crate::simulation::{BuildError, Limits, RunError};
@@ -86,7 +86,7 @@ pub fn mixture() -> Result<Simulation<Elastic>, StateError> {
     let side = side(small as f64 + 100.0 * large as f64, 0.4);
     let container = Container::periodic(side, side)?;
     let radii = std::iter::repeat_n(5.0, large).chain(std::iter::repeat_n(0.5, small));
-    let disks = placed_at_random(&container, homogeneous(radii, 1.0)?, side, 7)?;
+    let disks = scattered_mix(&container, disks_from_radii(radii, 1.0)?, side, 7)?;
     settled_gas(container, disks)
 }
 
@@ -127,6 +127,6 @@ fn settled_gas<B: Boundary>(boundary: B, disks: Vec<Disk>) -> Result<Simulation<
     let disks = with_maxwellian_velocities(disks, 1.0, 1)?;
     let collisions = COLLISIONS * disks.len() as u64 / 2;
     let mut run = Simulation::builder(Elastic, boundary).disks(disks).build()?;
-    run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ())?;
+    run.run(&Limits::collisions(collisions), &mut ())?;
     Ok(run)
 }

@@ -37,7 +37,7 @@ use crate::{Fingerprint, ParameterError};
 /// // A lid of mass 20, at first at height 30, that sinks to height 5 at most, under its weight.
 /// let lid = Piston::new(20.0, [0.0, 25.0])?.with_force(20.0 * 0.1)?;
 /// let container = Container::closed(10.0, 30.0)?.with_piston(Wall::Lid, lid)?;
-/// let disks = initial::random(&container, 30, 0.5, 30.0, 1)?;
+/// let disks = initial::scattered(&container, 30, 0.5, 30.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
 /// let mut run = Simulation::builder(Elastic, container).disks(disks).gravity(0.1).build()?;
 /// run.run_until(200.0, &mut ())?;

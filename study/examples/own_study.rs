@@ -116,7 +116,7 @@ impl Experiment for Turning {
         Ok(Drum { radius, rim: Brick::circle(DVec2::ZERO, radius)?, spin, heat: Thermal::new(1.0)? })
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
-        let disks = initial::random(&self.boundary()?, self.disks, 0.5, 16.0, seed)?;
+        let disks = initial::scattered(&self.boundary()?, self.disks, 0.5, 16.0, seed)?;
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
     fn observer(&self) -> Result<CollisionCounts, ExperimentError> {

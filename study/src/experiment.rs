@@ -14,7 +14,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::ExperimentError;
-use super::parameters::derived_seed;
 use super::sliced::{Interval, SavedDriving, Start};
 use columns::{Column, Table};
 use record::Record;
@@ -147,7 +146,10 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// If the parameters do not give walls.
     fn boundary(&self) -> Result<Self::Boundary, ExperimentError>;
 
-    /// Returns the disks at the start. [`build`](Self::build) derives the seed from the seed of the ramp.
+    /// Returns the disks at the start. [`build`](Self::build) passes the seed of the ramp.
+    ///
+    /// All parts of a run may take this seed, since they draw from separate
+    /// [streams](granular_edmd::random).
     ///
     /// A plan can ask for any number of disks: refuse a number that does not fit into memory before you
     /// allocate a vector for it.
@@ -255,16 +257,15 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Builds the simulation at the start of a ramp from the seed of the ramp.
     ///
-    /// The disks and the thermal walls have separate seeds, which follow from this one. To repeat a run of a
-    /// study, build it with the seed of its [`Record`]; disks made with this seed itself would be others.
+    /// To repeat a run of a study, build it with the seed of its [`Record`].
     ///
     /// # Errors
     /// If the rule, the walls, the disks or the simulation cannot be made.
     fn build(&self, seed: u64) -> Result<Run<Self>, ExperimentError> {
         Ok(Simulation::builder(self.rule()?, self.boundary()?)
-            .disks(self.disks(derived_seed(seed, 0))?)
+            .disks(self.disks(seed)?)
             .gravity(self.gravity())
-            .seed(derived_seed(seed, 1))
+            .seed(seed)
             .build()?)
     }
 

@@ -36,7 +36,7 @@ fn obstacles_keep_the_contract() {
 #[test]
 fn a_gas_flows_around_obstacles() {
     let board = || Obstacles::new(Container::periodic(12.0, 12.0).unwrap(), pegs());
-    let disks = initial::random(&board(), 40, 0.4, 12.0, 1).unwrap();
+    let disks = initial::scattered(&board(), 40, 0.4, 12.0, 1).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
     let energy = |disks: &[Disk]| disks.iter().map(Disk::translational_energy).sum::<f64>();
     let mut run = Simulation::builder(Elastic, board()).disks(disks.clone()).build().unwrap();

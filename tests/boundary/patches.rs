@@ -87,7 +87,7 @@ fn a_sieve_stops_some_kinds_only() -> Outcome {
         Ok(if k.is_multiple_of(2) { disk.with_kind(LARGE) } else { disk })
     };
     let mix = (0..60).map(mix).collect::<Result<Vec<_>, granular_edmd::ParameterError>>()?;
-    let disks = initial::placed_at_random(&vessel, mix, 20.0, 4)?;
+    let disks = initial::scattered_mix(&vessel, mix, 20.0, 4)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 5)?;
     let below = |disks: &[Disk], kind: Kind| {
         disks.iter().filter(|disk| disk.kind() == kind && disk.position().y < 5.0).count()

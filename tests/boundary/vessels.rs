@@ -234,7 +234,7 @@ fn a_gas_stays_in_its_vessel() {
         (room().with("mixed", mixed()).unwrap().with("block", triangle()).unwrap(), 0.3),
         (periodic, 0.0),
     ] {
-        let disks = initial::random(&vessel, 30, 0.3, 20.0, 1).unwrap();
+        let disks = initial::scattered(&vessel, 30, 0.3, 20.0, 1).unwrap();
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
         let energy = |disks: &[Disk]| -> f64 {
             disks.iter().map(|disk| disk.translational_energy() + gravity * disk.position().y).sum()

@@ -80,7 +80,7 @@ fn energy_and_angular_momentum_balance_in_a_run() -> Outcome {
             .with_angular_velocity(f64::from(k % 5) - 2.0)
     };
     let mix = (0..60).map(mix).collect::<Result<Vec<_>, _>>()?;
-    let disks = initial::placed_at_random(&container, mix, 12.0, 2)?;
+    let disks = initial::scattered_mix(&container, mix, 12.0, 2)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 3)?;
     let rule = RollingFriction::new(Frictional::from_inelasticity(0.05, 0.1, 0.3)?, 0.2)?;
     let mut run = Simulation::builder(rule, container).disks(disks).build()?;

@@ -246,7 +246,7 @@ fn a_million_disks_are_set_up_in_seconds() {
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
     let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).build().unwrap();
     run.run_until(1e-3, &mut ()).unwrap();
-    assert_eq!(initial::random(&container, 1_000_000, 0.5, 2000.0, 1).unwrap().len(), 1_000_000);
+    assert_eq!(initial::scattered(&container, 1_000_000, 0.5, 2000.0, 1).unwrap().len(), 1_000_000);
     let seconds = begin.elapsed().as_secs_f64();
     println!("{seconds} s");
     assert!(seconds < 60.0, "{seconds} s");
@@ -258,7 +258,7 @@ fn more_disks_than_memory_holds_are_refused_at_once() {
     for count in [usize::MAX, 1 << 40, (1 << 28) + 1] {
         let refused = initial::lattice(&open, count, 0.5).unwrap_err().to_string();
         assert!(refused.contains("number of disks"), "{refused}");
-        let refused = initial::random(&open, count, 0.5, 1e9, 1).unwrap_err().to_string();
+        let refused = initial::scattered(&open, count, 0.5, 1e9, 1).unwrap_err().to_string();
         assert!(refused.contains("number of disks"), "{refused}");
     }
 }

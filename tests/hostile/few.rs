@@ -74,7 +74,7 @@ fn disks_of_any_size_find_their_places_or_an_error_at_once() {
             let container = container.unwrap().with_motion(Wall::Floor, base).unwrap();
             for container in [container.clone(), container.with_periodic_sides().unwrap()] {
                 let lattice = initial::lattice(&container, count, size);
-                let random = initial::random(&container, count, size, 10.0, 1);
+                let random = initial::scattered(&container, count, size, 10.0, 1);
                 for disks in [lattice, random].into_iter().flatten() {
                     assert_eq!(disks.len(), count);
                     let overlap =

@@ -70,7 +70,7 @@ pub(crate) fn system() -> impl Strategy<Value = System> {
     (walls(), law(), disks(), gravity(), start, temperature, any::<u64>()).prop_filter_map(
         "the disks must find room",
         |(walls, law, disks, gravity, start, temperature, seed)| {
-            let disks = initial::placed_at_random(&walls.container(), disks, walls.height, seed).ok()?;
+            let disks = initial::scattered_mix(&walls.container(), disks, walls.height, seed).ok()?;
             let disks = initial::with_maxwellian_velocities(disks, temperature, seed).ok()?;
             Some(System { walls, law, gravity, start, seed, disks })
         },

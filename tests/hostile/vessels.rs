@@ -139,7 +139,7 @@ fn keeps_the_contract(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCas
 /// Lets disks fly in a vessel for a while. They stay inside.
 fn nothing_gets_out(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCaseError> {
     let Ok(vessel) = plan.vessel() else { return Err(TestCaseError::reject("sides cross")) };
-    let Ok(disks) = initial::random(&vessel, 12, radius, 20.0, seed) else {
+    let Ok(disks) = initial::scattered(&vessel, 12, radius, 20.0, seed) else {
         return Err(TestCaseError::reject("there is no room"));
     };
     let fail = |error: &dyn std::error::Error| TestCaseError::fail(error.to_string());

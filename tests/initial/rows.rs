@@ -70,8 +70,8 @@ fn obstacles_are_left_out() {
     let mix = disks(Radii::uniform(0.3, 0.7).unwrap().draw(1000, 2));
     for mut placed in [
         initial::lattice(&around, 1000, 0.5).unwrap(),
-        initial::random(&around, 1000, 0.5, 80.0, 1).unwrap(),
-        initial::placed_at_random(&around, mix.clone(), 80.0, 1).unwrap(),
+        initial::scattered(&around, 1000, 0.5, 80.0, 1).unwrap(),
+        initial::scattered_mix(&around, mix.clone(), 80.0, 1).unwrap(),
         initial::placed_in_rows(&around, mix).unwrap(),
     ] {
         placed.extend([intruder, peg]);
@@ -101,8 +101,8 @@ fn disks_stand_and_are_packed_where_their_kind_may_be() {
     let disks: Vec<Disk> = disks(vec![0.5; 40]).into_iter().map(|disk| disk.with_kind(kind)).collect();
     let placed = [
         initial::placed_in_rows(&vessel, disks.clone()).unwrap(),
-        initial::placed_at_random(&vessel, disks.clone(), 14.0, 1).unwrap(),
-        initial::packed_at_random(&vessel, disks, 14.0, 1).unwrap(),
+        initial::scattered_mix(&vessel, disks.clone(), 14.0, 1).unwrap(),
+        initial::packed_mix(&vessel, disks, 14.0, 1).unwrap(),
     ];
     for disk in placed.iter().flatten() {
         assert!(vessel.overlap(&Probe::of(disk, 0.0)).is_none(), "{disk:?}");
@@ -114,6 +114,6 @@ fn disks_stand_and_are_packed_where_their_kind_may_be() {
 fn a_packing_names_a_sink_among_the_disks() {
     let exit = Part::polyline([(0.0, 3.0), (10.0, 3.0)].map(DVec2::from)).unwrap().absorbing_centers();
     let silo = Vessel::new(Container::closed(10.0, 20.0).unwrap()).with("exit", exit).unwrap();
-    let refused = initial::packed_at_random(&silo, disks(vec![0.5; 100]), 20.0, 1).unwrap_err();
+    let refused = initial::packed_mix(&silo, disks(vec![0.5; 100]), 20.0, 1).unwrap_err();
     assert!(refused.to_string().contains("sink \"exit\""), "{refused}");
 }

@@ -57,7 +57,7 @@ fn an_isothermal_atmosphere_has_its_height_temperature_and_virial() -> Outcome {
     assert!((local_height() / first_order - 1.0).abs() < 0.01, "{} {first_order}", local_height());
     let container =
         Container::open(WIDTH)?.with_periodic_sides()?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?;
-    let disks = initial::random(&container, DISKS, 0.5, 12.0, 1)?;
+    let disks = initial::scattered(&container, DISKS, 0.5, 12.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
     let mut simulation =
         Simulation::builder(Elastic, container).disks(disks).gravity(GRAVITY).seed(2).build()?;

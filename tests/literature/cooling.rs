@@ -51,7 +51,7 @@ fn cool_directly<R: CollisionRule>(
     collisions: f64,
 ) -> Result<(f64, Pair, f64), Box<dyn std::error::Error>> {
     let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; 20_000];
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, 1)?)?;
     let count = disks.len() as f64;
     let mut gas = DirectSimulation::new(rule, with_spins(disks, rotational_temperature, 1)?, 1.0, 2)?;
     let mean = |disks: &[Disk], of: fn(&Disk) -> f64| disks.iter().map(of).sum::<f64>() / count;

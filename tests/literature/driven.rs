@@ -71,7 +71,7 @@ fn by_events<R: CollisionRule>(rule: R, noise: f64, count: usize, packing: f64, 
 /// Returns the means of a gas without correlations, in the same units.
 fn by_direct_simulation<R: CollisionRule>(rule: R, noise: f64, count: usize, times: f64) -> Means {
     let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; count];
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, 1)?)?;
     // The unit of time is a mean free time at temperature 1.
     let mut gas = DirectSimulation::new(rule, disks, 0.5 / PI.sqrt(), 3)?;
     let mut noise = WhiteNoise::new(noise, SampleTimes::every(0.1)?, 4)?;
@@ -173,7 +173,7 @@ fn frictional_disks_have_no_correlations_when_dilute() -> Outcome {
 #[test]
 fn noise_keeps_the_momentum() -> Outcome {
     let container = Container::periodic(20.0, 20.0)?;
-    let disks = initial::random(&container, 60, 0.5, 20.0, 1)?;
+    let disks = initial::scattered(&container, 60, 0.5, 20.0, 1)?;
     let masses = (1..).map(f64::from);
     let disks = disks.into_iter().zip(masses).map(|(disk, mass)| disk.with_mass(mass));
     let disks = disks.collect::<Result<Vec<_>, _>>()?;

@@ -51,11 +51,12 @@ impl Gas {
         let container = self.container()?;
         // Dense gases start on a lattice that fills the box, dilute ones at random.
         let disks = if self.density() < 0.5 {
-            initial::random(&container, self.count, 0.5, self.height, self.seed)?
+            initial::scattered(&container, self.count, 0.5, self.height, self.seed)?
         } else {
             initial::lattice(&container, self.count, 0.5)?
         };
         let disks = initial::with_maxwellian_velocities(disks, 1.0, self.seed)?;
+        let disks = initial::without_drift(disks)?;
         let disks = with_spins(disks, rotational_temperature, self.seed)?;
         Ok(Simulation::builder(rule, container).disks(disks).build()?)
     }
@@ -71,8 +72,8 @@ pub(crate) fn periodic_gas<R: CollisionRule>(
 ) -> Result<Simulation<R>, Box<dyn Error>> {
     let side = (0.25 * PI * count as f64 / packing_fraction).sqrt();
     let container = Container::periodic(side, side)?;
-    let disks = initial::random(&container, count, 0.5, side, seed)?;
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
+    let disks = initial::scattered(&container, count, 0.5, side, seed)?;
+    let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, seed)?)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
     run_for(&mut simulation, 20.0, &mut ())?;
     Ok(simulation)

@@ -64,8 +64,8 @@ impl Mixture {
             let disk = Disk::new(DVec2::ZERO, species.radius)?.with_mass(species.mass)?.with_kind(kind);
             disks.extend(std::iter::repeat_n(disk, species.count));
         }
-        let disks = initial::placed_at_random(&container, disks, side, seed)?;
-        let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
+        let disks = initial::scattered_mix(&container, disks, side, seed)?;
+        let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, seed)?)?;
         Ok(Simulation::builder(rule, container).disks(disks).build()?)
     }
 }

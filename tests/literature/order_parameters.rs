@@ -41,8 +41,8 @@ fn a_gas_at_rest_has_the_noise_of_its_temperature() -> Outcome {
     let domain = container.domain();
     let [mut one, mut two] = [RunningMean::default(); 2];
     for seed in 0..400 {
-        let disks = initial::random(&container, 50, 0.5, gas.height, seed)?;
-        let disks = initial::with_maxwellian_velocities(disks, 1.0, seed + 1000)?;
+        let disks = initial::scattered(&container, 50, 0.5, gas.height, seed)?;
+        let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, seed)?)?;
         let order = OrderParameters.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
         one.push(order.one_roll);
         two.push(order.two_rolls);

@@ -47,7 +47,7 @@ fn under_a_lid(
         Piston::new(mass, [0.0, TOP - 9.0])?.with_force(pressure * width)?.with_start(TOP - start, 0.0)?;
     let container = Container::closed(width, TOP)?.with_periodic_sides()?.with_piston(Wall::Lid, lid)?;
     let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; disks as usize];
-    let disks = initial::packed_at_random(&container, disks, start, seed)?;
+    let disks = initial::packed_mix(&container, disks, start, seed)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, seed + 1)?;
     Ok(Simulation::builder(Elastic, container).disks(disks).build()?)
 }

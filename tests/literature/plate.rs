@@ -79,7 +79,7 @@ fn shaken(restitution: f64, amplitude: f64, duration: f64) -> Result<Shaken, Box
         .with_motion(Wall::Floor, BiParabolic::new(amplitude, 1.0 / amplitude)?)?
         .with_rule(Wall::Floor, Elastic)?;
     let guess = kumaran(restitution);
-    let disks = initial::random(&container, DISKS, 0.5, 2.0 * guess / GRAVITY, 1)?;
+    let disks = initial::scattered(&container, DISKS, 0.5, 2.0 * guess / GRAVITY, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, guess, 1)?;
     let rule = Smooth::from_restitution(restitution)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(GRAVITY).build()?;

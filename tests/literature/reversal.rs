@@ -17,7 +17,8 @@ fn distance_after<R: CollisionRule + Copy>(
     collisions_per_disk: f64,
 ) -> Result<f64, Box<dyn std::error::Error>> {
     let container = Container::closed(28.0, 28.0)?;
-    let disks = initial::with_maxwellian_velocities(initial::random(&container, 100, 0.5, 28.0, 1)?, 1.0, 1)?;
+    let disks =
+        initial::with_maxwellian_velocities(initial::scattered(&container, 100, 0.5, 28.0, 1)?, 1.0, 1)?;
     let mut forth = Simulation::builder(rule, container.clone()).disks(disks.clone()).build()?;
     run_for(&mut forth, collisions_per_disk, &mut ())?;
     let turned = forth.disks().iter().map(reversed).collect::<Result<Vec<_>, _>>()?;

@@ -32,7 +32,7 @@ fn disks_above_a_line_are_those_that_crossed_it() -> Outcome {
         let container = Container::closed(12.0, 10.0)?;
         let container = if periodic { container.with_periodic_sides()? } else { container };
         let disks =
-            initial::with_maxwellian_velocities(initial::random(&container, 40, 0.4, 10.0, 1)?, 1.0, 2)?;
+            initial::with_maxwellian_velocities(initial::scattered(&container, 40, 0.4, 10.0, 1)?, 1.0, 2)?;
         let paint = |(k, disk): (usize, Disk)| if k % 3 == 0 { disk.with_kind(RED) } else { disk };
         let disks: Vec<Disk> = disks.into_iter().enumerate().map(paint).collect();
         let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, 0.05)?;
@@ -60,7 +60,7 @@ fn disks_that_turn_back_on_a_line_have_not_crossed_it() -> Outcome {
     for gravity in [0.0, 0.4] {
         let container = Container::closed(20.0, 16.0)?;
         let disks =
-            initial::with_maxwellian_velocities(initial::random(&container, 50, 0.5, 16.0, 1)?, 1.0, 2)?;
+            initial::with_maxwellian_velocities(initial::scattered(&container, 50, 0.5, 16.0, 1)?, 1.0, 2)?;
         for [from, to] in [
             [(0.0, 0.5), (20.0, 0.5)],
             [(20.0, 0.5), (0.0, 0.5)],
@@ -105,7 +105,7 @@ fn disks_that_turn_back_on_a_line_have_not_crossed_it() -> Outcome {
 #[test]
 fn crossings_of_a_seam_are_those_of_the_images() -> Outcome {
     let container = Container::periodic(12.0, 10.0)?;
-    let disks = initial::random(&container, 30, 0.4, 10.0, 1)?;
+    let disks = initial::scattered(&container, 30, 0.4, 10.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
     for [from, to] in [[(12.0, 0.0), (12.0, 10.0)], [(0.0, 0.0), (0.0, 10.0)], [(0.0, 10.0), (12.0, 10.0)]] {
         let line = [from, to].map(DVec2::from);
@@ -148,7 +148,8 @@ fn a_shower_crosses_a_line_on_its_way_to_a_sink() -> Outcome {
 #[test]
 fn crossings_that_miss_collisions_are_refused() -> Outcome {
     let container = Container::periodic(12.0, 12.0)?;
-    let disks = initial::with_maxwellian_velocities(initial::random(&container, 30, 0.5, 12.0, 1)?, 1.0, 2)?;
+    let disks =
+        initial::with_maxwellian_velocities(initial::scattered(&container, 30, 0.5, 12.0, 1)?, 1.0, 2)?;
     let disks: Vec<Disk> = (0..).zip(disks).map(|(k, disk)| disk.with_kind(Kind::new(k % 2))).collect();
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
     let line = [DVec2::new(0.0, HEIGHT), DVec2::new(12.0, HEIGHT)];

@@ -105,7 +105,7 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
 #[test]
 fn free_disks_move_by_their_speed() -> Outcome {
     let container = Container::periodic(10.0, 10.0)?;
-    let disks = initial::random(&container, 50, 1e-9, 10.0, 1)?;
+    let disks = initial::scattered(&container, 50, 1e-9, 10.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 4.0, 1)?;
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
     let squared: f64 = run.disks().iter().map(|disk| disk.velocity().length_squared()).sum::<f64>() / 50.0;

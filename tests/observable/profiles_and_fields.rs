@@ -204,7 +204,7 @@ fn a_disk_alone_has_no_negative_temperature() -> Result<(), Box<dyn std::error::
 fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::error::Error>> {
     let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
     let mut fields = Sampled::new(Fields::new(Grid::new(region, 1, 1)?), times()?);
-    let disks = gas()?;
+    let disks = initial::without_drift(gas()?)?;
     fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
     let cell = fields.cell(0, 0).unwrap();
     let energy: f64 = disks.iter().map(Disk::translational_energy).sum::<f64>() / 1000.0;
@@ -263,7 +263,7 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     let container =
         Container::closed(100.0, 100.0)?.with_rule(Wall::Floor, Elastic)?.with_rule(Wall::Lid, Elastic)?;
     let container = container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?;
-    let disks = initial::random(&container, 1000, 0.5, 100.0, 5)?;
+    let disks = initial::scattered(&container, 1000, 0.5, 100.0, 5)?;
     let disks = initial::with_maxwellian_velocities(disks, 2.0, 6)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
     let mut all = EnergyChange::default();

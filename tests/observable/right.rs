@@ -40,7 +40,7 @@ fn corners<const N: usize>(corners: [(f64, f64); N]) -> [DVec2; N] {
 
 /// A thin gas of 200 small disks, which is nearly ideal: the pressure is n T, but for some thousandths.
 fn gas<B: Boundary + Clone>(boundary: &B, height: f64) -> Result<Simulation<Elastic, B>, Failure> {
-    let disks = initial::random(boundary, 200, 0.01, height, 1)?;
+    let disks = initial::scattered(boundary, 200, 0.01, height, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
     Ok(Simulation::builder(Elastic, boundary.clone()).disks(disks).build()?)
 }
@@ -77,7 +77,7 @@ fn the_pressure_of_a_dense_gas_is_that_on_the_walls() -> Result<(), Failure> {
     let triangle = Part::polygon(corners([(0.0, 0.0), (16.0, 0.0), (0.0, 12.0)]))?;
     let triangle = Vessel::around([("wall", triangle)])?;
     for (vessel, length) in [(drum, vec![12.0 * PI]), (triangle, vec![16.0, 20.0, 12.0])] {
-        let disks = initial::random(&vessel, 40, 0.5, 12.0, 1)?;
+        let disks = initial::scattered(&vessel, 40, 0.5, 12.0, 1)?;
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
         let walls = vessel.walls("wall").ok_or("the part")?;
         let mut pushed = walls

@@ -267,7 +267,7 @@ fn a_wall_has_histograms_of_its_own() -> Outcome {
 #[test]
 fn measures_by_kind_are_parts_of_the_whole() -> Outcome {
     let container = Container::periodic(20.0, 20.0)?;
-    let disks = initial::random(&container, 120, 0.5, 20.0, 1)?;
+    let disks = initial::scattered(&container, 120, 0.5, 20.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
     let kinds = [Kind::new(0), Kind::new(1)];
     let kind = |(index, disk): (usize, Disk)| disk.with_kind(kinds[usize::from(index % 3 == 0)]);

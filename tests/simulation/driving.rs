@@ -22,7 +22,7 @@ fn container() -> Outcome<Container> {
 }
 
 fn gas() -> Outcome<Run> {
-    let disks = initial::random(&container()?, 60, 0.5, 12.0, 1)?;
+    let disks = initial::scattered(&container()?, 60, 0.5, 12.0, 1)?;
     Ok(Simulation::builder(rule()?, container()?).disks(disks).gravity(0.1).build()?)
 }
 

@@ -100,7 +100,7 @@ fn boxes_too_thin_for_a_disk_are_refused() {
             PlacementError::NoRoom { count: 1, placed: 0, radius: 0.5, interior: boundary.interior() }
         );
         assert!(matches!(
-            initial::random(&boundary, 2, 0.5, 5.0, 1),
+            initial::scattered(&boundary, 2, 0.5, 5.0, 1),
             Err(PlacementError::NoRoom { placed: 0, .. })
         ));
     }
@@ -125,7 +125,7 @@ fn none_one_and_two_disks_run() {
             let mut simulation = build(boundary.clone(), &disks).unwrap();
             simulation.run_until(20.0, &mut Series::new(Energies, SampleTimes::every(1.0).unwrap())).unwrap();
             assert_eq!(simulation.disks().len(), count);
-            assert_eq!(initial::random(&boundary, count, 0.5, 6.0, 1).unwrap().len(), count);
+            assert_eq!(initial::scattered(&boundary, count, 0.5, 6.0, 1).unwrap().len(), count);
         }
     }
     // Without disks, none is too large for a narrow periodic box.
@@ -139,16 +139,16 @@ fn none_one_and_two_disks_run() {
 fn initial_states_refuse_what_makes_no_sense() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(initial::lattice(&closed(), 3, value), Err(PlacementError::Parameter(_))));
-        assert!(matches!(initial::random(&closed(), 3, value, 5.0, 1), Err(PlacementError::Parameter(_))));
-        assert!(matches!(initial::random(&closed(), 3, 0.5, value, 1), Err(PlacementError::Parameter(_))));
+        assert!(matches!(initial::scattered(&closed(), 3, value, 5.0, 1), Err(PlacementError::Parameter(_))));
+        assert!(matches!(initial::scattered(&closed(), 3, 0.5, value, 1), Err(PlacementError::Parameter(_))));
     }
     for value in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(initial::with_maxwellian_velocities(vec![at(1.0, 1.0)], value, 1).is_err());
     }
     let full = initial::lattice(&closed(), 1000, 0.5).unwrap_err();
     assert!(matches!(full, PlacementError::NoRoom { count: 1000, placed: 35..=48, .. }), "{full}");
-    let full = initial::random(&closed(), 40, 0.5, 6.0, 1).unwrap_err();
-    assert!(matches!(full, PlacementError::NoRoom { count: 40, placed: 15..40, .. }), "{full}");
+    let full = initial::scattered(&closed(), 40, 0.5, 6.0, 1).unwrap_err();
+    assert!(matches!(full, PlacementError::NoPosition { count: 40, placed: 15..40, .. }), "{full}");
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn initial_states_are_accepted_by_the_builder() {
         for start in [0.0, 0.7, 1e7] {
             for disks in [
                 initial::lattice(&boundary, 24, 0.5).unwrap(),
-                initial::random(&boundary, 12, 0.5, 6.0, 3).unwrap(),
+                initial::scattered(&boundary, 12, 0.5, 6.0, 3).unwrap(),
             ] {
                 let builder = Simulation::builder(Elastic, boundary.clone()).disks(disks).starting_at(start);
                 assert!(builder.build().is_ok(), "{boundary:?}");

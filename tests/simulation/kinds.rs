@@ -26,7 +26,7 @@ fn mixture(large: f64) -> Outcome<Vec<Disk>> {
         _ => Ok(Disk::new(DVec2::ZERO, 0.4)?.with_kind(SMALL)),
     };
     let disks = (0..30).map(disk).collect::<Result<Vec<_>, _>>()?;
-    let disks = initial::placed_at_random(&container()?, disks, 12.0, 5)?;
+    let disks = initial::scattered_mix(&container()?, disks, 12.0, 5)?;
     Ok(initial::with_maxwellian_velocities(disks, 1.0, 5)?)
 }
 

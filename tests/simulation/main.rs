@@ -8,6 +8,7 @@ mod changes;
 mod counting;
 mod crowds;
 mod driving;
+mod ends;
 mod extremes;
 mod inputs;
 mod kinds;
@@ -33,6 +34,7 @@ mod rotor;
 #[cfg(feature = "serde")]
 #[path = "../support/scratch.rs"]
 mod scratch;
+mod seeds;
 mod setups;
 mod sled;
 mod slopes;

@@ -70,7 +70,7 @@ impl Mixture {
         let mut height = (area / self.filling / width).max(lowest * largest);
         loop {
             let container = self.container(width, height);
-            if let Ok(disks) = initial::placed_at_random(&container, self.disks(), height, self.seed) {
+            if let Ok(disks) = initial::scattered_mix(&container, self.disks(), height, self.seed) {
                 let disks = initial::with_maxwellian_velocities(disks, 1.0, self.seed).unwrap();
                 let builder = Simulation::builder(Elastic, container).disks(disks);
                 return builder.gravity(self.gravity).build().unwrap();

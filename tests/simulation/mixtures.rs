@@ -49,7 +49,7 @@ fn mixture(radii: &[f64], sides: u8, filling: f64, seed: u64) -> (Container, Vec
             let disk = Disk::new(DVec2::ZERO, radius).unwrap();
             disk.with_mass(4.0 * radius * radius).unwrap()
         });
-        if let Ok(disks) = initial::placed_at_random(&container, disks.collect(), width, seed) {
+        if let Ok(disks) = initial::scattered_mix(&container, disks.collect(), width, seed) {
             return (container, initial::with_maxwellian_velocities(disks, 1.0, seed).unwrap());
         }
         width *= 1.2;

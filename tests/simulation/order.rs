@@ -16,7 +16,7 @@ fn disks(container: &Container, seed: u64) -> Vec<Disk> {
     let radius = |k: usize| [0.5, 0.02, 0.25, 0.9, 0.1][k % 5];
     let disk =
         |k| Disk::new(DVec2::ZERO, radius(k)).and_then(|d| d.with_mass(4.0 * radius(k) * radius(k))).unwrap();
-    let disks = initial::placed_at_random(container, (0..24).map(disk).collect(), 14.0, seed).unwrap();
+    let disks = initial::scattered_mix(container, (0..24).map(disk).collect(), 14.0, seed).unwrap();
     initial::with_maxwellian_velocities(disks, 1.0, seed).unwrap()
 }
 

@@ -13,8 +13,8 @@ use granular_edmd::{Disk, Flight, Gravity, Simulation, initial};
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
 fn gas(container: &Container, count: usize, seed: u64) -> Outcome<Vec<Disk>> {
-    let disks = initial::random(container, count, 0.5, container.height(), seed)?;
-    Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
+    let disks = initial::scattered(container, count, 0.5, container.height(), seed)?;
+    Ok(initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, seed)?)?)
 }
 
 /// A disk that meets nobody flies straight, or falls, through as many periods as its time allows.

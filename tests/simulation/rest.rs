@@ -248,7 +248,7 @@ fn emptied(slope: f64) -> (usize, f64, f64) {
         .and_then(|vessel| vessel.with("right half", half(1.0)))
         .and_then(|vessel| vessel.with("gate", Part::block(gate)?))
         .unwrap();
-    let grains = initial::random(&vessel, 1000, 0.5, 80.0, 1).unwrap();
+    let grains = initial::scattered(&vessel, 1000, 0.5, 80.0, 1).unwrap();
     let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.4).unwrap(), 0.1).unwrap();
     let builder = Simulation::builder(rule, vessel.clone()).disks(grains);
     let mut run = builder.gravity(1.0).build().unwrap();

@@ -88,7 +88,7 @@ impl Setup {
             Disk::new(DVec2::ZERO, radius(k)).and_then(|d| d.with_mass(4.0 * radius(k) * radius(k))).unwrap()
         };
         let disks = (0..self.count).map(disk).collect();
-        let disks = initial::placed_at_random(&self.boundary(), disks, 20.0, self.seed).unwrap();
+        let disks = initial::scattered_mix(&self.boundary(), disks, 20.0, self.seed).unwrap();
         initial::with_maxwellian_velocities(disks, 1.0, self.seed).unwrap()
     }
 

@@ -16,7 +16,7 @@ fn a_tilted_box_is_one_that_is_turned() -> Outcome {
     let rule = Frictional::from_restitution(0.9, 0.5, 0.3)?;
     let turned = |place: DVec2| DVec2::from_angle(-ANGLE).rotate(place) + DVec2::new(2.0, 8.0);
     let container = Container::closed(12.0, 10.0)?;
-    let disks = initial::random(&container, 30, 0.5, 10.0, 5)?;
+    let disks = initial::scattered(&container, 30, 0.5, 10.0, 5)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 5)?;
     let corners = [(0.0, 0.0), (12.0, 0.0), (12.0, 10.0), (0.0, 10.0)].map(DVec2::from).map(turned);
     let vessel = Vessel::new(Container::closed(20.0, 20.0)?).with("box", Part::polygon(corners)?)?;
@@ -66,7 +66,7 @@ fn chute(angle: f64) -> Outcome<Run> {
     let bump = |k: u32| Disk::new(DVec2::new(1.5 * f64::from(k), 0.0), 0.5);
     let bumps = (0..12).map(bump).collect::<Result<Vec<_>, _>>()?;
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps);
-    let disks = initial::random(&ground, GRAINS, 0.5, 8.0, 3)?;
+    let disks = initial::scattered(&ground, GRAINS, 0.5, 8.0, 3)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.6, 0.0, 0.5)?, 0.05)?;
     Ok(Simulation::builder(rule, ground)
         .disks(disks)

@@ -141,7 +141,7 @@ fn a_gas_turns_with_a_hot_drum() {
     let drum = Part::drum(DVec2::ZERO, 3.0).unwrap().with_temperature(Thermal::new(1.0).unwrap());
     let drum = drum.with_rotation(DVec2::ZERO, turning).unwrap();
     let vessel = Vessel::around([("drum", drum)]).unwrap();
-    let disks = initial::random(&vessel, 8, 0.5, 10.0, 1).unwrap();
+    let disks = initial::scattered(&vessel, 8, 0.5, 10.0, 1).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2).unwrap();
     let mut run = Simulation::builder(Elastic, vessel).disks(disks).seed(5).build().unwrap();
     let (mut momentum, mut inertia, mut spin) = (0.0, 0.0, RunningMean::default());

@@ -191,7 +191,7 @@ fn large_and_small_disks_come_and_go() {
 fn an_absorbing_wall_takes_the_flux_of_kinetic_theory() {
     const COUNT: usize = 10_000;
     let container = Container::closed(100.0, 100.0).unwrap().absorbing(Wall::Right).unwrap();
-    let disks = initial::random(&container, COUNT, 1e-3, 100.0, 2).unwrap();
+    let disks = initial::scattered(&container, COUNT, 1e-3, 100.0, 2).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
     let mut run = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
     let right = run.boundary().index(Wall::Right);
@@ -343,7 +343,8 @@ fn an_inlet_without_ids_or_times_ends_the_run() {
 /// of a place above the line at a time.
 fn passed(part: Part, height: impl Fn(DVec2, f64) -> f64, speed: f64) -> Result<[usize; 2], Box<dyn Error>> {
     let container = Container::closed(20.0, 20.0)?;
-    let disks = initial::with_maxwellian_velocities(initial::random(&container, 40, 0.4, 20.0, 2)?, 1.0, 2)?;
+    let disks =
+        initial::with_maxwellian_velocities(initial::scattered(&container, 40, 0.4, 20.0, 2)?, 1.0, 2)?;
     let slowed = disks.into_iter().map(|disk| disk.with_velocity(speed * disk.velocity()));
     let disks = slowed.collect::<Result<Vec<_>, _>>()?;
     let vessel = Vessel::new(container).with("line", part.absorbing_centers())?;

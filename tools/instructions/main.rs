@@ -49,7 +49,7 @@ fn shower(drops: f64) -> Outcome<Simulation<Elastic, Container>> {
     const TOP: f64 = 2.0;
     let width = (drops / TOP).round();
     let container = Container::open(width)?.absorbing(Wall::Floor)?;
-    let at_rest = initial::random(&container, drops as usize, 0.1, TOP, 1)?;
+    let at_rest = initial::scattered(&container, drops as usize, 0.1, TOP, 1)?;
     let falling: Vec<Disk> =
         at_rest.iter().map(|drop| drop.with_velocity(DVec2::NEG_Y)).collect::<Result<_, _>>()?;
     let (drop, places) = (falling[0].with_id(0)?, [DVec2::new(1.0, TOP), DVec2::new(width - 1.0, TOP)]);
@@ -62,6 +62,6 @@ fn shower(drops: f64) -> Outcome<Simulation<Elastic, Container>> {
 /// Runs the part that is counted. Callgrind finds it by this name.
 #[inline(never)]
 fn counted_part<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>) -> Outcome<()> {
-    run.run(&Limits::until(f64::MAX).with_most_collisions(COLLISIONS), &mut ())?;
+    run.run(&Limits::collisions(COLLISIONS), &mut ())?;
     Ok(())
 }

@@ -59,6 +59,6 @@ pub(crate) fn side_for(radii: &[f64]) -> f64 {
 /// Places disks one after the other at random, the largest first.
 fn placed(mut radii: Vec<f64>, side: f64) -> Outcome<Vec<Disk>> {
     radii.sort_by(|a, b| b.total_cmp(a));
-    let disks = initial::homogeneous(radii, 1.0)?;
-    Ok(initial::placed_at_random(&Container::closed(side, side)?, disks, side, 7)?)
+    let disks = initial::disks_from_radii(radii, 1.0)?;
+    Ok(initial::scattered_mix(&Container::closed(side, side)?, disks, side, 7)?)
 }

@@ -96,7 +96,7 @@ impl Gas {
 
     fn stretch(&mut self) -> Outcome<Speed> {
         let meter = Meter::start(&self.run);
-        self.run.run(&Limits::until(f64::MAX).with_most_collisions(self.collisions), &mut ())?;
+        self.run.run(&Limits::collisions(self.collisions), &mut ())?;
         let report = meter.report(&self.run);
         let collisions = report.counters.disk_collisions as f64;
         let rate = 2.0 * collisions / (self.run.len() as f64 * report.simulated_time * self.thermal_speed());

@@ -183,8 +183,8 @@ fn half_filled(arguments: &Arguments) -> Result<Vec<Disk>, Box<dyn Error>> {
     let radii = Radii::uniform(0.45, 0.5)?.draw(count as usize, arguments.seed);
     // Pins turn, and grains are packed only in vessels whose walls stand still.
     let still = Vessel::around([("rim", Part::drum(DVec2::ZERO, arguments.radius - PIN)?)])?;
-    let disks = initial::homogeneous(radii, 1.0)?;
-    let disks = initial::packed_at_random(&still, disks, 0.35 * arguments.radius, arguments.seed)?;
+    let disks = initial::disks_from_radii(radii, 1.0)?;
+    let disks = initial::packed_mix(&still, disks, 0.35 * arguments.radius, arguments.seed)?;
     Ok(initial::with_maxwellian_velocities(disks, 0.01, arguments.seed)?)
 }
 

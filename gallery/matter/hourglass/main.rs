@@ -172,7 +172,7 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
     let seed = arguments.seed;
     let radii = Radii::uniform(0.45, 0.5)?.draw(grains(arguments), seed);
     let upper = Vessel::around([("upper half", glass.upper_half()?)])?;
-    let disks = initial::packed_at_random(&upper, initial::homogeneous(radii, 1.0)?, glass.top, seed)?;
+    let disks = initial::packed_mix(&upper, initial::disks_from_radii(radii, 1.0)?, glass.top, seed)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.01, seed)?;
     let shut = Vessel::around([("glass", Part::polygon(glass.outline())?), ("gate", glass.gate()?)])?;
     let mut run = Simulation::builder(rule, shut).disks(disks).gravity(1.0).build()?;

@@ -131,8 +131,8 @@ impl Gas {
         container: Container,
         rule: R,
     ) -> Result<Simulation<R>, Box<dyn Error>> {
-        let disks = initial::random(&container, DISKS, 0.5, container.domain().top, self.seed)?;
-        let disks = initial::with_maxwellian_velocities(disks, 1.0, self.seed)?;
+        let disks = initial::scattered(&container, DISKS, 0.5, container.domain().top, self.seed)?;
+        let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, self.seed)?)?;
         let mut run = Simulation::builder(rule, container).disks(disks).build()?;
         collide(&mut run, 20)?;
         Ok(run)
@@ -142,7 +142,7 @@ impl Gas {
 /// Runs until the disks have had `per_disk` more collisions each, on average.
 fn collide<R: CollisionRule>(run: &mut Simulation<R>, per_disk: u64) -> Result<(), RunError> {
     let collisions = per_disk * DISKS as u64 / 2;
-    run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ()).map(|_| ())
+    run.run(&Limits::collisions(collisions), &mut ()).map(|_| ())
 }
 
 /// The data of the gas in the bulk that are drawn.

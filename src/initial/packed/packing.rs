@@ -6,7 +6,7 @@ use super::Enclosure;
 use crate::boundary::Squares;
 use crate::boundary::{Boundary, Domain, Probe};
 use crate::collision::Elastic;
-use crate::initial::{PlacementError, placed_at_random, with_maxwellian_velocities};
+use crate::initial::{PlacementError, scattered_mix, with_maxwellian_velocities};
 use crate::observable::{Collision, stop_when};
 use crate::{Disk, ParameterError, Simulation};
 
@@ -86,7 +86,9 @@ impl<'a> Packing<'a> {
             left -= 1;
             left == 0
         });
-        let ended = run.run_until(LONGEST, &mut enough);
+        // The run goes on for a while: a single disk that stops at each fourth collision is always at a wall.
+        let ended =
+            run.run_until(LONGEST, &mut enough).and_then(|_| run.run_until(1.1 * run.time(), &mut ()));
         ended.map_err(|error| PlacementError::Run { reason: error.to_string() })?;
         self.grown = run.disks();
         Ok(())
@@ -131,8 +133,8 @@ impl<'a> Packing<'a> {
     }
 }
 
-/// Returns the disks in motion at random positions, with their radii multiplied by this factor. The largest
-/// disks are placed first.
+/// Returns the disks in motion at random positions, with their radii multiplied by this factor. An error has
+/// the radius relative to the largest.
 fn placed<B: Boundary + ?Sized>(
     room: &Enclosure<B>,
     full: &[Disk],
@@ -140,22 +142,20 @@ fn placed<B: Boundary + ?Sized>(
     seed: u64,
 ) -> Result<Vec<Disk>, PlacementError> {
     let largest = largest(full);
-    let mut order: Vec<usize> = (0..full.len()).collect();
-    order.sort_by(|&a, &b| full[b].radius().total_cmp(&full[a].radius()));
-    let small = |&index: &usize| {
-        let radius = full[index].radius();
-        let mass = (radius / largest) * (radius / largest);
-        Disk::new(DVec2::ZERO, scale * radius)?.with_kind(full[index].kind()).with_mass(mass.max(LEAST_MASS))
+    let small = |disk: &Disk| {
+        let mass = (disk.radius() / largest) * (disk.radius() / largest);
+        let small = Disk::new(DVec2::ZERO, scale * disk.radius())?;
+        small.with_kind(disk.kind()).with_mass(mass.max(LEAST_MASS))
     };
-    let disks = order.iter().map(small).collect::<Result<Vec<_>, _>>()?;
-    let disks = placed_at_random(room, disks, room.domain().top, seed)?;
+    let disks = full.iter().map(small).collect::<Result<Vec<_>, _>>()?;
+    let disks = scattered_mix(room, disks, room.domain().top, seed).map_err(|error| match error {
+        PlacementError::NoPosition { count, placed, radius, interior } => {
+            PlacementError::NoRoom { count, placed, radius: radius / (scale * largest), interior }
+        }
+        error => error,
+    })?;
     // At this temperature, a disk of the largest size moves by about its radius in a unit of time.
-    let moving = with_maxwellian_velocities(disks, largest * largest, seed)?;
-    let mut placed = moving.clone();
-    for (index, disk) in order.into_iter().zip(moving) {
-        placed[index] = disk;
-    }
-    Ok(placed)
+    Ok(with_maxwellian_velocities(disks, largest * largest, seed)?)
 }
 
 /// Returns a radius of at most `radius` with which this disk overlaps no wall; 0 if there is no such radius.

@@ -23,6 +23,7 @@ pub struct Resumption<'a, R, B, S = BySize> {
     scheduler: S,
     another_rule: bool,
     another_boundary: bool,
+    seed: Option<u64>,
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
@@ -34,7 +35,15 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// fingerprint (closures, for example) cannot be distinguished. [`Checkpoint`] has an example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
-        Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
+        Resumption {
+            checkpoint,
+            rule,
+            boundary,
+            scheduler,
+            another_rule: false,
+            another_boundary: false,
+            seed: None,
+        }
     }
 }
 
@@ -43,8 +52,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     ///
     /// The future is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> Resumption<'a, R, B, T> {
-        let Self { checkpoint, rule, boundary, another_rule, another_boundary, scheduler: _ } = self;
-        Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
+        let Self { checkpoint, rule, boundary, another_rule, another_boundary, seed, scheduler: _ } = self;
+        Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary, seed }
     }
 
     /// Allows a rule that differs from the checkpoint's, as for the next value of a ramp.
@@ -60,6 +69,30 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// so no warning says how far they jumped.
     pub const fn with_another_boundary(mut self) -> Self {
         self.another_boundary = true;
+        self
+    }
+
+    /// Sets another seed for the stochastic walls and the inlets from now on, for several runs from one
+    /// prepared state.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::Thermal;
+    /// use granular_edmd::prelude::*;
+    ///
+    /// let container = Container::closed(9.0, 9.0)?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?;
+    /// let disks = initial::lattice(&container, 20, 0.5)?;
+    /// let run = Simulation::builder(Elastic, container.clone()).disks(disks).gravity(1.0).build()?;
+    /// let prepared = run.checkpoint();
+    /// let branch = |seed| -> Result<_, Box<dyn std::error::Error>> {
+    ///     let mut run = Simulation::resume(&prepared, Elastic, container.clone()).seed(seed).build()?;
+    ///     run.run_until(9.0, &mut ())?;
+    ///     Ok(run.disks())
+    /// };
+    /// assert_ne!(branch(1)?, branch(2)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn seed(mut self, seed: u64) -> Self {
+        self.seed = Some(seed);
         self
     }
 
@@ -128,12 +161,15 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     fn run(self, bodies: Bodies, cells: Cells, wall_count: usize) -> Simulation<R, B, S> {
         let saved = &self.checkpoint.0;
         let clock = Clock { events_to_look: 1, ..saved.clock };
-        let engine = Engine::new(wall_count, bodies, cells, clock, saved.generator.clone(), saved.ledger);
+        let seed = self.seed.unwrap_or(saved.seed);
+        let engine = Engine::new(wall_count, bodies, cells, clock, seed, saved.ledger);
+        let mut inlets = saved.inlets.clone();
+        inlets.iter_mut().for_each(|inlet| inlet.seed = self.seed.unwrap_or(inlet.seed));
         Simulation {
             parts: Parts { rule: self.rule, boundary: self.boundary, scheduler: self.scheduler },
             engine: Engine {
                 counters: saved.counters,
-                inlets: saved.inlets.clone(),
+                inlets,
                 // The observers that are read with a checkpoint have lost the mark of the saved run.
                 marks: [Mark::default(), Mark::new()],
                 ..engine

@@ -1,13 +1,11 @@
 //! White noise: random kicks that conserve the total momentum.
 
 use glam::DVec2;
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{Driving, drift_of, energy_of};
 use crate::observable::SampleTimes;
 use crate::quantity::non_negative;
-use crate::random::normal;
+use crate::random::{Stream, derived_seed, generator_at, normal};
 use crate::{Disk, ParameterError};
 
 /// White noise: at each time of a clock, every disk gets a random kick, and the total momentum is conserved.
@@ -24,7 +22,9 @@ use crate::{Disk, ParameterError};
 /// if the kicks are more frequent than collisions. At each kick, all events are predicted anew, so a kick
 /// takes about as long as one collision per disk.
 ///
-/// The random numbers follow from the seed alone; serde writes their state and the clock.
+/// The random numbers of a kick follow from the seed and the time of the kick. A noise that is made anew with
+/// the same seed therefore goes on, instead of repeating its kicks. A second noise of one run needs another
+/// seed or [stream](Self::with_stream).
 ///
 /// ```
 /// use granular_edmd::observable::{EnergyChange, SampleTimes};
@@ -52,7 +52,9 @@ pub struct WhiteNoise {
     noise: f64,
     rotational_noise: f64,
     times: SampleTimes,
-    generator: Xoshiro256PlusPlus,
+    seed: u64,
+    /// Time of the latest kick, and the number of kicks at this time.
+    latest: (f64, u64),
     energy: f64,
 }
 
@@ -63,9 +65,8 @@ impl WhiteNoise {
     /// # Errors
     /// If the strength is negative or not finite.
     pub fn new(noise: f64, times: SampleTimes, seed: u64) -> Result<Self, ParameterError> {
-        let noise = non_negative("noise", noise)?;
-        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-        Ok(Self { noise, rotational_noise: 0.0, times, generator, energy: 0.0 })
+        let (noise, times) = (non_negative("noise", noise)?, times.equally_spaced()?);
+        Ok(Self { noise, rotational_noise: 0.0, times, seed, latest: (0.0, 0), energy: 0.0 })
     }
 
     /// Returns the same noise, which also kicks the spins: $`\xi_r^2`$ is the variance that an angular
@@ -75,6 +76,13 @@ impl WhiteNoise {
     /// If the strength is negative or not finite.
     pub fn with_rotational_noise(self, noise: f64) -> Result<Self, ParameterError> {
         Ok(Self { rotational_noise: non_negative("rotational noise", noise)?, ..self })
+    }
+
+    /// Returns the same noise with the random numbers of the stream with this number, for a second noise of
+    /// the same seed.
+    #[must_use]
+    pub const fn with_stream(self, number: u64) -> Self {
+        Self { seed: derived_seed(self.seed, Stream::Noise, number), ..self }
     }
 
     /// Returns the kinetic energy that all kicks have added so far.
@@ -92,10 +100,14 @@ impl Driving for WhiteNoise {
         let before = energy_of(disks);
         let [speed, spin] =
             [self.noise, self.rotational_noise].map(|noise| (noise * self.times.interval()).sqrt());
-        let drift = drift_of(disks);
+        let (drift, time) = (drift_of(disks), self.times.upcoming());
+        // A caller without a run may kick several times while the clock stands still.
+        let earlier = if time == self.latest.0 { self.latest.1 } else { 0 };
+        self.latest = (time, earlier + 1);
+        let mut random = generator_at(self.seed, Stream::Noise, earlier, time);
         for disk in &mut *disks {
-            let kick = DVec2::new(normal(&mut self.generator), normal(&mut self.generator));
-            let turn = if spin > 0.0 { spin * normal(&mut self.generator) } else { 0.0 };
+            let kick = DVec2::new(normal(&mut random), normal(&mut random));
+            let turn = if spin > 0.0 { spin * normal(&mut random) } else { 0.0 };
             *disk = disk.with_velocity(disk.velocity() + speed * kick)?;
             *disk = disk.with_angular_velocity(disk.angular_velocity() + turn)?;
         }
@@ -110,11 +122,11 @@ impl Driving for WhiteNoise {
 
 crate::gate::from_file! {
     WhiteNoise {
-        noise: f64, rotational_noise: f64, times: SampleTimes, generator: Xoshiro256PlusPlus, energy: f64
+        noise: f64, rotational_noise: f64, times: SampleTimes, seed: u64, latest: (f64, u64), energy: f64
     } => {
         non_negative("noise", noise)?;
         non_negative("rotational noise", rotational_noise)?;
         crate::quantity::finite("energy of the kicks", energy)?;
-        Ok(Self { noise, rotational_noise, times, generator, energy })
+        Ok(Self { noise, rotational_noise, times, seed, latest, energy })
     }
 }

@@ -3,8 +3,7 @@
 use granular_edmd::ParameterError;
 use granular_edmd::glam::DVec2;
 use granular_edmd::quantity::{accept, non_negative};
-use rand::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use granular_edmd::random::{Stream, Xoshiro256PlusPlus, generator, uniform};
 
 /// Number of restarts. With four clusters or fewer, most restarts find the same best result.
 const RESTARTS: usize = 16;
@@ -204,7 +203,7 @@ pub(crate) fn k_means(
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(points[a].y.total_cmp(&points[b].y)));
     let sorted: Vec<DVec2> = order.iter().map(|&point| points[point]).collect();
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut generator = generator(seed, Stream::Studies, 0);
     let mut best = descend(&sorted, plus_plus(&sorted, clusters, &mut generator));
     for restart in 1..restarts {
         let next = match restart {
@@ -273,12 +272,6 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
         centers.push(points[next]);
     }
     centers
-}
-
-/// Draws a number uniformly from the open interval (0, 1): the middle of one of 2⁵² equal intervals.
-fn uniform(generator: &mut Xoshiro256PlusPlus) -> f64 {
-    const SCALE: f64 = 1.0 / (1u64 << 52) as f64;
-    ((generator.next_u64() >> 12) as f64 + 0.5) * SCALE
 }
 
 /// Returns the center nearest to a point, and its squared distance. If several centers are equally near, the

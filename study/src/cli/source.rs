@@ -18,7 +18,6 @@ use super::convert::Ending;
 use super::terminal::{Watch, read, say, tell};
 use super::{End, Failure, Plan, PlanError, StudyError, chain};
 use crate::execution::value::play::{Found, Pause, Player};
-use crate::parameters::derived_seed;
 use crate::{Experiment, ExperimentError, Progress, Run, Scalar, Study};
 
 /// A run at its start.
@@ -112,7 +111,7 @@ fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>
         tell(&format!("{} has another gravity; the run takes the gravity of the plan", path.display()));
     }
     let builder = Simulation::builder(rule, boundary).gravity(experiment.gravity());
-    let builder = builder.starting_at(state.time().unwrap_or(0.0)).seed(derived_seed(seed, 1));
+    let builder = builder.starting_at(state.time().unwrap_or(0.0)).seed(seed);
     Ok(builder.disks(state.into_disks()).build()?)
 }
 

@@ -9,12 +9,12 @@ use std::time::Duration;
 
 use granular_edmd::Simulation;
 use granular_edmd::observable::Observer;
+use granular_edmd::random::{Stream, derived_seed};
 use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError, Warning};
 
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
 use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
-use crate::parameters::derived_seed;
 use crate::plan::ramp::Step;
 use crate::sliced::{self, Riders};
 use crate::{Experiment, Protocol, Run, SavedDriving, Start, Study};
@@ -104,8 +104,7 @@ impl<'a, E: Experiment> Value<'a, E> {
 
     /// Returns the driving at the start of the value.
     fn driving(&self) -> Result<Option<Box<dyn SavedDriving>>, StudyError> {
-        // Seeds 0 and 1 belong to the disks and the rule.
-        let seed = derived_seed(self.origin.seed, self.origin.value as u64 + 2);
+        let seed = derived_seed(self.origin.seed, Stream::Studies, self.origin.value as u64);
         self.experiment.driving(seed).map_err(|source| self.cannot_start(source))
     }
 

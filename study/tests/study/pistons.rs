@@ -51,7 +51,7 @@ impl Experiment for Lid {
         Ok(container.with_piston(Wall::Lid, lid)?)
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
-        let disks = initial::random(&self.boundary()?, self.disks, 0.5, 25.0, seed)?;
+        let disks = initial::scattered(&self.boundary()?, self.disks, 0.5, 25.0, seed)?;
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
     fn observer(&self) -> Result<(), ExperimentError> {

@@ -77,7 +77,7 @@ impl Experiment for Gas {
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
         let disks = initial::lattice(&self.boundary()?, 40, 0.5)?;
-        Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
+        Ok(initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, seed)?)?)
     }
     fn observer(&self) -> Result<Heating, ExperimentError> {
         Ok(Heating::default())
@@ -166,7 +166,7 @@ impl Experiment for Silo {
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
         let above = |disk: &Disk| disk.with_position(disk.position() + DVec2::new(0.0, 3.0));
-        let disks = initial::random(&Container::closed(10.0, 14.0)?, 60, 0.5, 14.0, seed)?;
+        let disks = initial::scattered(&Container::closed(10.0, 14.0)?, 60, 0.5, 14.0, seed)?;
         Ok(disks.iter().map(above).collect::<Result<_, _>>()?)
     }
     fn gravity(&self) -> Gravity {
@@ -244,7 +244,7 @@ impl Experiment for Bed {
         Ok(Container::closed(8.0, TOP)?)
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
-        let disks = initial::random(&self.boundary()?, 20, 0.5, TOP, seed)?;
+        let disks = initial::scattered(&self.boundary()?, 20, 0.5, TOP, seed)?;
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
     fn gravity(&self) -> Gravity {

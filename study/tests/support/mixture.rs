@@ -68,7 +68,7 @@ impl Experiment for Mixture {
         quantity::accept(most <= 10_000, "number of disks", "at most 10000", most as f64)?;
         let (small, large) = (Disk::new(DVec2::ZERO, 0.3)?, Disk::new(DVec2::ZERO, 0.6)?);
         let disks = vec![small; self.disks.small].into_iter().chain(vec![large; self.disks.large]);
-        let disks = initial::placed_at_random(&self.boundary()?, disks.collect::<Vec<_>>(), 12.0, seed)?;
+        let disks = initial::scattered_mix(&self.boundary()?, disks.collect::<Vec<_>>(), 12.0, seed)?;
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
 

@@ -15,7 +15,7 @@ const RADIUS: f64 = 8.0;
 const ABOUT: AngularMomentum = AngularMomentum { about: DVec2::ZERO };
 
 fn disks(count: usize, drum: &Drum, seed: u64) -> Vec<Disk> {
-    let disks = initial::random(drum, count, 0.5, RADIUS, seed).unwrap();
+    let disks = initial::scattered(drum, count, 0.5, RADIUS, seed).unwrap();
     initial::with_maxwellian_velocities(disks, 1.0, seed).unwrap()
 }
 

@@ -51,7 +51,7 @@ impl Experiment for Tumbling {
         Ok(Drum::new(5.0)?.turning(self.spin).with_rule(self.rule()?))
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
-        Ok(initial::random(&self.boundary()?, self.disks, 0.3, 10.0, seed)?)
+        Ok(initial::scattered(&self.boundary()?, self.disks, 0.3, 10.0, seed)?)
     }
     fn gravity(&self) -> Gravity {
         0.1.into()

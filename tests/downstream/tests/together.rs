@@ -21,7 +21,7 @@ fn drum() -> Drum {
 type Boxed = Simulation<Box<dyn CollisionRule>, Box<dyn Boundary>, Box<dyn EventScheduler>>;
 
 fn disks() -> Vec<Disk> {
-    let disks = initial::random(&drum(), 40, 0.5, 6.0, 1).unwrap();
+    let disks = initial::scattered(&drum(), 40, 0.5, 6.0, 1).unwrap();
     initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap()
 }
 

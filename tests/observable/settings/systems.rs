@@ -114,7 +114,7 @@ fn rough() -> Result<ContactDuration<Frictional>, Failure> {
 
 /// A gas of 24 disks of radius 0.4 in a boundary.
 fn gas(boundary: impl Boundary + Send + Sync + 'static, gravity: impl Into<Gravity>) -> Result<Run, Failure> {
-    let disks = initial::random(&boundary, 24, 0.4, 8.0, 1)?;
+    let disks = initial::scattered(&boundary, 24, 0.4, 8.0, 1)?;
     of(boundary, disks, rough()?, gravity)
 }
 
@@ -156,12 +156,12 @@ fn obstructed() -> Result<Run, Failure> {
 }
 
 fn mixed() -> Result<Run, Failure> {
-    let disks = initial::homogeneous(Radii::uniform(0.25, 0.5)?.draw(24, 3), 2.0)?;
-    of(closed()?, initial::placed_at_random(&closed()?, disks, 8.0, 1)?, rough()?, 0.1)
+    let disks = initial::disks_from_radii(Radii::uniform(0.25, 0.5)?.draw(24, 3), 2.0)?;
+    of(closed()?, initial::scattered_mix(&closed()?, disks, 8.0, 1)?, rough()?, 0.1)
 }
 
 fn of_two_kinds() -> Result<Run, Failure> {
-    let disks = initial::random(&closed()?, 24, 0.4, 8.0, 1)?;
+    let disks = initial::scattered(&closed()?, 24, 0.4, 8.0, 1)?;
     let other = |(index, disk): (usize, Disk)| if index % 3 == 0 { disk.with_kind(OTHER) } else { disk };
     of(closed()?, disks.into_iter().enumerate().map(other).collect(), rough()?, 0.1)
 }
@@ -197,7 +197,7 @@ fn boxes() -> Vec<Setting> {
             bulk: rectangle(0.0, 0.0, 10.0, 8.0),
             ..Setting::new("periodic both ways", || {
                 let container = Container::periodic(10.0, 8.0)?;
-                let disks = initial::random(&container, 24, 0.4, 8.0, 1)?;
+                let disks = initial::scattered(&container, 24, 0.4, 8.0, 1)?;
                 of(container, disks, Elastic, 0.0)
             })
         },

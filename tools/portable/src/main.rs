@@ -67,10 +67,10 @@ fn packing() -> Outcome<String> {
         Radii::two_sizes(0.5, 0.7, 0.5)?,
     ];
     let radii = radii.iter().zip(1..).flat_map(|(radii, seed)| radii.draw(40, seed));
-    let disks = initial::homogeneous(radii, 1.0)?;
+    let disks = initial::disks_from_radii(radii, 1.0)?;
     let area: f64 = disks.iter().map(|disk| std::f64::consts::PI * disk.radius() * disk.radius()).sum();
     let container = Container::open(12.0)?.with_periodic_sides()?;
-    let disks = initial::packed_at_random(&container, disks, area / (0.8 * 12.0), 1)?;
+    let disks = initial::packed_mix(&container, disks, area / (0.8 * 12.0), 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
     let rule = rule(0.02, 0.1)?;
     let run = Simulation::builder(rule, container).disks(disks.iter().copied()).build()?;

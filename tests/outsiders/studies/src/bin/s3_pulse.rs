@@ -35,7 +35,7 @@ fn main() -> anyhow::Result<()> {
     println!("laws {:?}", laws::check(&base, 0.0, 60.0));
     println!("laws negative {:?}", laws::check(&base, -60.0, 0.0));
     let c = Container::closed(40.0, 60.0)?.with_motion(Wall::Floor, base)?;
-    let disks = initial::random(&c, 400, 0.5, 30.0, 1)?;
+    let disks = initial::scattered(&c, 400, 0.5, 30.0, 1)?;
     let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.4)?, 0.05)?;
     for tilt in [0.0_f64, 5.0, 10.0] {
         let mut sim = Simulation::builder(rule.clone(), c.clone()).disks(disks.clone()).gravity(Gravity::tilted(1.0, tilt.to_radians())?).build()?;

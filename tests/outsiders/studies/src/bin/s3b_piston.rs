@@ -21,7 +21,7 @@ fn main() -> anyhow::Result<()> {
     let mut p = Piston { t0: 0.0, x0: 0.0, v0: 0.0, w };
     let c = make(p)?;
     let lid = c.index(Wall::Lid).unwrap();
-    let disks = initial::with_maxwellian_velocities(initial::random(&c, 150, 0.5, 18.0, 1)?, 1.0, 1)?;
+    let disks = initial::with_maxwellian_velocities(initial::scattered(&c, 150, 0.5, 18.0, 1)?, 1.0, 1)?;
     let mut sim = Simulation::builder(Elastic, c).disks(disks).build()?;
     let e = |s: &Simulation<Elastic>, p: &Piston| { let (x,v)=p.at(s.time()); s.disks().iter().map(Disk::translational_energy).sum::<f64>()+0.5*mass*(v*v+w*w*x*x) };
     let e0 = e(&sim,&p);

@@ -29,7 +29,7 @@ fn main() -> anyhow::Result<()> {
     let rule = Frictional::from_inelasticity(0.05, 0.05, 0.5)?;
     for forget in 0..4 {
         let d = Drum::new(10.0, 0.3, 0.0001, 0)?; let mut d = Drum { forget, ..d }; d.w = 0.05;
-        let disks = initial::with_maxwellian_velocities(initial::random(&d, 120, 0.5, 20.0, 1)?, 1.0, 1)?;
+        let disks = initial::with_maxwellian_velocities(initial::scattered(&d, 120, 0.5, 20.0, 1)?, 1.0, 1)?;
         let mut sim = Simulation::builder(rule, d).disks(disks).build()?;
         // Torque of the wall against the change of the angular momentum of the disks.
         let l = |s: &[Disk]| s.iter().map(|d| d.mass()*d.position().perp_dot(d.velocity()) + d.moment_of_inertia()*d.angular_velocity()).sum::<f64>();
