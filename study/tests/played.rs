@@ -190,8 +190,8 @@ impl Case {
             assert_eq!(rows.iter().map(time).collect::<Vec<_>>(), seen, "{} {value}", self.0.display());
             // A window may end within a step.
             let window =
-                self.rows(&format!("replay study --value {value} --from {} --until {}", seen[9], seen[70]));
-            assert_eq!(window, rows[10..=70]);
+                self.rows(&format!("replay study --value {value} --from {} --until {}", seen[9], seen[50]));
+            assert_eq!(window, rows[10..=50]);
             let recorded = self.text(&format!("study/{value}.xyz"));
             let out = format!("trajectory study --value {value} --out {value}.xyz");
             self.told(&out, 0);

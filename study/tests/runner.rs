@@ -521,7 +521,7 @@ fn the_collisions_before_an_error_are_played_back() {
             .replace("contact_duration = 1e-4", &format!("inelasticity = {inelasticity}"))
     };
     fs::write(scratch.0.join("plan.toml"), falls("0.4")).unwrap();
-    fs::write(scratch.0.join("other.toml"), falls("0.41")).unwrap();
+    fs::write(scratch.0.join("other.toml"), falls("0.401")).unwrap();
     let output = scratch.runs(&["replay", "plan.toml", "--last", "2"]);
     let told = said(&output);
     let [lines @ .., note] = &told.lines().collect::<Vec<_>>()[..] else { panic!("{told}") };

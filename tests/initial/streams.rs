@@ -108,12 +108,12 @@ fn first_draws(stream: Stream, seed: u64) -> Vec<f64> {
 /// which show that a large number in one part goes with a special place in another.
 fn columns(stream: Stream) -> Vec<Vec<f64>> {
     let rows: Vec<Vec<f64>> = (0..SEEDS).map(|seed| first_draws(stream, seed)).collect();
-    let standard = |mut column: Vec<f64>| {
-        let mean = column.iter().sum::<f64>() / SEEDS as f64;
-        column.iter_mut().for_each(|number| *number -= mean);
-        let deviation = (column.iter().map(|number| number * number).sum::<f64>() / SEEDS as f64).sqrt();
-        column.iter_mut().for_each(|number| *number /= deviation);
-        column
+    let mean = |column: &[f64]| column.iter().sum::<f64>() / SEEDS as f64;
+    let standard = |column: Vec<f64>| -> Vec<f64> {
+        let middle = mean(&column);
+        let squares: Vec<f64> = column.iter().map(|number| (number - middle) * (number - middle)).collect();
+        let deviation = mean(&squares).sqrt();
+        column.iter().map(|number| (number - middle) / deviation).collect()
     };
     let numbers: Vec<Vec<f64>> =
         (0..rows[0].len()).map(|draw| standard(rows.iter().map(|row| row[draw]).collect())).collect();

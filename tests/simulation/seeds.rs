@@ -36,6 +36,16 @@ fn a_noise_made_anew_goes_on() -> Outcome {
     Ok(())
 }
 
+/// Where disks entered on the left and on the right, relative to their inlet.
+#[derive(Default)]
+struct Seen([Vec<DVec2>; 2]);
+impl Observer for Seen {
+    fn on_insert(&mut self, disk: &Disk, _: f64) {
+        let right = disk.position().x > 40.0;
+        self.0[usize::from(right)].push(disk.position() - DVec2::new(if right { 60.0 } else { 10.0 }, 0.0));
+    }
+}
+
 /// Two inlets of one run may have one seed.
 #[test]
 fn inlets_with_one_seed_differ() -> Outcome {
@@ -45,15 +55,6 @@ fn inlets_with_one_seed_differ() -> Outcome {
     for x in [10.0, 60.0] {
         let places = [DVec2::new(x, 8.0), DVec2::new(x + 10.0, 9.0)];
         run.add_inlet(Inlet::new(places, [grain], SampleTimes::every(0.5)?, 7)?)?;
-    }
-    #[derive(Default)]
-    struct Seen([Vec<DVec2>; 2]);
-    impl Observer for Seen {
-        fn on_insert(&mut self, disk: &Disk, _: f64) {
-            let right = disk.position().x > 40.0;
-            self.0[usize::from(right)]
-                .push(disk.position() - DVec2::new(if right { 60.0 } else { 10.0 }, 0.0));
-        }
     }
     let mut seen = Seen::default();
     run.run_until(500.0, &mut seen)?;

@@ -164,7 +164,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let seed = self.seed.unwrap_or(saved.seed);
         let engine = Engine::new(wall_count, bodies, cells, clock, seed, saved.ledger);
         let mut inlets = saved.inlets.clone();
-        inlets.iter_mut().for_each(|inlet| inlet.seed = self.seed.unwrap_or(inlet.seed));
+        for inlet in &mut inlets {
+            inlet.seed = self.seed.unwrap_or(inlet.seed);
+        }
         Simulation {
             parts: Parts { rule: self.rule, boundary: self.boundary, scheduler: self.scheduler },
             engine: Engine {
