@@ -70,7 +70,7 @@ use crate::observable::{Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
-use engine::{Engine, Parts};
+use engine::{Engine, Held, Parts};
 use state::Clock;
 
 /// A system of disks that advances from event to event.
@@ -100,7 +100,7 @@ use state::Clock;
 #[derive(Debug, Clone)]
 pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     parts: Parts<R, B, S>,
-    engine: Engine,
+    engine: Held,
 }
 
 /// A rule that is chosen when the program runs.
@@ -221,7 +221,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the present state with the requested time. [`Self::time`] may differ from that time by
     /// rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
-        let Engine { bodies, clock, marks, .. } = &self.engine;
+        let engine: &Engine = &self.engine;
+        let Engine { bodies, clock, marks, .. } = engine;
         Snapshot::of_run(time, clock.now, bodies, &self.parts.boundary, bodies.gravity, *marks)
     }
 

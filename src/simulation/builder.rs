@@ -142,7 +142,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         let ledger = Ledger::new(self.start_time, energy);
         let mut simulation = Simulation {
             parts: Parts { rule: self.rule, boundary, scheduler: self.scheduler },
-            engine: Engine::new(wall_count, bodies, cells, clock, self.seed, ledger),
+            engine: Engine::new(wall_count, bodies, cells, clock, self.seed, ledger).into(),
         };
         simulation.predict_all();
         Ok(simulation)

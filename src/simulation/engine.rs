@@ -86,6 +86,13 @@ impl Engine {
     }
 }
 
+/// An engine as a simulation holds it: builds with debug assertions lend it (`lending.rs`), and then move only
+/// a pointer.
+#[cfg(debug_assertions)]
+pub(super) type Held = Box<Engine>;
+#[cfg(not(debug_assertions))]
+pub(super) type Held = Engine;
+
 /// Buffers that are used again and again.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scratch {

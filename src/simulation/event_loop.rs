@@ -139,7 +139,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         wall: usize,
         observer: &mut O,
     ) -> Outcome<Event> {
-        let Self { parts: Parts { rule, boundary, .. }, engine } = self;
+        let Parts { rule, boundary, .. } = &mut self.parts;
+        let engine: &mut Engine = &mut self.engine;
         let now = engine.clock.now;
         let position = engine.bodies.position(disk, now);
         let surface = boundary.surface(wall, position, now);
@@ -327,7 +328,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn look_ahead(&mut self) {
         if self.engine.bodies.len() >= LARGE_SYSTEM {
             self.engine.make_room();
-            let Engine { lookahead, bodies, cells, scratch, .. } = &mut self.engine;
+            let engine: &mut Engine = &mut self.engine;
+            let Engine { lookahead, bodies, cells, scratch, .. } = engine;
             lookahead.look(&mut self.parts.scheduler, bodies, cells, &mut scratch.found[0]);
         }
     }

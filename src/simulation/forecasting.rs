@@ -42,7 +42,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next events of two disks, whose neighbors have been listed.
     #[inline(always)]
     pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
-        let Engine { instructions, bodies, cells, clock, scratch, .. } = &mut self.engine;
+        let engine: &mut Engine = &mut self.engine;
+        let Engine { instructions, bodies, cells, clock, scratch, .. } = engine;
         let (instructions, periods, now) = (*instructions, cells.grid().periods(), clock.now);
         find_partners(instructions, instructions, bodies, periods, disks, &mut scratch.found, counts, now);
         let at_wall = leave_cells(instructions, bodies, cells, disks[0], disks[1], now);

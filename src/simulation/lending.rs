@@ -6,9 +6,10 @@
 //! to a run whose parts are trait objects, and this loop is compiled once, in this crate. The arithmetic is
 //! the same, so the bits are, too.
 
-use std::mem::{replace, swap};
+use std::cell::Cell;
+use std::mem::replace;
 
-use super::engine::{Engine, Parts};
+use super::engine::{Engine, Held, Parts};
 use super::errors::RunError;
 use super::limits::Limits;
 use super::{Event, RunEnd, Simulation};
@@ -21,15 +22,22 @@ use crate::scheduler::EventScheduler;
 pub(super) type Erased<'a> =
     Simulation<&'a dyn CollisionRule, &'a mut dyn Boundary, &'a mut dyn EventScheduler>;
 
+thread_local! {
+    /// An engine without disks, which stands in for the next one that is lent.
+    static SPARE: Cell<Option<Held>> = const { Cell::new(None) };
+}
+
 /// An erased run, which returns the engine to its owner at the end, even if a part panics.
 struct Loan<'a> {
-    run: Erased<'a>,
-    owner: &'a mut Engine,
+    run: Option<Erased<'a>>,
+    owner: &'a mut Held,
 }
 
 impl Drop for Loan<'_> {
     fn drop(&mut self) {
-        swap(&mut self.run.engine, self.owner);
+        if let Some(run) = self.run.take() {
+            SPARE.set(Some(replace(self.owner, run.engine)));
+        }
     }
 }
 
@@ -38,9 +46,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn lend<T>(&mut self, work: impl FnOnce(&mut Erased<'_>) -> T) -> T {
         let Parts { rule, boundary, scheduler } = &mut self.parts;
         let parts = Parts { rule: &*rule as _, boundary: boundary as _, scheduler: scheduler as _ };
-        let engine = replace(&mut self.engine, Engine::empty());
-        let mut loan = Loan { run: Simulation { parts, engine }, owner: &mut self.engine };
-        work(&mut loan.run)
+        let spare = SPARE.take().unwrap_or_else(|| Engine::empty().into());
+        let engine = replace(&mut self.engine, spare);
+        let mut loan = Loan { run: None, owner: &mut self.engine };
+        work(loan.run.insert(Simulation { parts, engine }))
     }
 }
 

@@ -18,14 +18,15 @@ const STACK: usize = 32 << 20;
 #[test]
 fn the_laws_hold_and_the_bits_agree() {
     let runs = || {
-        TestRunner::new(config(40)).run(&(system(), script()), |(system, script)| {
+        let outcome = TestRunner::new(config(40)).run(&(system(), script()), |(system, script)| {
             let first = Actor::new(&system, 0, false).perform(&script)?;
             for scheduler in 1..SCHEDULERS.len() {
                 let other = Actor::new(&system, scheduler, false).perform(&script)?;
                 agree(&first, &other)?;
             }
             agree(&first, &Actor::new(&system, 0, true).perform(&script)?)
-        })
+        });
+        outcome.map_err(|found| found.to_string())
     };
     let thread = thread::Builder::new().stack_size(STACK).spawn(runs).expect("a thread");
     let outcome = thread.join().unwrap_or_else(|panic| resume_unwind(panic));

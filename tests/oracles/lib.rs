@@ -1,4 +1,4 @@
-//! Looks at all pairs of disks, with each image of a periodic domain.
+//! Brute force: all pairs of disks, with each image of a periodic domain, and areas by many chords.
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
@@ -54,4 +54,23 @@ fn nearest_within(domain: &Domain, a: &Disk, b: &Disk, passed: f64) -> f64 {
         (place + velocity * nearest).length()
     };
     images.map(distance).fold(f64::INFINITY, f64::min)
+}
+
+/// Returns the area of a disk between two heights, by many chords.
+pub fn area_between(disk: &Disk, domain: &Domain, low: f64, high: f64) -> f64 {
+    const CHORDS: u32 = 4000;
+    let period = domain.periods().y;
+    let mut area = 0.0;
+    for chord in 0..CHORDS {
+        let height = disk.radius() * (2.0 * (f64::from(chord) + 0.5) / f64::from(CHORDS) - 1.0);
+        let mut place = disk.position().y + height;
+        if period > 0.0 {
+            place = domain.bottom + (place - domain.bottom).rem_euclid(period);
+        }
+        if place >= low && place < high {
+            let width = 2.0 * (disk.radius().powi(2) - height * height).sqrt();
+            area += width * 2.0 * disk.radius() / f64::from(CHORDS);
+        }
+    }
+    area
 }

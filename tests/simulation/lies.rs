@@ -14,6 +14,7 @@ use granular_edmd::observable::{Collision, Observer, ObserverError, Partner, Sna
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BoundaryFault, BuildError, RunError};
 use granular_edmd::{Disk, Flight, Simulation, initial};
+use support::cases::few;
 
 fn walls() -> Container {
     Container::closed(12.0, 10.0).unwrap()
@@ -141,7 +142,8 @@ fn touches_that_cannot_be_are_named() {
         Lie::Wall((1 << 16) + 1),
         Lie::Wall(usize::MAX),
     ];
-    for (lie, truths) in lies.into_iter().flat_map(|lie| [0, 1, 57, 300].map(|truths| (lie, truths))) {
+    let all = lies.into_iter().flat_map(|lie| [0, 1, 57, 300].map(|truths| (lie, truths)));
+    for (lie, truths) in few(all, 3) {
         let (run, end) = run_among_liars(lie, truths);
         let error = end.unwrap_err();
         let is_lost = matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70);

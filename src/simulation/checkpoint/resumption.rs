@@ -175,7 +175,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
                 // The observers that are read with a checkpoint have lost the mark of the saved run.
                 marks: [Mark::default(), Mark::new()],
                 ..engine
-            },
+            }
+            .into(),
         }
     }
 }

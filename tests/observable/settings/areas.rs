@@ -8,33 +8,23 @@ use granular_edmd::observable::{
     Fields, Grid, HeightProfile, PairCorrelation, Partner, Sampled, Stress, StressTensor,
 };
 
+use oracles::area_between;
+
 use super::systems::{Setting, every};
 use super::{Cell, far, told};
 
 /// Layers of height 1, with the areas of the disks between two heights by many chords.
 pub(super) fn height_profile(setting: &Setting) -> Cell {
-    const CHORDS: u32 = 4000;
     let (low, high) = (setting.region.min.y, setting.region.max.y);
     let mut profile = Sampled::new(HeightProfile::new(low, high, 5).map_err(told)?, every(1.0));
     let log = setting.run(&mut profile)?;
     let (domain, step) = (setting.domain(), (high - low) / 5.0);
-    let period = domain.periods().y;
     let mut worst: f64 = 0.0;
     for (layer, (_, measured)) in profile.iter().enumerate() {
         let bottom = low + step * layer as f64;
         let mut area = 0.0;
         for disk in log.samples().flat_map(|state| &state.disks) {
-            for chord in 0..CHORDS {
-                let height = disk.radius() * (2.0 * (f64::from(chord) + 0.5) / f64::from(CHORDS) - 1.0);
-                let mut place = disk.position().y + height;
-                if period > 0.0 {
-                    place = domain.bottom + (place - domain.bottom).rem_euclid(period);
-                }
-                if place >= bottom && place < bottom + step {
-                    let width = 2.0 * (disk.radius().powi(2) - height * height).sqrt();
-                    area += width * 2.0 * disk.radius() / f64::from(CHORDS);
-                }
-            }
+            area += area_between(disk, &domain, bottom, bottom + step);
         }
         let region = Region::new(DVec2::new(domain.left, bottom), DVec2::new(domain.right, bottom + step));
         let free = setting.mean_area(&region, log.samples()) * log.samples().count() as f64;
