@@ -41,7 +41,6 @@ mod diff;
 mod explain;
 mod plans;
 mod replay;
-mod shape;
 mod source;
 mod terminal;
 
@@ -92,7 +91,7 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
 ) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => plans::new(example, file.as_deref()),
-        Command::Explain { key, schema } => plans::explain::<E>(key.as_deref(), schema),
+        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
         Command::Check { plan } => plans::check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),

@@ -117,8 +117,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the meanings of parameters and columns by name, with units, ranges and defaults.
     ///
-    /// The command `explain` prints the meanings, and a new plan shows them as comments. By default, there
-    /// are none.
+    /// The command `explain` prints the meanings. A new plan shows them as comments, also those of parameters
+    /// that the plan leaves out. By default, there are none.
     fn meanings() -> &'static [(&'static str, &'static str)] {
         &[]
     }

@@ -35,9 +35,6 @@ pub(super) enum Command {
     Explain {
         /// Name of the key, for example `friction`, `protocol.settle` or `protocol`.
         key: Option<String>,
-        /// Prints a JSON schema of plans instead. Editors complete and check plans with it.
-        #[arg(long, conflicts_with = "key")]
-        schema: bool,
     },
     /// Checks a plan, and prints how many ramps and values it has.
     Check {
