@@ -14,7 +14,7 @@ const MOST_THREADS: i64 = 4096;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 not finished and other processes work on it,
-/// 4 no tables yet, 6 the runs differ, 7 done but some values stalled, failed or reached a limit, 8 not
+/// 4 no tables yet, 7 done but some values stalled, failed or reached a limit, 8 not
 /// finished and no process works on it, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(name = "granular-edmd", version)]
@@ -86,10 +86,6 @@ pub(super) enum Command {
     /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
     /// disk, change of energy.
     Replay(Replay),
-    /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
-    /// from its position in the other run than a tolerance. An experiment that prepares steps, or has a
-    /// driving, is refused.
-    Diff(Diff),
     /// Prints completions for a shell, or with `man` a page of the manual.
     Completions {
         /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
@@ -101,16 +97,14 @@ pub(super) enum Command {
         /// Folder of the study.
         folder: PathBuf,
     },
-    /// Measures the speed in standard states, in about ten seconds; with a plan, estimates its core hours,
-    /// without prepared steps and drivings.
+    /// Estimates the core hours of a plan from short runs, without prepared steps and drivings.
     Bench {
-        /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
-        plan: Option<PathBuf>,
-        /// Prints the core hours as JSON.
-        #[arg(long, requires = "plan")]
+        /// The plan, in TOML; `-` for standard input.
+        plan: PathBuf,
+        /// Prints JSON.
+        #[arg(long)]
         json: bool,
-        /// Measures for one second only. The measured intervals are shorter, and times per collision a few
-        /// percent longer.
+        /// Measures for a tenth of the time.
         #[arg(long)]
         quick: bool,
     },
@@ -208,22 +202,6 @@ pub(super) struct Replay {
     /// File to write; standard output if not given. An existing file is not overwritten.
     #[arg(long)]
     pub(super) out: Option<PathBuf>,
-}
-
-#[derive(Debug, clap::Args)]
-pub(super) struct Diff {
-    /// A plan, in TOML (`-` for standard input), or the folder of a study.
-    pub(super) first: PathBuf,
-    /// The other plan or folder; if not given, the same as the first.
-    pub(super) second: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) place: Place,
-    /// File from which the second run starts; `--start` belongs to the first.
-    #[arg(long)]
-    pub(super) other_start: Option<PathBuf>,
-    /// Distance from its position in the other run beyond which a disk counts as displaced.
-    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
-    pub(super) tolerance: f64,
 }
 
 #[derive(Debug, clap::Args)]

@@ -27,7 +27,7 @@ const BATCH: usize = 1024;
 /// Runs a value again, and writes the requested collisions or the requested state. An incomplete file is
 /// removed.
 pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
-    let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
+    let source = Source::<E>::open(&wishes.plan, &wishes.place)?;
     wishes.check(&source)?;
     let mut out: Box<dyn Write> = match &wishes.out {
         Some(path) => Box::new(fs::File::create_new(path).map_err(StudyError::io("write", path))?),
