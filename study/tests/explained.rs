@@ -30,12 +30,7 @@ impl Experiment for Gas {
     type Sample = f64;
 
     fn meanings() -> &'static [(&'static str, &'static str)] {
-        &[
-            ("width", "Width."),
-            ("disks", "Disks."),
-            ("disks.radius", "Radius."),
-            ("speed", "Mean speed."),
-        ]
+        &[("width", "Width."), ("disks", "Disks."), ("disks.radius", "Radius."), ("speed", "Mean speed.")]
     }
     fn revision() -> Fingerprint {
         Fingerprint::of("Gas")

@@ -97,7 +97,7 @@ pub(super) enum Command {
         /// Folder of the study.
         folder: PathBuf,
     },
-    /// Estimates the core hours of a plan from short runs, without prepared steps and drivings.
+    /// Estimates the core hours of a plan from short runs without a driving.
     Bench {
         /// The plan, in TOML; `-` for standard input.
         plan: PathBuf,
@@ -121,8 +121,8 @@ pub(super) struct Place {
     #[arg(long, default_value_t = 0)]
     pub(super) value: usize,
     /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
-    /// --shrink` makes a start from disks that overlap. The run has no observer and no limit of collisions,
-    /// and no step of it is prepared (`Experiment::prepare`); an experiment with a driving is refused.
+    /// --shrink` makes a start from disks that overlap. The run has no observer and no limit of
+    /// collisions; an experiment with a driving is refused.
     #[arg(long)]
     pub(super) start: Option<PathBuf>,
     /// Absolute time at which the run ends. By default, this is the end of the value. From a file at a time

@@ -189,6 +189,6 @@ pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Fail
 
 /// Plays until a time or the end of the value.
 fn play<E: Experiment>(player: &mut Player<'_, E>, until: f64) -> Result<(), Failure> {
-    while matches!(player.play(until, u64::MAX)?, Pause::Prepared | Pause::Slice) {}
+    while player.play(until, u64::MAX)? == Pause::Slice {}
     Ok(())
 }
