@@ -1,14 +1,13 @@
 //! The speed of runs, and the cost of their parts.
 //!
-//! A [`Meter`] is started before a run and makes a [`RunReport`] after it. [`dilute`], [`dense`], [`gas`],
-//! [`mixture`] and [`vessel`] are standard states in which to compare a custom part with the built-in one.
-//! Insert the part with [`Simulation::with_rule`](crate::Simulation::with_rule),
+//! A [`Meter`] is started before a run and makes a [`RunReport`] after it. [`dilute`] and [`dense`] are
+//! standard states in which to compare a custom part with the built-in one. Insert the part with [`Simulation::with_rule`](crate::Simulation::with_rule),
 //! [`with_boundary`](crate::Simulation::with_boundary) or
 //! [`with_scheduler`](crate::Simulation::with_scheduler); a [`Comparison`] shows whether a difference exceeds
-//! the noise. For benchmarks with criterion, [`stretch`] measures one run alone instead of two runs
+//! the noise. For benchmarks with criterion, [`measure`] measures one run alone instead of two runs
 //! alternately.
 //!
-//! All times are processor times ([`Stopwatch`]). Measure builds with `--release` only.
+//! All times are processor times ([`RunReport::seconds`]). Measure builds with `--release` only.
 //!
 //! ```no_run
 //! use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Friction, Impulse};
@@ -27,31 +26,25 @@
 //! }
 //!
 //! let built_in = speed::dense()?;
-//! let bare = || speed::stretch(&built_in, 10_000, &mut ());
+//! let bare = || speed::measure(&built_in, 10_000, &mut ());
 //! // The state has a contact duration, so the custom rule gets the same: only the rules differ.
 //! let own = Own(Friction::from_inelasticity(0.05, 0.1)?);
 //! let rule = ContactDuration::new(own, built_in.rule().duration())?;
 //! let own = built_in.clone().with_rule(rule);
-//! println!("{}", Comparison::between(bare, || speed::stretch(&own, 10_000, &mut ()))?);
+//! println!("{}", Comparison::between(bare, || speed::measure(&own, 10_000, &mut ()))?);
 //!
 //! let tree = built_in.clone().with_scheduler(TournamentTree::new());
-//! println!("{}", Comparison::between(bare, || speed::stretch(&tree, 10_000, &mut ()))?);
+//! println!("{}", Comparison::between(bare, || speed::measure(&tree, 10_000, &mut ()))?);
 //!
 //! let mut observer = EnergyChange::default();
-//! println!("{}", Comparison::between(bare, || speed::stretch(&built_in, 10_000, &mut observer))?);
+//! println!("{}", Comparison::between(bare, || speed::measure(&built_in, 10_000, &mut observer))?);
 //! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 //! ```
 
-mod circumstances;
 mod comparison;
-mod quartiles;
 mod report;
 mod states;
-mod stopwatch;
 
-pub use circumstances::Circumstances;
-pub use comparison::{Comparison, Finding, stretch};
-pub use quartiles::Quartiles;
-pub use report::{Meter, RunReport};
-pub use states::{PaperBox, StateError, dense, dilute, gas, mixture, vessel};
-pub use stopwatch::Stopwatch;
+pub use comparison::{Comparison, Finding, Quartiles, measure};
+pub use report::{Circumstances, Meter, RunReport};
+pub use states::{PaperBox, StateError, dense, dilute};

@@ -16,7 +16,7 @@ use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BoxedBoundary;
-use granular_edmd::speed::Stopwatch;
+use granular_edmd::speed::Meter;
 use granular_edmd::{Simulation, initial};
 
 const DISKS: usize = 400;
@@ -48,11 +48,11 @@ impl Gas {
     }
 
     fn stretch(&mut self, collisions: u32) -> Outcome<()> {
-        let watch = Stopwatch::of_thread();
+        let meter = Meter::start(&self.run);
         for _ in 0..collisions {
             self.run.step_until(1e9, &mut ())?;
         }
-        self.best = self.best.min(watch.seconds() / f64::from(collisions));
+        self.best = self.best.min(meter.report(&self.run).seconds / f64::from(collisions));
         Ok(())
     }
 }

@@ -17,12 +17,13 @@ use clap::Parser;
 use gallery::command_line;
 use gallery::results::Results;
 use granular_edmd::boundary::Container;
+use granular_edmd::collision::KnownRule;
 use granular_edmd::observable::{Accumulator, HeightProfile, OrderParameters, Temperatures};
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::{Disk, Simulation};
 use granular_edmd_study::Experiment;
 use granular_edmd_study::analysis::{ConvectiveRegime, StateCriteria, thermal_noise};
-use granular_edmd_study::vibrated_box::{Base, BoxRule, VibratedBox};
+use granular_edmd_study::vibrated_box::{Base, VibratedBox};
 use rayon::prelude::*;
 
 const GRAVITY: f64 = 0.002_025;
@@ -178,7 +179,7 @@ fn ramp(cause: Cause, seed: u64, oscillations: u32) -> Result<Vec<Seen>, Box<dyn
 }
 
 fn measure(
-    run: &mut Simulation<BoxRule, Container>,
+    run: &mut Simulation<KnownRule, Container>,
     inelasticity: f64,
     done: u32,
     oscillations: u32,

@@ -1,8 +1,9 @@
-//! Comparison of the speeds of two runs, which alternate.
+//! Comparison of the speeds of two runs, which alternate; medians and quartiles. On a busy machine, the mean of a
+//! few measurements says little.
 
 use std::fmt;
 
-use super::{Meter, Quartiles, RunReport};
+use super::{Meter, RunReport};
 use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -34,7 +35,7 @@ const OUTSIDE: usize = 78;
 /// use granular_edmd::speed;
 ///
 /// let run = speed::dense().expect("a standard state");
-/// let seconds = || speed::stretch(&run, 10_000, &mut ()).expect("the run goes on").seconds;
+/// let seconds = || speed::measure(&run, 10_000, &mut ()).expect("the run goes on").seconds;
 /// bencher.iter_custom(|times| std::time::Duration::from_secs_f64((0..times).map(|_| seconds()).sum()));
 /// # }
 /// ```
@@ -43,7 +44,7 @@ const OUTSIDE: usize = 78;
 ///
 /// # Errors
 /// The same as for [`Simulation::run`].
-pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone>(
+pub fn measure<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone>(
     simulation: &Simulation<R, B, S>,
     collisions: u64,
     observer: &mut (impl Observer + ?Sized),
@@ -69,10 +70,10 @@ pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler 
 ///
 /// let built_in = speed::dilute()?;
 /// let own = built_in.clone().with_rule(Frictional::from_inelasticity(0.0, 0.0, 0.03)?);
-/// let stretch = 10_000;
+/// let collisions = 10_000;
 /// let comparison = Comparison::between(
-///     || speed::stretch(&built_in, stretch, &mut ()),
-///     || speed::stretch(&own, stretch, &mut ()),
+///     || speed::measure(&built_in, collisions, &mut ()),
+///     || speed::measure(&own, collisions, &mut ()),
 /// )?;
 /// println!("{comparison}");
 /// assert!(comparison.ratio().median < 1.0);
@@ -186,5 +187,47 @@ impl fmt::Display for Comparison {
         let [first, other] = nanoseconds.map(|quartiles| quartiles.median);
         write!(formatter, "{first:.1} and {other:.1} ns a collision; ")?;
         write!(formatter, "{:.3} and {:.3} events a collision", events[0], events[1])
+    }
+}
+
+/// The median and the quartiles of a few measurements.
+///
+/// ```
+/// use granular_edmd::speed::Quartiles;
+/// let quartiles = Quartiles::of([3.0, 1.0, 2.0, 100.0, 4.0]);
+/// assert_eq!(quartiles.to_string(), "3.00 (2.00–4.00)");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Quartiles {
+    /// A quarter of the values are below this one.
+    pub low: f64,
+    /// Half of the values are below this one.
+    pub median: f64,
+    /// A quarter of the values are above this one.
+    pub high: f64,
+}
+
+impl Quartiles {
+    /// Computes the quartiles of these values; NaN without values.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        let [low, median, high] = [0.25, 0.5, 0.75].map(|share| quantile(&values, share));
+        Self { low, median, high }
+    }
+}
+
+/// Returns a quantile, by linear interpolation between neighbors.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = share * last as f64;
+    let (before, part) = (place.floor() as usize, place.fract());
+    sorted[before] + part * (sorted[(before + 1).min(last)] - sorted[before])
+}
+
+impl fmt::Display for Quartiles {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:.2} ({:.2}–{:.2})", self.median, self.low, self.high)
     }
 }

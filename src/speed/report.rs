@@ -1,11 +1,13 @@
-//! The report of a run: how fast it was, what it did, and on which machine.
+//! The report of a run: how fast it was, what it did, and on which machine. Time is processor time: other work
+//! on the machine does not count.
 
-use std::fmt;
+use std::time::{Duration, Instant};
+use std::{fmt, fs};
 
-use super::{Circumstances, Stopwatch};
 use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::instructions::Instructions;
 use crate::scheduler::EventScheduler;
 use crate::simulation::Counters;
 
@@ -71,7 +73,7 @@ pub struct RunReport {
     pub disks: usize,
     /// Simulated time.
     pub simulated_time: f64,
-    /// Time on the processor in seconds; see [`Stopwatch`].
+    /// Seconds on the processor: on Linux, time of other programs does not count; elsewhere, by the wall clock.
     pub seconds: f64,
     /// Processor time per collision, including all other events.
     pub nanoseconds_per_collision: f64,
@@ -106,4 +108,87 @@ impl fmt::Display for RunReport {
         )?;
         write!(formatter, "{circumstances}")
     }
+}
+
+/// The machine and the build of a measurement. Times from different machines or builds cannot be compared.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct Circumstances {
+    /// Name of the processor, if the system reports it.
+    pub processor: String,
+    /// Number of processors.
+    pub processors: usize,
+    /// Operating system and architecture.
+    pub system: String,
+    /// Number of processes that ran or waited in the last minute, this one among them; unknown if empty.
+    pub load: String,
+    /// Version of this crate.
+    pub version: String,
+    /// Optimization and vector instructions with which the crate was compiled, and the instructions that it
+    /// chooses on this processor.
+    pub build: String,
+}
+
+impl Circumstances {
+    /// Returns the present circumstances.
+    pub fn present() -> Self {
+        let known = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let name = known.lines().find(|line| line.starts_with("model name"));
+        let name = name.and_then(|line| line.split_once(':')).map_or("unknown", |(_, name)| name.trim());
+        let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+        let optimized = if cfg!(debug_assertions) { "with debug assertions" } else { "release" };
+        let wide = if cfg!(target_feature = "avx2") { "native AVX2" } else { "no flags" };
+        Self {
+            processor: name.to_owned(),
+            processors: std::thread::available_parallelism().map_or(1, usize::from),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            load: load.split_whitespace().next().unwrap_or_default().to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            build: format!("{optimized}, {wide}, runs with {}", Instructions::detected().level().name()),
+        }
+    }
+}
+
+impl fmt::Display for Circumstances {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { processor, processors, system, load, version, build } = self;
+        let load = if load.is_empty() { "unknown" } else { load };
+        write!(
+            formatter,
+            "{processor}, {processors} processors, load {load}; {system}; granular-edmd {version}, {build}"
+        )
+    }
+}
+
+/// A stopwatch for processor time, which starts when it is created.
+///
+/// On Linux, time in which other programs have the processor does not count, and readings are accurate to a
+/// few microseconds. Elsewhere, the wall clock counts the seconds.
+#[derive(Debug)]
+struct Stopwatch {
+    wall: Instant,
+    start: Option<f64>,
+}
+
+impl Stopwatch {
+    /// Starts a stopwatch of this thread, which must also read it.
+    fn of_thread() -> Self {
+        Self { start: seconds_of_thread(), wall: Instant::now() }
+    }
+
+    /// Returns the seconds since the start.
+    fn seconds(&self) -> f64 {
+        let wall = self.wall.elapsed().as_secs_f64();
+        seconds_of_thread().zip(self.start).map_or(wall, |(now, start)| now - start)
+    }
+}
+
+/// Returns the processor time of this thread, in seconds.
+fn seconds_of_thread() -> Option<f64> {
+    // The kernel records the time of a task when the task gives up the processor, or some milliseconds later.
+    std::thread::sleep(Duration::from_nanos(1));
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
 }

@@ -1,5 +1,5 @@
 //! The command line of a study, for any experiment: `new`, `explain`, `check`, `run`, `status`, `tables`,
-//! `trajectory`, `convert`, `replay`, `diff`, `accept`, `bench` and `completions`.
+//! `trajectory`, `convert`, `replay`, `accept`, `bench` and `completions`.
 //!
 //! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
 //! paper's box.
@@ -27,21 +27,18 @@
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | not finished: other processes work on it (`--no-wait`), also from `status` |
 //! | 4 | from `status`: all ramps are done, but the tables are not written |
-//! | 6 | from `diff`: the two runs differ |
 //! | 7 | from `run` and `status`: all is done, and some values stalled, failed or reached a limit |
 //! | 8 | from `status`: not finished, and no process works on it |
 //! | 130 | stopped by Ctrl-C or SIGTERM, with all work saved; the same command continues it |
 //!
-//! `replay` and `diff` have nothing to save: if they are stopped, they leave no file.
+//! `replay` has nothing to save: if it is stopped, it leaves no file.
 
 mod arguments;
 mod bench;
 mod convert;
-mod diff;
 mod explain;
 mod plans;
 mod replay;
-mod shape;
 mod source;
 mod terminal;
 
@@ -71,8 +68,6 @@ enum End {
     Elsewhere = 3,
     /// All values are finished, but the tables are not.
     NoTables = 4,
-    /// Two runs differ.
-    Different = 6,
     /// The study is complete, but some values stalled, failed or reached a limit.
     Unfinished = 7,
     /// Values are unfinished, and no process is working on them.
@@ -85,14 +80,11 @@ type Failure = Box<dyn Error>;
 
 /// Runs the command line of a program for studies of this experiment.
 ///
-/// The command `new` writes the plan that `example` returns. `diff` copies runs, so the rule and the boundary
-/// must be `Clone`.
-pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
-    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
-) -> ExitCode {
+/// The command `new` writes the plan that `example` returns.
+pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => plans::new(example, file.as_deref()),
-        Command::Explain { key, schema } => plans::explain::<E>(key.as_deref(), schema),
+        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
         Command::Check { plan } => plans::check::<E>(&plan),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
@@ -100,11 +92,9 @@ pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
         Command::Trajectory(wishes) => source::trajectory::<E>(&wishes),
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
-        Command::Diff(wishes) => diff::diff::<E>(&wishes),
         Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
-        Command::Bench { plan: Some(plan), json, quick } => bench::plan::<E>(&plan, json, quick),
-        Command::Bench { plan: None, quick, .. } => bench::table(quick),
+        Command::Bench { plan, json, quick } => bench::plan::<E>(&plan, json, quick),
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),

@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::ExperimentError;
-use super::sliced::{Interval, SavedDriving, Start};
+use super::sliced::{SavedDriving, Start};
 use columns::{Column, Table};
 use record::Record;
 
@@ -116,8 +116,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the meanings of parameters and columns by name, with units, ranges and defaults.
     ///
-    /// The command `explain` prints the meanings, and a new plan shows them as comments. By default, there
-    /// are none.
+    /// The command `explain` prints the meanings. A new plan shows them as comments, also those of parameters
+    /// that the plan leaves out. By default, there are none.
     fn meanings() -> &'static [(&'static str, &'static str)] {
         &[]
     }
@@ -167,9 +167,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// period of a vibrating base.
     ///
     /// The first value of a ramp counts cycles from time 0. A value whose cycle differs from the previous
-    /// value's counts cycles from its own start. At this time, the walls may be at any phase, unless their
-    /// motion begins then, too ([`Combined::starting_at`](granular_edmd::wall::Combined::starting_at) in
-    /// [`boundary_in`](Self::boundary_in)).
+    /// value's counts cycles from its own start. At this time, the walls may be at any phase.
     fn cycle(&self) -> f64 {
         1.0
     }
@@ -213,39 +211,6 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(None)
     }
 
-    /// Changes a simulation before each step of a value: moves walls, opens gates, adds or removes inlets and
-    /// disks.
-    ///
-    /// By default, it changes nothing. The changes must follow from the arguments alone. The observer may
-    /// store the data that [`boundary_in`](Self::boundary_in) needs.
-    ///
-    /// # Errors
-    /// If the simulation cannot be prepared. The value has then failed, and the study continues.
-    fn prepare(
-        &self,
-        step: &Interval,
-        simulation: &mut Run<Self>,
-        observer: &mut Self::Observer,
-    ) -> Result<(), ExperimentError> {
-        let _ = (step, simulation, observer);
-        Ok(())
-    }
-
-    /// Returns the walls in a step, as [`prepare`](Self::prepare) has set them. A value that was interrupted
-    /// in the step continues with these walls. The next value starts from the walls of the last step, which
-    /// [`change`](Self::change) may then replace.
-    ///
-    /// # Errors
-    /// If the parameters do not give walls.
-    fn boundary_in(
-        &self,
-        step: &Interval,
-        observer: &Self::Observer,
-    ) -> Result<Self::Boundary, ExperimentError> {
-        let _ = (step, observer);
-        self.boundary()
-    }
-
     /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
@@ -273,9 +238,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ///
     /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
     /// fingerprint stay unchanged. Walls that react, such as a [`Piston`](granular_edmd::wall::Piston), keep
-    /// their present positions and velocities, whatever initial ones these parameters give. A method of your
-    /// own must set the walls of [`boundary`](Self::boundary), too, if [`prepare`](Self::prepare) exchanges
-    /// walls.
+    /// their present positions and velocities, whatever initial ones these parameters give.
     ///
     /// # Errors
     /// If the disks do not fit into the walls, or the new walls that react cannot take over the present
@@ -317,8 +280,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 
     /// Returns whether this parameter (by its full name, such as `base.amplitude`) may change while the disks
-    /// stay in place. Return false for a frequency, unless the walls begin anew with each
-    /// [`cycle`](Self::cycle).
+    /// stay in place. Return false for a frequency.
     fn can_be_ramped(parameter: &str) -> bool {
         let _ = parameter;
         true

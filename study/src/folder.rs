@@ -29,7 +29,7 @@ const OUTDATED: &str = "holds a study of version 0.3, whose records this version
 
 /// Magic number of the file of an unfinished value, and the version of the format that this crate writes and
 /// reads.
-const SEAL: Seal = Seal::new(*b"GRANPART", 5);
+const SEAL: Seal = Seal::new(*b"GRANPART", 6);
 
 /// The folder of a study.
 #[derive(Debug, Clone)]

@@ -87,5 +87,5 @@ pub use plan::ramp::{Bracket, Course, Ramp, Width};
 pub use plan::values::Axis;
 pub use progress::RampStatus;
 pub use records::Point;
-pub use sliced::{Interval, SavedDriving, Start};
+pub use sliced::{SavedDriving, Start};
 pub use study::Study;

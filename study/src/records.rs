@@ -103,8 +103,7 @@ impl<E: Experiment> Study<E> {
         let record = self.read_unproven(entry)?;
         // Code that the study has accepted may differ from this program.
         let is_ours = self.is_ours(&record.contents.origin);
-        let last = self.plan.protocol().step(record.contents.steps);
-        match record.changed_part(&last).filter(|_| is_ours) {
+        match record.changed_part().filter(|_| is_ours) {
             Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
             None => Ok(record),
         }

@@ -66,16 +66,6 @@ pub struct Start<'a> {
     pub is_resumed: bool,
 }
 
-/// A step of a value: a part of its settling, or the interval that ends with a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Interval {
-    /// Index of the step in its value, settling included.
-    pub index: u64,
-    /// Index of the sample with which the step ends; `None` while the value settles.
-    pub sample: Option<u64>,
-}
-
 /// The companion and the driving beside the observer.
 #[derive(Default)]
 pub(super) struct Riders {

@@ -20,7 +20,7 @@ use super::parameters::anywhere;
 use log::{HEAD, Log, Piece, pieces, read_piece};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
+const SEAL: Seal = Seal::new(*b"GRANSTUD", 6);
 
 /// Most seconds of work on finished values that a power failure may cost a process.
 const AT_RISK: f32 = 0.1;

@@ -7,8 +7,7 @@
 mod parts;
 mod sample;
 
-use parts::Kind;
-pub use parts::{Base, BoxRule, Sides};
+pub use parts::{Base, Sides};
 pub use sample::{Measurement, Sample};
 
 use std::sync::LazyLock;
@@ -17,7 +16,7 @@ use super::analysis::StateCriteria;
 use super::experiment::columns::{Meanings, meanings};
 use super::{Column, Experiment, ExperimentError, Record, Table};
 use granular_edmd::boundary::{Container, Wall};
-use granular_edmd::collision::{ContactDuration, Elastic, Frictional};
+use granular_edmd::collision::{ContactDuration, Elastic, Frictional, KnownRule};
 use granular_edmd::observable::Snapshot;
 use granular_edmd::quantity::accept;
 use granular_edmd::simulation::Checkpoint;
@@ -151,7 +150,7 @@ impl VibratedBox {
         &self,
         normal: Option<f64>,
         tangential: Option<f64>,
-    ) -> Result<Option<BoxRule>, ExperimentError> {
+    ) -> Result<Option<KnownRule>, ExperimentError> {
         if normal.or(tangential).or(self.wall_friction).is_none() {
             return Ok(None);
         }
@@ -163,7 +162,7 @@ impl VibratedBox {
 }
 
 impl Experiment for VibratedBox {
-    type Rule = BoxRule;
+    type Rule = KnownRule;
     type Boundary = Container;
     type Observer = Measurement;
     type Sample = Sample;
@@ -173,14 +172,14 @@ impl Experiment for VibratedBox {
         Fingerprint::of("VibratedBox")
     }
 
-    fn rule(&self) -> Result<BoxRule, ExperimentError> {
+    fn rule(&self) -> Result<KnownRule, ExperimentError> {
         let tangential = self.tangential_inelasticity.unwrap_or(self.inelasticity);
         let dynamic = self.dynamic_friction.unwrap_or(self.friction);
         let rule = Frictional::from_inelasticity(self.inelasticity, tangential, self.friction)?
             .with_dynamic_friction(dynamic)?;
         Ok(match self.contact_duration {
-            None => BoxRule(Kind::Plain(rule)),
-            Some(duration) => BoxRule(Kind::Lasting(ContactDuration::new(rule, duration)?)),
+            None => rule.into(),
+            Some(duration) => Box::new(ContactDuration::new(KnownRule::from(rule), duration)?).into(),
         })
     }
 
@@ -192,7 +191,7 @@ impl Experiment for VibratedBox {
         if let Some(rule) = self.wall_rule(self.wall_inelasticity, None)? {
             let sides = [Wall::Left, Wall::Right].into_iter().filter(|_| self.sides != Sides::Periodic);
             for wall in sides.chain(self.height.map(|_| Wall::Lid)) {
-                container = container.with_rule(wall, rule)?;
+                container = container.with_rule(wall, rule.clone())?;
             }
         }
         let base = self.base_inelasticity.or(self.wall_inelasticity);

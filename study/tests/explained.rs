@@ -30,14 +30,7 @@ impl Experiment for Gas {
     type Sample = f64;
 
     fn meanings() -> &'static [(&'static str, &'static str)] {
-        &[
-            ("width", "Width."),
-            ("disks", "Disks."),
-            ("disks.radius", "Radius."),
-            ("speed", "Mean speed."),
-            ("widht", "Misspelled."),
-            ("disks.mass", "Removed."),
-        ]
+        &[("width", "Width."), ("disks", "Disks."), ("disks.radius", "Radius."), ("speed", "Mean speed.")]
     }
     fn revision() -> Fingerprint {
         Fingerprint::of("Gas")
@@ -67,7 +60,7 @@ fn main() -> ExitCode {
         let gas = Gas { width: 10.0, disks: Vec::new() };
         return cli::main(|| Plan::new(gas, Protocol::new(1, 1, 1)?, 1));
     }
-    only_parameters_and_columns_are_explained();
+    parameters_and_columns_are_explained();
     ExitCode::SUCCESS
 }
 
@@ -80,15 +73,13 @@ fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
-/// A misspelled name has a meaning, but a plan with it would be refused.
-fn only_parameters_and_columns_are_explained() {
+fn parameters_and_columns_are_explained() {
     let all = explain(None);
     let told = text(&all.stdout);
-    for (name, is_known) in [("width", true), ("disks.radius", true), ("widht", false), ("disks.mass", false)]
-    {
-        assert_eq!(told.contains(&format!("\n{name}: ")), is_known, "{told}");
-        assert_eq!(explain(Some(name)).status.success(), is_known, "{name}");
-        assert_eq!(explain(Some(&format!("experiment.{name}"))).status.success(), is_known, "{name}");
+    for name in ["width", "disks.radius"] {
+        assert!(told.contains(&format!("\n{name}: ")), "{told}");
+        assert!(explain(Some(name)).status.success(), "{name}");
+        assert!(explain(Some(&format!("experiment.{name}"))).status.success(), "{name}");
     }
     assert_eq!(text(&explain(Some("speed")).stdout), "speed [length/time]: Mean speed.\n");
     let unknown = explain(Some("widht"));

@@ -1,4 +1,4 @@
-//! `replay`, `trajectory` and `diff` of experiments that prepare steps, have a driving or end early: the
+//! `replay` and `trajectory` of experiments that have a driving or end early: the
 //! program of this test runs itself as the command line. The companion of each value writes what it sees.
 
 use std::fs::{self, File};
@@ -11,25 +11,18 @@ use granular_edmd::observable::{Observer, SampleTimes, Snapshot, Verdict, on_col
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::WhiteNoise;
 use granular_edmd_files::{ExtendedXyz, Recorder};
-use granular_edmd_study::{
-    Column, Experiment, ExperimentError, Interval, Plan, Protocol, Run, SavedDriving, Start, cli,
-};
+use granular_edmd_study::{Column, Experiment, ExperimentError, Plan, Protocol, SavedDriving, Start, cli};
 use serde::{Deserialize, Serialize};
 
 /// Set for the program as a command.
 const IS_COMMAND: &str = "GRANULAR_EDMD_PLAYED";
 
-/// Step before which the experiment makes all disks faster and replaces the plate.
-const PUSHED: u64 = 4;
-
-/// A gas beside a plate.
+/// A gas under a plate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Gas {
     restitution: f64,
     noise: f64,
-    /// Factor of all velocities before a step.
-    push: f64,
     /// Number of measured collisions after which the observer stops the value.
     stop: u64,
 }
@@ -47,13 +40,6 @@ impl Observer for Left {
     }
 }
 
-impl Gas {
-    fn beside(plate: &str) -> Result<Vessel, ExperimentError> {
-        let part = Part::polyline([DVec2::new(2.0, 10.0), DVec2::new(10.0, 10.0)])?;
-        Ok(Vessel::new(Container::closed(12.0, 14.0)?).with(plate, part)?)
-    }
-}
-
 impl Experiment for Gas {
     type Rule = Smooth;
     type Boundary = Vessel;
@@ -67,7 +53,8 @@ impl Experiment for Gas {
         Ok(Smooth::from_restitution(self.restitution)?)
     }
     fn boundary(&self) -> Result<Vessel, ExperimentError> {
-        Self::beside("early plate")
+        let plate = Part::polyline([DVec2::new(2.0, 10.0), DVec2::new(10.0, 10.0)])?;
+        Ok(Vessel::new(Container::closed(12.0, 14.0)?).with("plate", plate)?)
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
         let disks = initial::lattice(&Container::closed(12.0, 8.0)?, 30, 0.5)?;
@@ -85,23 +72,6 @@ impl Experiment for Gas {
         }
         Ok(Some(Box::new(WhiteNoise::new(self.noise, SampleTimes::every(0.15)?, seed)?)))
     }
-    fn prepare(&self, step: &Interval, run: &mut Run<Self>, left: &mut Left) -> Result<(), ExperimentError> {
-        if self.push == 1.0 || ![0, PUSHED].contains(&step.index) {
-            return Ok(());
-        }
-        run.set_boundary(self.boundary_in(step, left)?)?;
-        if step.index == PUSHED {
-            if self.push < 0.0 {
-                return Err("nothing pushes backward".into());
-            }
-            run.map_disks(|_, disk| disk.with_velocity(self.push * disk.velocity()))?;
-        }
-        Ok(())
-    }
-    fn boundary_in(&self, step: &Interval, _: &Left) -> Result<Vessel, ExperimentError> {
-        let name = if step.index < PUSHED || self.push == 1.0 { "early plate" } else { "late plate" };
-        Self::beside(name)
-    }
     fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
         let place = |kind: &str| start.folder.join(format!("{}.{kind}", start.value));
         let mut times = File::create_new(place("times"))?;
@@ -117,16 +87,14 @@ impl Experiment for Gas {
 
 fn main() -> ExitCode {
     if std::env::var_os(IS_COMMAND).is_some() {
-        let gas = Gas { restitution: 0.9, noise: 0.0, push: 1.0, stop: u64::MAX };
+        let gas = Gas { restitution: 0.9, noise: 0.0, stop: u64::MAX };
         return cli::main(|| Plan::new(gas, Protocol::new(4, 8, 1)?, 1));
     }
     plain_values_are_played();
-    prepared_values_are_played();
     driven_values_are_played();
     stopped_values_are_played();
     limited_values_are_played();
     values_with_a_phase_are_played();
-    failed_values_are_played();
     ExitCode::SUCCESS
 }
 
@@ -221,7 +189,6 @@ seed = 1
 [experiment]
 restitution = 0.9
 noise = 0.0
-push = 1.0
 stop = 1000000000
 [protocol]
 settle = 4
@@ -237,27 +204,6 @@ fn plain_values_are_played() {
     let case = Case::run("plain", "seed = 1", "seed = 2");
     case.check();
     assert_eq!(case.frames(), 100);
-    case.told("diff study --value 1", 0);
-}
-
-/// The rows have the walls of their steps, and the state before a collision is the one from which it comes.
-fn prepared_values_are_played() {
-    let case = Case::run("prepared", "push = 1.0", "push = 3.0");
-    for rows in case.check() {
-        assert!(["early plate", "late plate"].iter().all(|name| rows.iter().any(|row| row.contains(name))));
-    }
-    assert_eq!(case.frames(), 100);
-    let rows = case.rows("replay plan.toml --from -1");
-    let first = rows.iter().position(|row| row.split(',').nth(1).unwrap().parse::<f64>().unwrap() > 4.0);
-    let first = first.unwrap();
-    case.told(&format!("replay plan.toml --before {} --out before.xyz", first + 1), 0);
-    let next = case.rows("replay plan.toml --start before.xyz --from -1");
-    let cells = |row: &str| row.split(',').skip(2).take(2).map(str::to_owned).collect::<Vec<_>>();
-    assert_eq!(cells(&next[0]), cells(&rows[first]));
-    let told = case.told("diff plan.toml", 1);
-    assert!(told.contains("the experiment prepares the steps of its values"), "{told}");
-    // Until the step, the runs are the same.
-    case.told("diff plan.toml --until 4", 0);
 }
 
 fn driven_values_are_played() {
@@ -271,20 +217,11 @@ fn driven_values_are_played() {
         let told = case.told(command, 1);
         assert!(told.contains("its driving is not in a file"), "{told}");
     }
-    let told = case.told("diff plan.toml", 1);
-    assert!(told.contains("driven runs cannot be compared"), "{told}");
 }
 
 fn stopped_values_are_played() {
     let case = Case::run("stopped", "stop = 1000000000", "stop = 60");
-    let [rows, _] = case.check();
-    let output = case.runs("diff plan.toml");
-    let end = rows[rows.len() - 1].split(',').nth(1).unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        output.status.success() && said.contains(&format!("until {end}, all disks meet")),
-        "{said} {end}"
-    );
+    case.check();
 }
 
 fn limited_values_are_played() {
@@ -304,15 +241,4 @@ fn values_with_a_phase_are_played() {
         let rest = case.rows(&format!("replay study --start {number}.checkpoint --from -1"));
         assert_eq!(rest[0], all[number - 1], "{number}");
     }
-}
-
-/// The error of an experiment that cannot prepare a step is told, unless the step comes after `--until`.
-fn failed_values_are_played() {
-    let case = Case::run("failed", "push = 1.0", "push = -1.0");
-    let all = [0, 1].map(|value| case.rows(&format!("replay study --value {value} --from -1")).len());
-    assert_eq!(all[..], case.counts());
-    let told = case.told("replay plan.toml", 0);
-    assert!(told.contains("the run ended: nothing pushes backward"), "{told}");
-    assert_eq!(case.told("replay plan.toml --until 4", 0), "");
-    assert!(case.told("trajectory plan.toml --out run.xyz", 1).contains("nothing pushes backward"));
 }

@@ -248,8 +248,7 @@ fn a_study_grows() {
     assert!(said(&output).contains("protocol.settle is 10 there and 20 here"), "{}", said(&output));
 }
 
-/// Each row of the table of exit codes, but 130 and those of `bench` and `diff`, which have tests of their
-/// own.
+/// Each row of the table of exit codes, except 130, which has a test of its own.
 #[test]
 fn exit_codes_say_how_a_command_ended() {
     let scratch = Scratch::new("codes");
@@ -398,17 +397,8 @@ fn a_signal_saves_and_the_same_command_goes_on() {
 }
 
 #[test]
-fn bench_tells_the_standard_states_and_the_hours_of_a_plan() {
+fn bench_tells_the_hours_of_a_plan() {
     let scratch = Scratch::new("bench");
-    let output = scratch.runs(&["bench", "--quick"]);
-    assert_eq!(code(&output), Some(0), "{output:?}");
-    let told = said(&output);
-    let rows: Vec<Vec<&str>> =
-        told.lines().skip(2).take(7).map(|row| row.split('|').map(str::trim).collect()).collect();
-    assert_eq!((rows[1][1], rows[6][1]), ("dense", "vessel"));
-    assert!(rows.iter().all(|row| row[3].parse::<f64>().unwrap() > 0.0), "{told}");
-    assert!(told.contains("granular-edmd 0."), "{told}");
-    assert_eq!(code(&scratch.runs(&["bench", "--json"])), Some(2), "the table is for people");
     scratch.small_plan();
     let output = scratch.runs(&["bench", "plan.toml", "--quick", "--json"]);
     assert_eq!(code(&output), Some(0), "{output:?}");
@@ -536,44 +526,6 @@ fn the_collisions_before_an_error_are_played_back() {
     let before = |number: u64| scratch.runs(&["replay", "plan.toml", "--before", &number.to_string()]);
     assert!([number, number + 1].iter().all(|&number| code(&before(number)) == Some(0)));
     assert!(code(&before(number + 2)) == Some(1) && said(&before(number + 2)).contains("stalled"));
-    let output = scratch.runs(&["diff", "plan.toml", "other.toml"]);
-    assert_eq!(code(&output), Some(6), "{}", said(&output));
-    assert_eq!(said(&output).matches("the run ended").count(), 2);
-}
-
-#[test]
-fn two_runs_are_compared() {
-    let scratch = Scratch::new("diff");
-    scratch.small_plan();
-    let of = |arguments: &[&str]| scratch.runs(&[&["diff", "plan.toml"], arguments].concat());
-    let same = of(&[]);
-    assert_eq!(code(&same), Some(0), "{}", said(&same));
-    assert!(said(&same).contains("all disks meet the same partners\n"), "{}", said(&same));
-    fs::write(scratch.0.join("other.toml"), SMALL.replace("[0.0, 0.1]", "[0.01, 0.1]")).unwrap();
-    // The seed of a ramp depends on its parameters, so another friction begins elsewhere, unless both begin
-    // with the same file.
-    assert_eq!(code(&of(&["other.toml"])), Some(6));
-    assert_eq!(code(&scratch.runs(&["replay", "plan.toml", "--before", "9", "--out", "start.xyz"])), Some(0));
-    let output = of(&["other.toml", "--start", "start.xyz", "--other-start", "start.xyz"]);
-    assert_eq!(code(&output), Some(6), "{}", said(&output));
-    let told = said(&output);
-    let [partners, _, first, second, apart] = told.lines().collect::<Vec<_>>()[..] else { panic!("{told}") };
-    let (distance, time) = apart.split_once(" away from its place in the other run at ").unwrap();
-    let number = |text: &str| text.parse::<f64>().unwrap();
-    assert!((number(distance.rsplit_once(' ').unwrap().1) - 1e-3).abs() < 1e-9, "{told}");
-    let disk = partners.split(' ').nth(1).unwrap();
-    for row in [first, second] {
-        let cells: Vec<&str> = row.split(',').collect();
-        assert!(number(cells[1]) > number(time) && cells[2..4].contains(&disk), "{told}");
-    }
-    // The checkpoint of a run is of the same run.
-    let out = ["replay", "plan.toml", "--before", "20", "--out", "run.checkpoint"];
-    assert_eq!(code(&scratch.runs(&out)), Some(0));
-    assert_eq!(code(&of(&["--other-start", "run.checkpoint"])), Some(0));
-    let output = of(&["other.toml", "--other-start", "run.checkpoint"]);
-    assert!(code(&output) == Some(1) && said(&output).contains("another rule"), "{}", said(&output));
-    fs::write(scratch.0.join("none.xyz"), "0\nProperties=pos:R:2:radius:R:1\n").unwrap();
-    assert_eq!(code(&of(&["--other-start", "none.xyz"])), Some(1));
 }
 
 /// Wishes that no run can grant are refused by name, and no file is left or overwritten.
@@ -610,19 +562,17 @@ fn wishes_that_cannot_be_are_refused() {
         code(&output) == Some(1) && said(&output).contains("only 1 values are in the ramp"),
         "{output:?}"
     );
-    assert_eq!(code(&scratch.runs(&["diff", "plan.toml", "--tolerance", "-1"])), Some(2));
 }
 
-/// A signal ends both commands at once, without a file half done.
+/// A signal ends a replay at once, without a file half done.
 #[test]
 #[cfg(unix)]
-fn a_signal_ends_replay_and_diff() {
+fn a_signal_ends_a_replay() {
     let scratch = Scratch::new("replay-signal");
     fs::write(scratch.0.join("plan.toml"), SMALL.replace("every = 2", "every = 10000000")).unwrap();
     for arguments in [
         ["replay", "plan.toml", "--out", "new.csv"].as_slice(),
         &["replay", "plan.toml", "--from", "3e7", "--out", "new.csv"],
-        &["diff", "plan.toml"],
     ] {
         let mut child = scratch.command(arguments).stdout(Stdio::null()).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(600));

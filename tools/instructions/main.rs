@@ -1,5 +1,7 @@
 //! The run whose instructions `.ci/instructions` counts: a standard state that is run for a while.
 
+mod states;
+
 use std::process::ExitCode;
 
 use benches::Outcome;
@@ -21,11 +23,11 @@ fn run() -> Outcome<()> {
     match std::env::args().nth(1).as_deref() {
         Some("dilute") => count(speed::dilute()?),
         Some("dense") => count(speed::dense()?),
-        Some("gas_0.1") => count(speed::gas(0.1)?),
-        Some("gas_0.3") => count(speed::gas(0.3)?),
-        Some("gas_0.65") => count(speed::gas(0.65)?),
-        Some("mixture") => count(speed::mixture()?),
-        Some("vessel") => count(speed::vessel()?),
+        Some("gas_0.1") => count(states::gas(0.1)?),
+        Some("gas_0.3") => count(states::gas(0.3)?),
+        Some("gas_0.65") => count(states::gas(0.65)?),
+        Some("mixture") => count(states::mixture()?),
+        Some("vessel") => count(states::vessel()?),
         Some("shower_1e3") => count(shower(1e3)?),
         Some("shower_1e5") => count(shower(1e5)?),
         _ => Err("which state: dilute, dense, gas_0.1, gas_0.3, gas_0.65, mixture, vessel, shower_1e3 or \

@@ -7,7 +7,7 @@ use std::time::Instant;
 use granular_edmd::Disk;
 use granular_edmd::scheduler::EventScheduler;
 use granular_edmd::simulation::Counters;
-use granular_edmd::speed::Stopwatch;
+use granular_edmd::speed::Meter;
 
 use benches::Outcome;
 use benches::state::{DISKS, State, oscillate};
@@ -72,12 +72,12 @@ pub(crate) fn measure<S: EventScheduler + Default>(
     let set_up_seconds = start.elapsed().as_secs_f64();
     oscillate(&mut run, WARM_UP)?;
     let bytes_per_disk = (resident_bytes() - memory) / count as f64;
-    let (watch, before) = (Stopwatch::of_thread(), *run.counters());
+    let meter = Meter::start(&run);
     oscillate(&mut run, oscillations)?;
-    let (seconds, after) = (watch.seconds(), run.counters());
+    let report = meter.report(&run);
     Ok(Measurement {
-        nanoseconds_per_collision: 1e9 * seconds / (after.disk_collisions - before.disk_collisions) as f64,
-        events_per_second: (events(after) - events(&before)) as f64 / seconds,
+        nanoseconds_per_collision: report.nanoseconds_per_collision,
+        events_per_second: events(&report.counters) as f64 / report.seconds,
         bytes_per_disk,
         set_up_seconds,
     })

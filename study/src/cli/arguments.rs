@@ -14,7 +14,7 @@ const MOST_THREADS: i64 = 4096;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 not finished and other processes work on it,
-/// 4 no tables yet, 6 the runs differ, 7 done but some values stalled, failed or reached a limit, 8 not
+/// 4 no tables yet, 7 done but some values stalled, failed or reached a limit, 8 not
 /// finished and no process works on it, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(name = "granular-edmd", version)]
@@ -35,9 +35,6 @@ pub(super) enum Command {
     Explain {
         /// Name of the key, for example `friction`, `protocol.settle` or `protocol`.
         key: Option<String>,
-        /// Prints a JSON schema of plans instead. Editors complete and check plans with it.
-        #[arg(long, conflicts_with = "key")]
-        schema: bool,
     },
     /// Checks a plan, and prints how many ramps and values it has.
     Check {
@@ -89,10 +86,6 @@ pub(super) enum Command {
     /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
     /// disk, change of energy.
     Replay(Replay),
-    /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
-    /// from its position in the other run than a tolerance. An experiment that prepares steps, or has a
-    /// driving, is refused.
-    Diff(Diff),
     /// Prints completions for a shell, or with `man` a page of the manual.
     Completions {
         /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
@@ -104,16 +97,14 @@ pub(super) enum Command {
         /// Folder of the study.
         folder: PathBuf,
     },
-    /// Measures the speed in standard states, in about ten seconds; with a plan, estimates its core hours,
-    /// without prepared steps and drivings.
+    /// Estimates the core hours of a plan from short runs without a driving.
     Bench {
-        /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
-        plan: Option<PathBuf>,
-        /// Prints the core hours as JSON.
-        #[arg(long, requires = "plan")]
+        /// The plan, in TOML; `-` for standard input.
+        plan: PathBuf,
+        /// Prints JSON.
+        #[arg(long)]
         json: bool,
-        /// Measures for one second only. The measured intervals are shorter, and times per collision a few
-        /// percent longer.
+        /// Measures for a tenth of the time.
         #[arg(long)]
         quick: bool,
     },
@@ -130,8 +121,8 @@ pub(super) struct Place {
     #[arg(long, default_value_t = 0)]
     pub(super) value: usize,
     /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
-    /// --shrink` makes a start from disks that overlap. The run has no observer and no limit of collisions,
-    /// and no step of it is prepared (`Experiment::prepare`); an experiment with a driving is refused.
+    /// --shrink` makes a start from disks that overlap. The run has no observer and no limit of
+    /// collisions; an experiment with a driving is refused.
     #[arg(long)]
     pub(super) start: Option<PathBuf>,
     /// Absolute time at which the run ends. By default, this is the end of the value. From a file at a time
@@ -215,22 +206,6 @@ pub(super) struct Replay {
     /// File to write; standard output if not given. An existing file is not overwritten.
     #[arg(long)]
     pub(super) out: Option<PathBuf>,
-}
-
-#[derive(Debug, clap::Args)]
-pub(super) struct Diff {
-    /// A plan, in TOML (`-` for standard input), or the folder of a study.
-    pub(super) first: PathBuf,
-    /// The other plan or folder; if not given, the same as the first.
-    pub(super) second: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) place: Place,
-    /// File from which the second run starts; `--start` belongs to the first.
-    #[arg(long)]
-    pub(super) other_start: Option<PathBuf>,
-    /// Distance from its position in the other run beyond which a disk counts as displaced.
-    #[arg(long, default_value_t = 1e-3, allow_negative_numbers = true)]
-    pub(super) tolerance: f64,
 }
 
 #[derive(Debug, clap::Args)]

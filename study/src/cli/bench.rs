@@ -1,13 +1,10 @@
-//! The command `bench`: the standard states of [`speed`], and the core hours of a plan.
+//! The command `bench`: the core hours of a plan.
 
 use std::path::Path;
 use std::time::Duration;
 
-use granular_edmd::Simulation;
-use granular_edmd::boundary::Boundary;
-use granular_edmd::collision::CollisionRule;
-use granular_edmd::simulation::{Limits, RunError};
-use granular_edmd::speed::{self, Circumstances, Meter, Quartiles, RunReport};
+use granular_edmd::simulation::Limits;
+use granular_edmd::speed::Meter;
 
 use super::terminal::{read, say};
 use super::{End, Failure, Plan, StudyError, core_time};
@@ -15,44 +12,6 @@ use crate::Experiment;
 
 /// Largest number of ramps whose first values are run in order to estimate the core hours of a plan.
 const RAMPS: usize = 4;
-
-type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
-
-/// Prints the time per collision in each standard state.
-pub(super) fn table(quick: bool) -> Result<End, Failure> {
-    // In a short interval, filling the caches takes a noticeable part of the time.
-    let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
-    let states: [(&str, Stretch); 7] = [
-        ("dilute", stretches(speed::dilute()?)),
-        ("dense", stretches(speed::dense()?)),
-        ("gas at 0.1", stretches(speed::gas(0.1)?)),
-        ("gas at 0.3", stretches(speed::gas(0.3)?)),
-        ("gas at 0.65", stretches(speed::gas(0.65)?)),
-        ("mixture", stretches(speed::mixture()?)),
-        ("vessel", stretches(speed::vessel()?)),
-    ];
-    let mut reports = states.each_ref().map(|_| Vec::with_capacity(rounds));
-    // The states alternate, so that a slow phase of the machine affects one interval of each state.
-    for _ in 0..rounds {
-        for ((_, stretch), reports) in states.iter().zip(&mut reports) {
-            reports.push(stretch(collisions)?);
-        }
-    }
-    say("| state | ns a collision (quartiles) | million a second | events a collision |\n|---|---|---|---|")?;
-    for ((name, _), reports) in states.iter().zip(&reports) {
-        let time = Quartiles::of(reports.iter().map(|report| report.nanoseconds_per_collision));
-        let (rate, events) = (1e3 / time.median, reports[0].events_per_collision);
-        say(&format!("| {name} | {time} | {rate:.2} | {events:.3} |"))?;
-    }
-    say(&Circumstances::present().to_string())?;
-    Ok(End::Done)
-}
-
-fn stretches(
-    run: Simulation<impl CollisionRule + Clone + 'static, impl Boundary + Clone + 'static>,
-) -> Stretch {
-    Box::new(move |collisions| speed::stretch(&run, collisions, &mut ()))
-}
 
 /// Prints the core hours of a plan, estimated from short runs of the first values of some ramps.
 pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Result<End, Failure> {

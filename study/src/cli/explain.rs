@@ -1,15 +1,10 @@
-//! The meanings of the keys of plans: the text of the command `explain`, the JSON schema with which editors
-//! complete and check plans, and the comments of a new plan.
+//! The meanings of the keys of plans: the text of the command `explain`, and the comments of a new plan.
 
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
-use serde_json::{Map, Value, json};
-
-use super::shape::{Kind, Shape};
 use crate::experiment::columns::{Meanings, OF_TABLES, find, meanings, of_error};
 use crate::parameters;
-use crate::plan::values::Steps;
 use crate::{Column, Experiment, Plan, PlanError, Table};
 
 /// The keys that the plans of all experiments have, by section.
@@ -61,17 +56,9 @@ pub(super) fn explained<E: Experiment>(key: Option<&str>) -> Result<String, Stri
     Err(format!("there is no key `{key}`{nearest}; `explain` without a key lists all"))
 }
 
-/// Returns all names with their meanings. A meaning of the experiment is left out if its name is neither a
-/// parameter nor a column.
+/// Returns all names with their meanings.
 fn all<E: Experiment>() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let (shape, columns, tables) = (Shape::of::<E>(), E::columns(), E::tables());
-    let exists = move |name: &str| {
-        shape.has(name)
-            || columns.iter().any(|column| column.name() == name)
-            || tables.iter().flat_map(Table::columns).any(|heading| heading.name() == name)
-    };
-    let own = E::meanings().iter().copied().filter(move |(name, _)| exists(name));
-    OF_PLANS.iter().copied().chain(own).chain(OF_TABLES.iter().copied())
+    OF_PLANS.iter().chain(E::meanings()).chain(OF_TABLES.iter()).copied()
 }
 
 /// Returns the name with the unit of its column, and the meaning.
@@ -81,59 +68,6 @@ fn line<E: Experiment>(name: &str, meaning: &str) -> String {
         Some(unit) if !unit.is_empty() => format!("{name} [{unit}]: {meaning}"),
         _ => format!("{name}: {meaning}"),
     }
-}
-
-/// Returns the schema of the plans of an experiment.
-pub(super) fn schema<E: Experiment>() -> Value {
-    let mut schema = of::<E>("", &Shape::of::<Plan<E>>());
-    schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
-    schema["title"] = "A plan of a study".into();
-    schema
-}
-
-/// Returns the schema of the values of a key.
-fn of<E: Experiment>(key: &str, shape: &Shape) -> Value {
-    let mut schema = match shape.kind {
-        Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Integer => json!({ "type": "integer" }),
-        Kind::Number => json!({ "type": "number" }),
-        Kind::Text => json!({ "type": "string" }),
-        Kind::List => {
-            let items: Vec<Value> = shape.parts.iter().map(|(_, item)| of::<E>(key, item)).collect();
-            json!({ "type": "array", "items": items.first() })
-        }
-        Kind::Table | Kind::Choice => group::<E>(key, shape),
-        Kind::Any if key.ends_with(".values") => {
-            json!({ "anyOf": [{ "type": "array" }, of::<E>(key, &Shape::of::<Steps>())] })
-        }
-        Kind::Any | Kind::Word | Kind::Unknown => json!({}),
-    };
-    if let Some(meaning) = of_key::<E>(key) {
-        schema["description"] = meaning.into();
-    }
-    schema
-}
-
-/// Returns the schema of a table or a choice.
-fn group<E: Experiment>(key: &str, shape: &Shape) -> Value {
-    let whole = |name: &str| format!("{key}.{name}").trim_start_matches('.').to_owned();
-    let names = || shape.parts.iter().map(|(name, _)| *name);
-    if shape.parts.iter().all(|(_, part)| part.kind == Kind::Word) {
-        return json!({ "enum": names().collect::<Vec<_>>() });
-    }
-    let parts = shape.parts.iter();
-    let properties: Map<String, Value> =
-        parts.map(|(name, part)| ((*name).to_owned(), of::<E>(&whole(name), part))).collect();
-    let mut schema = json!({ "type": "object", "properties": properties, "additionalProperties": false });
-    if shape.kind == Kind::Choice {
-        schema["minProperties"] = 1.into();
-        schema["maxProperties"] = 1.into();
-    } else {
-        let is_required =
-            |name: &&str| of_key::<E>(&whole(name)).is_some_and(|meaning| meaning.ends_with("Required."));
-        schema["required"] = names().filter(is_required).collect();
-    }
-    schema
 }
 
 /// Returns a plan in TOML with explanations.
@@ -173,17 +107,17 @@ fn meaning<E: Experiment>(section: &str, line: &str) -> Option<&'static str> {
     of_key::<E>(key.trim_start_matches('.'))
 }
 
-/// Returns comments that list the parameters without a value in the plan.
+/// Returns comments that list the parameters without a value in the plan: names with a meaning that are not
+/// names of columns.
 fn without_values<E: Experiment>(plan: &Plan<E>) -> Result<Vec<String>, PlanError> {
-    let given = parameters::tree(&plan.parts.experiment)?;
-    let parts = Shape::of::<E>().parts.into_iter();
-    let absent = parts.map(|(name, _)| name).filter(|name| !given.contains_key(*name));
-    Ok(absent
-        .map(|name| {
-            let meaning = of_key::<E>(&format!("experiment.{name}"));
-            meaning.map_or_else(String::new, |meaning| format!("# {meaning}\n")) + &format!("# {name} =")
-        })
-        .collect())
+    let (given, columns, tables) = (parameters::tree(&plan.parts.experiment)?, E::columns(), E::tables());
+    let is_column = |name: &str| {
+        columns.iter().any(|column| column.name() == name)
+            || tables.iter().flat_map(Table::columns).any(|heading| heading.name() == name)
+    };
+    let is_absent = |name: &str| !name.contains('.') && !given.contains_key(name) && !is_column(name);
+    let absent = E::meanings().iter().filter(|(name, _)| is_absent(name));
+    Ok(absent.map(|(name, meaning)| format!("# {meaning}\n# {name} =")).collect())
 }
 
 fn begins(line: &str, start: &str) -> bool {

@@ -22,12 +22,8 @@ pub(super) fn new<E: Experiment>(
     Ok(End::Done)
 }
 
-pub(super) fn explain<E: Experiment>(key: Option<&str>, schema: bool) -> Result<End, Failure> {
-    say(&if schema {
-        serde_json::to_string_pretty(&explain::schema::<E>())?
-    } else {
-        explain::explained::<E>(key).map_err(PlanError::Refused)?
-    })?;
+pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
+    say(&explain::explained::<E>(key).map_err(PlanError::Refused)?)?;
     Ok(End::Done)
 }
 

@@ -27,7 +27,7 @@ const BATCH: usize = 1024;
 /// Runs a value again, and writes the requested collisions or the requested state. An incomplete file is
 /// removed.
 pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
-    let source = Source::<E>::open(&wishes.plan, &wishes.place, wishes.place.start.as_deref())?;
+    let source = Source::<E>::open(&wishes.plan, &wishes.place)?;
     wishes.check(&source)?;
     let mut out: Box<dyn Write> = match &wishes.out {
         Some(path) => Box::new(fs::File::create_new(path).map_err(StudyError::io("write", path))?),
@@ -84,7 +84,7 @@ fn rows<E: Experiment>(
         kept.extend(caught.borrow_mut().drain(..).map(|(number, it)| row(number, &it, boundary) + "\n"));
         kept.drain(..kept.len().saturating_sub(last));
         show(player.run().time());
-        let is_over = !matches!(paused, Ok(Pause::Prepared | Pause::Slice));
+        let is_over = !matches!(paused, Ok(Pause::Slice));
         // If the run ends with an error, the collisions before the error are still written.
         if let Err(error) = paused {
             tell_end(player.run(), &*error);
@@ -143,7 +143,7 @@ fn state_before<E: Experiment>(
     let mut player = Player::new(value.as_ref(), run, Box::new(()))?;
     let ended = loop {
         match player.play(end, number - 1) {
-            Ok(Pause::Prepared | Pause::Slice) => show(player.run().time()),
+            Ok(Pause::Slice) => show(player.run().time()),
             ended => break ended,
         }
     };
@@ -152,12 +152,11 @@ fn state_before<E: Experiment>(
         ended?;
         return Err(absent(found));
     }
-    let mut state = contents::<E>(player.run(), path)?;
-    // The run may end without a further collision. Until it comes, the experiment may change the state.
+    let state = contents::<E>(player.run(), path)?;
+    // The run may end without a further collision.
     let is_there = ended.is_err()
         || loop {
             match player.play(end, number) {
-                Ok(Pause::Prepared) => state = contents::<E>(player.run(), path)?,
                 Ok(Pause::Slice) => {}
                 last => break last.is_err() || player.run().counters().collisions() == number,
             }

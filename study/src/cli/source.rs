@@ -1,4 +1,4 @@
-//! The runs of `replay`, `diff` and `trajectory`: a value of a plan or of a study, from its start or from a
+//! The runs of `replay` and `trajectory`: a value of a plan or of a study, from its start or from a
 //! file. Also the command `trajectory`.
 
 use std::cell::Cell;
@@ -32,8 +32,8 @@ pub(super) struct Source<E: Experiment> {
 
 impl<E: Experiment> Source<E> {
     /// Opens a value of a plan, or of the study in a folder, at its start.
-    pub(super) fn open(path: &Path, place: &Place, start: Option<&Path>) -> Result<Self, Failure> {
-        let source = match start {
+    pub(super) fn open(path: &Path, place: &Place) -> Result<Self, Failure> {
+        let source = match &place.start {
             Some(file) => Self::from_file(path, place, file)?,
             None => Self::of_value(path, place)?,
         };
@@ -161,7 +161,7 @@ pub(super) fn row(number: u64, it: &Collision, boundary: &impl Boundary) -> Stri
 pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Failure> {
     let Trajectory { plan, out, place, cycles } = wishes;
     Ending::need(out, Ending::is_trajectory)?;
-    let Source { run, found, cycle, .. } = Source::<E>::open(plan, place, place.start.as_deref())?;
+    let Source { run, found, cycle, .. } = Source::<E>::open(plan, place)?;
     let (times, count) = (SampleTimes::every(cycle)?, Rc::new(Cell::new(0)));
     let (recorder, counted) = (Recorder::create(out, ByEnding, times)?, Rc::clone(&count));
     let counter = on_sample(times, move |_: &Snapshot<'_>| counted.set(counted.get() + 1));
@@ -188,6 +188,6 @@ pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Fail
 
 /// Plays until a time or the end of the value.
 fn play<E: Experiment>(player: &mut Player<'_, E>, until: f64) -> Result<(), Failure> {
-    while matches!(player.play(until, u64::MAX)?, Pause::Prepared | Pause::Slice) {}
+    while player.play(until, u64::MAX)? == Pause::Slice {}
     Ok(())
 }

@@ -45,8 +45,6 @@ pub(super) struct Work<S, O> {
     /// The start of the value.
     start: Cycles,
     steps: u64,
-    /// True once the experiment has prepared the next step.
-    is_prepared: bool,
     /// True if the observer has seen the start of a run and not yet its end.
     is_under_way: bool,
     /// Counters at the start of the value.
@@ -95,7 +93,6 @@ impl<'a, E: Experiment> Value<'a, E> {
             origin: self.origin.clone(),
             start: self.start(),
             steps,
-            is_prepared: false,
             is_under_way: false,
             counters: *first.counters(),
             measured,
@@ -158,12 +155,7 @@ impl<'a, E: Experiment> Value<'a, E> {
             .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
         check_state(&state, from..=to)?;
         work.measured.check(&self.experiment, Some(&state))?;
-        let boundary = match work.steps.checked_sub(u64::from(!work.is_prepared)) {
-            Some(last) => self.experiment.boundary_in(&protocol.step(last), &work.measured.observer),
-            None => self.experiment.boundary(),
-        };
-        let run = boundary.and_then(|boundary| Self::resume(&state, &self.experiment, boundary));
-        let run = run.map_err(|_| "its state cannot go on")?;
+        let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
         check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
         Ok((work, run))
     }
@@ -183,16 +175,15 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let walls = before.last_boundary(&self.study.plan.protocol().step(before.contents.steps));
-        let run = walls.and_then(|walls| Self::resume(state, &before.experiment, walls));
+        let run = Self::resume(state, &before.experiment);
         let mut run = run.map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
         Ok(run)
     }
 
-    /// Resumes a saved state with the rule of the experiment `saved`, with which it was saved.
-    fn resume(state: &Checkpoint, saved: &E, boundary: E::Boundary) -> Result<Run<E>, ExperimentError> {
-        Ok(Simulation::resume(state, saved.rule()?, boundary).build()?)
+    /// Resumes a saved state with the rule and the walls of the experiment with which it was saved.
+    fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, ExperimentError> {
+        Ok(Simulation::resume(state, saved.rule()?, saved.boundary()?).build()?)
     }
 
     fn cannot_start(&self, source: ExperimentError) -> StudyError {
@@ -214,8 +205,6 @@ impl<E: Experiment> Active<'_, E> {
     /// whether the step is done; if not, the next call continues the step, with the same bits. The error is
     /// the outcome of a value that ends early.
     pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
-        let prepared = self.prepare();
-        prepared.map_err(|error| Outcome::Failed { time: self.run.time(), reason: chain(&error) })?;
         let ended = self.advance(slice, f64::INFINITY, u64::MAX);
         let time = self.run.time();
         match ended {
@@ -237,16 +226,6 @@ impl<E: Experiment> Active<'_, E> {
         Outcome::Limited { time: self.run.time(), reason }
     }
 
-    /// Calls the experiment's `prepare` for the next step, unless it was called already.
-    fn prepare(&mut self) -> Result<(), ExperimentError> {
-        if std::mem::replace(&mut self.work.is_prepared, true) {
-            return Ok(());
-        }
-        let interval = self.value.study.plan.protocol().step(self.work.steps);
-        let observer = &mut self.work.measured.observer;
-        self.value.experiment.prepare(&interval, &mut self.run, observer)
-    }
-
     /// Runs the next step to its end, and takes its sample on the way if the step has one. The time `until`
     /// and the number of collisions `most` in the value may end the run earlier.
     fn advance(&mut self, slice: Duration, until: f64, most: u64) -> Result<RunEnd, RunError> {
@@ -259,11 +238,10 @@ impl<E: Experiment> Active<'_, E> {
             let left = most.saturating_sub(run.counters().since(&before).collisions());
             Limits::until(end.min(until)).with_wall_clock(slice).with_most_collisions(left)
         };
-        let Work {
-            measured: Measured { times, samples, observer }, is_under_way, is_prepared, steps, ..
-        } = &mut self.work;
+        let Work { measured: Measured { times, samples, observer }, is_under_way, steps, .. } =
+            &mut self.work;
         let (run, riders) = (&mut self.run, &mut self.riders);
-        let ended = if let Some(sample) = protocol.step(*steps).sample {
+        let ended = if let Some(sample) = protocol.sample_of(*steps) {
             // A slice may have ended between the sample and the end of the step.
             if samples.len() as u64 == sample {
                 let ended = sliced::run(run, &limits(run, sample_time), riders, observer, is_under_way)?;
@@ -280,7 +258,6 @@ impl<E: Experiment> Active<'_, E> {
         };
         if ended == RunEnd::Time && until >= end {
             *steps += 1;
-            *is_prepared = false;
         }
         Ok(ended)
     }
@@ -313,7 +290,6 @@ impl<E: Experiment> Active<'_, E> {
             measured: work.measured,
             counters: run.counters().since(&work.counters),
             parts,
-            steps: work.steps,
             driving: driving.filter(|_| state.is_some()),
             state,
         };

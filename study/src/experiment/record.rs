@@ -9,8 +9,8 @@ use granular_edmd::collision::CollisionRule;
 use granular_edmd::simulation::{Checkpoint, Counters};
 use granular_edmd::statistics::{BlockedMean, Estimate};
 
+use crate::Experiment;
 use crate::parameters::{self, Scalar};
-use crate::{Experiment, ExperimentError, Interval};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -97,22 +97,13 @@ impl<E: Experiment> Record<E> {
         self.contents.state.as_ref()
     }
 
-    /// Returns the walls of the state that the record keeps. If the value stalled, failed or reached a limit,
-    /// they are the walls at its start.
-    pub(crate) fn last_boundary(&self, last: &Interval) -> Result<E::Boundary, ExperimentError> {
-        match self.outcome().reason() {
-            Some(_) => self.experiment.boundary(),
-            None => self.experiment.boundary_in(last, self.observer()),
-        }
-    }
-
     /// Returns the name of the part (the rule or the walls) that differs from the part with which the value
     /// was run. Two rules without fingerprints cannot be distinguished, nor two sets of walls.
-    pub(crate) fn changed_part(&self, last: &Interval) -> Option<&'static str> {
+    pub(crate) fn changed_part(&self) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
             Some("rule")
-        } else if self.last_boundary(last).is_ok_and(|now| now.fingerprint() != boundary) {
+        } else if self.experiment.boundary().is_ok_and(|now| now.fingerprint() != boundary) {
             Some("boundary")
         } else {
             None
@@ -178,7 +169,7 @@ pub enum Outcome {
         /// The limit.
         reason: String,
     },
-    /// The engine or a method of the experiment returned another error.
+    /// The engine or an observer returned another error.
     ///
     /// The samples and the next value are as for a stalled value.
     Failed {
@@ -226,8 +217,6 @@ pub(crate) struct Contents<S, O> {
     pub(crate) counters: Counters,
     /// Fingerprints of the rule and the walls that made the value.
     pub(crate) parts: [Option<Fingerprint>; 2],
-    /// Number of finished steps.
-    pub(crate) steps: u64,
     /// The state and the driving at the end, if the plan keeps them.
     pub(crate) state: Option<Checkpoint>,
     pub(crate) driving: Option<Vec<u8>>,

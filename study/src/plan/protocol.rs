@@ -4,7 +4,6 @@ use granular_edmd::ParameterError;
 use granular_edmd::quantity::accept;
 
 use super::values::from_file;
-use crate::Interval;
 
 /// Largest length of a value in cycles, and largest number of samples. Products up to this size are exact.
 const MOST: u64 = 1 << 40;
@@ -127,11 +126,9 @@ impl Protocol {
         }
     }
 
-    /// Returns the step that follows this number of finished steps. If the value is finished, returns its
-    /// last step.
-    pub(crate) fn step(&self, finished: u64) -> Interval {
-        let index = finished.min(self.steps().saturating_sub(1));
-        Interval { index, sample: index.checked_sub(self.settling_steps()) }
+    /// Returns the index of the sample with which a step ends; `None` while the value settles.
+    pub(crate) const fn sample_of(&self, step: u64) -> Option<u64> {
+        step.checked_sub(self.settling_steps())
     }
 }
 
@@ -145,6 +142,6 @@ mod tests {
         let ends: Vec<u64> = (0..=protocol.steps()).map(|steps| protocol.cycles_of(steps)).collect();
         assert_eq!(ends, [0, 10, 20, 25, 35, 45, 55]);
         assert_eq!(ends.last(), Some(&protocol.cycles()));
-        assert_eq!((0..6).filter(|&step| protocol.step(step).sample.is_some()).count(), 3);
+        assert_eq!((0..6).filter(|&step| protocol.sample_of(step).is_some()).count(), 3);
     }
 }

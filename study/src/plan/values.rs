@@ -208,7 +208,7 @@ const ROUNDING: f64 = 1e-9;
 /// `{ from = 0.0, to = 1.0, step = 0.1 }` for equal steps, `{ from = 1e-3, to = 1.0, log = 31 }` for 31
 /// values in equal ratios.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub(crate) struct Steps {
+pub(super) struct Steps {
     from: f64,
     to: f64,
     /// The difference of neighbors, or `None` for equal ratios.

@@ -1,8 +1,6 @@
 //! The parts of the box: its base, its sides, and the collision rule of its disks.
 
-use granular_edmd::Fingerprint;
 use granular_edmd::boundary::{Container, Thermal, Wall};
-use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Impulse};
 use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion};
 
 use crate::ExperimentError;
@@ -86,32 +84,5 @@ impl Base {
                 container.with_temperature(Wall::Floor, if slip { thermal.with_slip() } else { thermal })?
             }
         })
-    }
-}
-
-/// The paper's rule, with or without the contact-duration model.
-#[derive(Debug, Clone, Copy)]
-pub struct BoxRule(pub(super) Kind);
-
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Kind {
-    Plain(Frictional),
-    Lasting(ContactDuration<Frictional>),
-}
-
-impl CollisionRule for BoxRule {
-    #[inline]
-    fn impulse(&self, contact: &Contact) -> Impulse {
-        match &self.0 {
-            Kind::Plain(rule) => rule.impulse(contact),
-            Kind::Lasting(rule) => rule.impulse(contact),
-        }
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        match &self.0 {
-            Kind::Plain(rule) => rule.fingerprint(),
-            Kind::Lasting(rule) => rule.fingerprint(),
-        }
     }
 }

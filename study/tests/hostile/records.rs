@@ -40,7 +40,7 @@ impl Specimen {
         match &self.path {
             Some(path) => {
                 fs::create_dir_all(folder.join("unfinished")).unwrap();
-                let head = [b"GRANPART".as_slice(), &5_u32.to_le_bytes(), &[0; 32]].concat();
+                let head = [b"GRANPART".as_slice(), &6_u32.to_le_bytes(), &[0; 32]].concat();
                 fs::write(folder.join("unfinished").join(path.file_name().unwrap()), sealed(&head, contents))
                     .unwrap();
             }

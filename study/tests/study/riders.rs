@@ -1,5 +1,4 @@
-//! Experiments that are driven, refilled, or have walls that move between steps, and values that come to a
-//! limit.
+//! Experiments that are driven or refilled, and values that come to a limit.
 
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -10,8 +9,8 @@ use granular_edmd::prelude::*;
 use granular_edmd::simulation::{Inlet, WhiteNoise};
 use granular_edmd_files::{ExtendedXyz, Recorder};
 use granular_edmd_study::{
-    Axis, Column, Control, Course, Experiment, ExperimentError, Interval, Outcome, Plan, Protocol, Ramp, Run,
-    SavedDriving, Start, Study,
+    Axis, Column, Control, Course, Experiment, ExperimentError, Plan, Protocol, Ramp, Run, SavedDriving,
+    Start, Study,
 };
 use serde::{Deserialize, Serialize};
 
@@ -211,81 +210,6 @@ fn a_silo_is_refilled_and_recorded() -> Result<(), AnyError> {
     assert_eq!(record.observer().0, record.counters().insertions);
     let frames = fs::read_to_string(scratch.0.join("frames-1-0.xyz"))?;
     assert_eq!(frames.matches("Lattice=").count(), 6);
-    Ok(())
-}
-
-/// Grains under a lid that follows them down, between the steps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Bed {
-    weight: f64,
-}
-
-/// The height of the lid, which an interrupted value needs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Lid(f64);
-
-impl Observer for Lid {}
-
-const TOP: f64 = 12.0;
-
-impl Experiment for Bed {
-    type Rule = ContactDuration<Smooth>;
-    type Boundary = Container;
-    type Observer = Lid;
-    type Sample = f64;
-
-    fn revision() -> Fingerprint {
-        Fingerprint::of("Bed")
-    }
-    fn rule(&self) -> Result<Self::Rule, ExperimentError> {
-        Ok(ContactDuration::new(Smooth::from_restitution(0.9)?, 1e-2)?)
-    }
-    fn boundary(&self) -> Result<Container, ExperimentError> {
-        Ok(Container::closed(8.0, TOP)?)
-    }
-    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
-        let disks = initial::scattered(&self.boundary()?, 20, 0.5, TOP, seed)?;
-        Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
-    }
-    fn gravity(&self) -> Gravity {
-        self.weight.into()
-    }
-    fn observer(&self) -> Result<Lid, ExperimentError> {
-        Ok(Lid(TOP))
-    }
-    fn sample(&self, _: &Snapshot<'_>, lid: &mut Lid) -> f64 {
-        lid.0
-    }
-    fn prepare(&self, step: &Interval, run: &mut Run<Self>, lid: &mut Lid) -> Result<(), ExperimentError> {
-        if step.sample.is_none() {
-            return Ok(());
-        }
-        let top = run.disks().iter().map(|disk| disk.position().y + disk.radius()).fold(0.0, f64::max);
-        *lid = Lid((top + 0.5).min(TOP));
-        if self.weight > 4.0 {
-            return Err("no lid bears this weight".into());
-        }
-        Ok(run.set_boundary(self.boundary_in(step, lid)?)?)
-    }
-    fn boundary_in(&self, _: &Interval, lid: &Lid) -> Result<Container, ExperimentError> {
-        Ok(Container::closed(8.0, lid.0)?)
-    }
-    fn columns() -> Vec<Column<Self>> {
-        vec![Column::sampled("lid", "diameter", |lid| *lid)]
-    }
-}
-
-#[test]
-fn a_lid_follows_a_bed_between_steps() -> Result<(), AnyError> {
-    let plan = Plan::new(Bed { weight: 0.3 }, Protocol::new(2, 6, 1)?, 3)?;
-    let plan = plan.with_ramp(Ramp::new("weight", [0.3, 0.5, 5.0], Course::Up)?)?.with_end_states();
-    let (_scratch, study) = done_twice("bed", &plan);
-    let lids = study.record(0, 0)?.ok_or("no record")?.samples().to_vec();
-    assert!(lids[5] < lids[0] && lids[0] < TOP, "{lids:?}");
-    let failed = study.record(0, 2)?.ok_or("no record")?;
-    assert!(
-        matches!(failed.outcome(), Outcome::Failed { reason, .. } if reason.contains("bears this weight"))
-    );
     Ok(())
 }
 

@@ -14,7 +14,7 @@ use log::{Log, Piece, read_piece};
 #[path = "../../src/store/log.rs"]
 pub(crate) mod log;
 
-pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 5);
+pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 6);
 
 /// A piece of a log, with ramp, value and edition.
 struct Found {

@@ -31,7 +31,7 @@ fn five_percent_are_told_from_one() {
     let with = |turns| run.clone().with_rule(Slower { rule: *run.rule(), turns });
     let stretch = |turns| {
         let run = with(turns);
-        move || speed::stretch(&run, 10_000, &mut ())
+        move || speed::measure(&run, 10_000, &mut ())
     };
     let compared = |turns| Comparison::between(stretch(0), stretch(turns)).unwrap();
     // The processor does the first turns beside other work, so the cost of a turn is none at first.

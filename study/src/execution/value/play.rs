@@ -78,8 +78,6 @@ impl<E: Experiment> Study<E> {
 /// The reason why a run pauses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Pause {
-    /// The experiment has just prepared a step.
-    Prepared,
     /// A slice or a step has ended.
     Slice,
     /// The time or the number of collisions that was asked for is reached.
@@ -175,10 +173,6 @@ impl<E: Experiment> Active<'_, E> {
         }
         if start >= until || self.run.counters().collisions() >= most {
             return Ok(Pause::Reached);
-        }
-        if !self.work.is_prepared {
-            self.prepare()?;
-            return Ok(Pause::Prepared);
         }
         Ok(match self.advance(SLICE, until, most - self.work.counters.collisions())? {
             RunEnd::WallClock => Pause::Slice,
