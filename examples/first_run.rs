@@ -23,19 +23,19 @@ fn main() -> anyhow::Result<()> {
     // 1000 grains of radius 1/2 on a lattice, with random velocities. The last number is the seed: the same
     // seed gives the same run, bit for bit.
     let disks = initial::lattice(&container, 1000, 0.5)?;
-    let disks = initial::with_maxwellian_velocities(disks, 0.5, 1)?;
+    let disks = initial::with_maxwellian_velocities(disks, 0.5, 7)?;
 
-    // Grains lose no energy by their inelasticity (0), but rub with the friction coefficient 0.07. Contacts
+    // Grains lose no energy by their inelasticity (0), but rub with the friction coefficient 0.03. Contacts
     // within a time of 1e-4 after the previous one lose nothing, so that grains at rest on each other do not
     // stall the run.
-    let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, 0.07)?, 1e-4)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, 0.03)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
 
     // Watch the order parameters of one roll and of two, and the height of the center of mass. Samples a
     // whole number of oscillations apart would always see the base at the same phase; these samples see ten
     // phases.
     let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(99.9 * oscillation)?);
-    simulation.run_until(2000.0 * oscillation, &mut series)?;
+    simulation.run_until(1000.0 * oscillation, &mut series)?;
 
     println!("oscillation  one roll  two rolls   height");
     for (time, (order, center)) in series.iter() {

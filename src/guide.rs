@@ -122,3 +122,8 @@ pub mod performance_details {}
 #[doc(alias("semver", "compatibility"))]
 #[doc = include_str!("../docs/stability.md")]
 pub mod stability {}
+
+/// The programs of the README, so that they are compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
