@@ -8,11 +8,13 @@
 //! | [`scattered`], [`scattered_mix`] | equal ones, any | random positions, up to an area fraction of 0.5 |
 //! | [`packed_mix`] | any | random positions, up to an area fraction of 0.8 |
 //!
-//! A [`Reader`](https://docs.rs/granular-edmd-files) of the package `granular-edmd-files` reads disks from files of other programs.
+//! A [`Reader`](https://docs.rs/granular-edmd-files) of the package `granular-edmd-files` reads disks from
+//! files of other programs.
 //!
 //! [`Radii`] draws radii from distributions, and [`disks_from_radii`] makes disks of them.
-//! [`with_maxwellian_velocities`] sets disks in motion, and [`without_drift`] stops their center of mass. To place disks around other disks, put the other disks
-//! into the boundary as [`Obstacles`](crate::boundary::Obstacles).
+//! [`with_maxwellian_velocities`] sets disks in motion, and [`without_drift`] stops their center of mass. To
+//! place disks around other disks, put the other disks into the boundary as
+//! [`Obstacles`](crate::boundary::Obstacles).
 //!
 //! The functions place no disk in a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in

@@ -44,8 +44,8 @@
 //!
 //! A study is many runs over the values of parameters, on all cores and in many processes. The package
 //! [`granular-edmd-study`](https://docs.rs/granular-edmd-study) plans, runs and tabulates them, and so does
-//! its command `granular-edmd`. The package [`granular-edmd-files`](https://docs.rs/granular-edmd-files) writes
-//! trajectories for other programs, and reads disks from their files.
+//! its command `granular-edmd`. The package [`granular-edmd-files`](https://docs.rs/granular-edmd-files)
+//! writes trajectories for other programs, and reads disks from their files.
 //!
 //! # Map
 //! | module | contents |

@@ -1,7 +1,8 @@
 //! The speed of runs, and the cost of their parts.
 //!
 //! A [`Meter`] is started before a run and makes a [`RunReport`] after it. [`dilute`] and [`dense`] are
-//! standard states in which to compare a custom part with the built-in one. Insert the part with [`Simulation::with_rule`](crate::Simulation::with_rule),
+//! standard states in which to compare a custom part with the built-in one. Insert the part with
+//! [`Simulation::with_rule`](crate::Simulation::with_rule),
 //! [`with_boundary`](crate::Simulation::with_boundary) or
 //! [`with_scheduler`](crate::Simulation::with_scheduler); a [`Comparison`] shows whether a difference exceeds
 //! the noise. For benchmarks with criterion, [`measure`] measures one run alone instead of two runs

@@ -159,8 +159,8 @@ fn free_sites<B: Boundary + ?Sized>(boundary: &B, room: &Domain, spacing: f64, r
         .collect()
 }
 
-/// Returns up to `count` disks on a square or triangular lattice with at least this spacing, where they overlap
-/// no wall.
+/// Returns up to `count` disks on a square or triangular lattice with at least this spacing, where they
+/// overlap no wall.
 fn free_disks<B: Boundary + ?Sized>(
     boundary: &B,
     room: &Domain,

@@ -93,8 +93,8 @@ pub fn packed_mix<B: Boundary + ?Sized>(
     Ok(packed.collect::<Result<_, _>>()?)
 }
 
-/// Replaces the initial radius in an error, relative to the largest, by the full radius of the disk that finds
-/// no room.
+/// Replaces the initial radius in an error, relative to the largest, by the full radius of the disk that
+/// finds no room.
 fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
     let PlacementError::NoRoom { count, placed, radius: share, interior } = error else { return error };
     let largest = disks.iter().map(Disk::radius).fold(0.0, f64::max);

@@ -20,9 +20,9 @@ const TRIALS: usize = 10_000;
 /// neither another disk nor a wall there ([`Boundary::overlap`] at time 0). In a round drum, all disks lie
 /// inside the circle.
 ///
-/// Disks are placed one by one where there is room (random sequential addition). This method cannot reach dense states, such as area
-/// fractions above 0.5. For these, start from a [`lattice`](super::lattice()) and let it melt, or take
-/// [`packed_mix`](super::packed_mix).
+/// Disks are placed one by one where there is room (random sequential addition). This method cannot reach
+/// dense states, such as area fractions above 0.5. For these, start from a [`lattice`](super::lattice()) and
+/// let it melt, or take [`packed_mix`](super::packed_mix).
 ///
 /// # Errors
 /// If the radius is not finite and positive, the height is not finite and above the bottom of the interior,

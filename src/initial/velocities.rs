@@ -10,10 +10,10 @@ use crate::{Disk, ParameterError};
 
 /// Returns the same disks with Maxwellian velocities of this temperature.
 ///
-/// Each component of a velocity is an independent normal variable of variance $`T/m`$: the canonical ensemble,
-/// which suits a box with walls. All angular velocities stay unchanged. The center of mass drifts at a speed of
-/// about $`\sqrt{2T/M}`$, where $`M`$ is the total mass. In a periodic domain, where it would drift forever,
-/// use [`without_drift`].
+/// Each component of a velocity is an independent normal variable of variance $`T/m`$: the canonical
+/// ensemble, which suits a box with walls. All angular velocities stay unchanged. The center of mass drifts
+/// at a speed of about $`\sqrt{2T/M}`$, where $`M`$ is the total mass. In a periodic domain, where it would
+/// drift forever, use [`without_drift`].
 ///
 /// # Errors
 /// If the temperature is negative or not finite.

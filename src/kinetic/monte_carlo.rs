@@ -32,8 +32,8 @@ const FIRST_ROUND: u64 = 16;
 /// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a
 /// speed scale, like the paper's, the only remaining scatter comes from the angle within a stratum.
 ///
-/// Collisions come in chunks of 4096. Each chunk has its own stream of random numbers, and chunks are added in
-/// order. The result therefore has the same bits on any number of threads, with and without the feature
+/// Collisions come in chunks of 4096. Each chunk has its own stream of random numbers, and chunks are added
+/// in order. The result therefore has the same bits on any number of threads, with and without the feature
 /// `rayon`.
 ///
 /// ```

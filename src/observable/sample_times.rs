@@ -23,8 +23,8 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 /// The sampling times are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
 /// first time ([`Self::starting_at`]). Each time is a multiple, not a sum, so the thousandth is as exact as
 /// the first. If the interval and the first time are decimal numbers of at most nine places, so are the
-/// sampling times: the third multiple of 0.1 is 0.3. [`Self::at_ratio`] gives times that are equally spaced on
-/// a logarithmic scale, and [`ByCollisions`](super::ByCollisions) samples by the number of collisions.
+/// sampling times: the third multiple of 0.1 is 0.3. [`Self::at_ratio`] gives times that are equally spaced
+/// on a logarithmic scale, and [`ByCollisions`](super::ByCollisions) samples by the number of collisions.
 ///
 /// # The start of a run
 /// An observer passes the start of each run to [`Self::start_at`]. Sampling times before the start are left
@@ -47,8 +47,8 @@ const COARSEST: f64 = 16.0 * f64::EPSILON;
 ///
 /// # Two clocks
 /// Times of two clocks are the same only to the bit. A sample, a kick and the opening of an inlet at times
-/// that differ by a rounding come in the order of the bits, now one first and now the other. Where their order
-/// matters, take decimal intervals, or put the first time of one clock between two times of the other
+/// that differ by a rounding come in the order of the bits, now one first and now the other. Where their
+/// order matters, take decimal intervals, or put the first time of one clock between two times of the other
 /// ([`Self::starting_at`]).
 ///
 /// ```
@@ -94,8 +94,8 @@ impl SampleTimes {
         Ok(Self { interval, is_ratio: false, first: None, beat: 1, upcoming: interval, started: false })
     }
 
-    /// Creates a clock whose sampling times are `first`, `first * ratio`, `first * ratio²` and so on, as for a
-    /// gas that cools.
+    /// Creates a clock whose sampling times are `first`, `first * ratio`, `first * ratio²` and so on, as for
+    /// a gas that cools.
     ///
     /// Observers of intervals, such as [`WallStress`](super::WallStress), and drivings need equally spaced
     /// times.

@@ -89,9 +89,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
     /// Sets the seed of the stochastic walls, such as thermal walls; 0 unless given.
     ///
-    /// The random numbers of a collision follow from the seed, the disk's [id](Disk::id), and the time and the
-    /// number of the disk's collision. Repeats of a run need different seeds, like their initial states: with
-    /// the same random numbers at the walls, they are not independent. A repeat may have one seed for
+    /// The random numbers of a collision follow from the seed, the disk's [id](Disk::id), and the time and
+    /// the number of the disk's collision. Repeats of a run need different seeds, like their initial states:
+    /// with the same random numbers at the walls, they are not independent. A repeat may have one seed for
     /// everything, since its parts draw from separate [streams](crate::random).
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;

@@ -86,8 +86,8 @@ impl Engine {
     }
 }
 
-/// An engine as a simulation holds it: builds with debug assertions lend it (`lending.rs`), and then move only
-/// a pointer.
+/// An engine as a simulation holds it: builds with debug assertions lend it (`lending.rs`), and then move
+/// only a pointer.
 #[cfg(debug_assertions)]
 pub(super) type Held = Box<Engine>;
 #[cfg(not(debug_assertions))]

@@ -1,5 +1,5 @@
-//! Comparison of the speeds of two runs, which alternate; medians and quartiles. On a busy machine, the mean of a
-//! few measurements says little.
+//! Comparison of the speeds of two runs, which alternate; medians and quartiles. On a busy machine, the mean
+//! of a few measurements says little.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! The report of a run: how fast it was, what it did, and on which machine. Time is processor time: other work
-//! on the machine does not count.
+//! The report of a run: how fast it was, what it did, and on which machine. Time is processor time: other
+//! work on the machine does not count.
 
 use std::time::{Duration, Instant};
 use std::{fmt, fs};
@@ -73,7 +73,8 @@ pub struct RunReport {
     pub disks: usize,
     /// Simulated time.
     pub simulated_time: f64,
-    /// Seconds on the processor: on Linux, time of other programs does not count; elsewhere, by the wall clock.
+    /// Seconds on the processor: on Linux, time of other programs does not count; elsewhere, by the wall
+    /// clock.
     pub seconds: f64,
     /// Processor time per collision, including all other events.
     pub nanoseconds_per_collision: f64,

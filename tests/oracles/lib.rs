@@ -26,8 +26,8 @@ pub fn deepest_overlap(domain: &Domain, disks: &[Disk]) -> f64 {
     pairs(disks).map(depth).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Returns the first pair of disks that overlaps within this time by more than rounding, and how deep. All disks
-/// fall alike.
+/// Returns the first pair of disks that overlaps within this time by more than rounding, and how deep. All
+/// disks fall alike.
 pub fn meeting(domain: &Domain, disks: &[Disk], passed: f64) -> Option<([Disk; 2], f64)> {
     let allowed = rounding(disks);
     pairs(disks).find_map(|[a, b]| {
