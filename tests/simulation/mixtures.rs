@@ -57,7 +57,7 @@ fn mixture(radii: &[f64], sides: u8, filling: f64, seed: u64) -> (Container, Vec
 }
 
 proptest! {
-    #![proptest_config(config(12))]
+    #![proptest_config(config(6))]
 
     #[test]
     fn no_meeting_is_missed(
