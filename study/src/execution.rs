@@ -168,8 +168,7 @@ pub struct Summary {
     /// Number of values that were not finished: they stalled, failed, or reached a limit. Such values have
     /// fewer samples, or no sample; [`Outcome::reason`](crate::Outcome::reason) says why.
     pub failed: usize,
-    /// Number of values whose runs have [warnings](granular_edmd::Simulation::warnings). The study's files
-    /// `logs/*.jsonl` contain the warnings.
+    /// Number of values whose runs have [warnings](crate::Record::warnings).
     pub warned: usize,
     /// Number of values in the ramps to be run: all ramps of the study, or one ramp.
     pub total: usize,
@@ -205,8 +204,8 @@ impl<E: Experiment> Study<E> {
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
     /// done.
     ///
-    /// This method is for batch engines that give each ramp to one process. If several processes run the same
-    /// ramp at the same time, more than one may compute it, with the same result.
+    /// This method is for batch engines that give each ramp to one process. In a study of more than 960 ramps,
+    /// the process waits while another one runs ramp K ± 960, K ± 1920 and so on, which have the same log.
     ///
     /// # Errors
     /// The same as for [`Self::run`], and if there is no such ramp.
@@ -219,14 +218,11 @@ impl<E: Experiment> Study<E> {
         self.check_unchanged()?;
         let is_whole = ramps.len() == self.plan().ramp_count();
         let session = Session::new(self, control, ramps)?;
-        let elsewhere = all(&session)?;
-        self.store.sync()?;
-        let summary = session.summary(elsewhere)?;
-        if control.writes_tables && summary.is_complete() {
-            let entries = self.store.refreshed()?;
-            if (0..self.plan.ramp_count()).all(|ramp| entries.is_done(ramp)) {
-                self.write_tables_once(is_whole)?;
-            }
+        all(&session)?;
+        let summary = session.summary()?;
+        let is_done = || (0..self.plan.ramp_count()).all(|ramp| self.store.is_done(ramp));
+        if control.writes_tables && summary.is_complete() && is_done() {
+            self.write_tables_once(is_whole)?;
         }
         Ok(summary)
     }
@@ -246,18 +242,17 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Runs blocks until all are finished by this process or others. Returns the ramps of other processes that
-/// are left if the control does not wait, or if the run must stop.
-fn all<E: Experiment>(session: &Session<'_, E>) -> Result<Vec<usize>, StudyError> {
+/// Runs blocks until all are finished by this process or others. Blocks of other processes are left if the
+/// control does not wait, or if the run must stop.
+fn all<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
     session.strike_done()?;
     let mut patience = PATIENCE[0];
     loop {
         let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
         threads.try_for_each(|_| work(session))?;
         session.strike_done()?;
-        let elsewhere: Vec<usize> = session.blocks().elsewhere.iter().cloned().flatten().collect();
-        if elsewhere.is_empty() || !session.control.waits || session.must_stop() {
-            return Ok(elsewhere);
+        if session.blocks().elsewhere.is_empty() || !session.control.waits || session.must_stop() {
+            return Ok(());
         }
         session.sleep(patience);
         patience = PATIENCE[1].min(2 * patience);
@@ -270,9 +265,9 @@ fn all<E: Experiment>(session: &Session<'_, E>) -> Result<Vec<usize>, StudyError
 fn work<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
     while !session.must_stop() {
         let next = session.blocks().waiting.pop_front();
-        let Some(ramps) = next else { break };
-        if !ramp::attempt(session, &ramps).inspect_err(|_| session.broken.store(true, Ordering::Relaxed))? {
-            session.blocks().leave(ramps);
+        let Some(block) = next else { break };
+        if !ramp::attempt(session, block).inspect_err(|_| session.broken.store(true, Ordering::Relaxed))? {
+            session.blocks().leave(block);
         }
     }
     Ok(())

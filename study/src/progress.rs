@@ -1,8 +1,7 @@
 //! The progress of a study: its ramps, failed values, and the time that it takes.
 
-use super::execution::session::Claims;
 use super::folder::remove;
-use super::store::{Entry, Head};
+use super::store::Head;
 use super::{Experiment, Study, StudyError};
 
 /// Progress of a ramp.
@@ -36,12 +35,11 @@ impl<E: Experiment> Study<E> {
     /// If the folder cannot be read.
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
         let mut all = vec![RampStatus::Waiting; self.plan.ramp_count()];
-        let (taken, unfinished) = (self.claims().taken()?, self.folder.unfinished()?);
-        let entries = self.store.refreshed()?;
-        let begun = entries.heads().map(|head| head.ramp).chain(unfinished.iter().map(|place| place[0]));
+        let (taken, unfinished) = (self.store.taken(), self.folder.unfinished()?);
+        self.store.refresh()?;
+        let begun = self.store.heads().map(|head| head.ramp).chain(unfinished.iter().map(|place| place[0]));
         let begun = begun.map(|ramp| (ramp, RampStatus::Begun));
-        for (ramp, status) in begun.chain(taken.into_iter().flatten().map(|ramp| (ramp, RampStatus::Running)))
-        {
+        for (ramp, status) in begun.chain(taken.map(|ramp| (ramp, RampStatus::Running))) {
             if let Some(place) = all.get_mut(ramp) {
                 *place = status;
             }
@@ -49,13 +47,9 @@ impl<E: Experiment> Study<E> {
         for (ramp, status) in all.iter_mut().enumerate().filter(|(_, status)| **status != RampStatus::Waiting)
         {
             // A ramp that was finished in between counts as finished.
-            *status = if entries.is_done(ramp) { RampStatus::Done } else { *status };
+            *status = if self.store.is_done(ramp) { RampStatus::Done } else { *status };
         }
         Ok(all)
-    }
-
-    fn claims(&self) -> Claims {
-        Claims::new(self.folder(), self.plan.ramp_count())
     }
 
     /// Returns the ramp and value indices of all values that stalled, failed or reached a limit.
@@ -63,9 +57,21 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If files cannot be read.
     pub fn failed(&self) -> Result<Vec<[usize; 2]>, StudyError> {
-        let entries = self.store.refreshed()?;
-        let failed = entries.heads().filter(|head| head.has(Head::FAILED));
-        Ok(failed.map(|head| [head.ramp, head.value]).collect())
+        self.with_mark(Head::FAILED)
+    }
+
+    /// Returns the ramp and value indices of all values whose runs have [warnings](crate::Record::warnings).
+    ///
+    /// # Errors
+    /// If files cannot be read.
+    pub fn warned(&self) -> Result<Vec<[usize; 2]>, StudyError> {
+        self.with_mark(Head::WARNED)
+    }
+
+    fn with_mark(&self, mark: u32) -> Result<Vec<[usize; 2]>, StudyError> {
+        self.store.refresh()?;
+        let found = self.store.heads().filter(|head| head.has(mark));
+        Ok(found.map(|head| [head.ramp, head.value]).collect())
     }
 
     /// Marks the first failed value of a finished ramp and all later values as unfinished, since a new result
@@ -82,20 +88,20 @@ impl<E: Experiment> Study<E> {
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
         self.check_ramp(ramp)?;
         self.check_unchanged()?;
-        let claim = self.claims().claim(ramp)?;
-        let entries = self.store.refreshed()?;
-        if claim.is_none() || !entries.is_done(ramp) {
+        let block = self.store.block_of(ramp);
+        let Some(_claim) = self.store.claim(block)? else { return Ok(false) };
+        if !self.store.is_done(ramp) {
             return Ok(false);
         }
-        let heads = || entries.of(ramp..ramp + 1).map(Entry::head);
-        let Some(first) = heads().find(|head| head.has(Head::FAILED)) else { return Ok(false) };
+        let heads: Vec<Head> = self.store.of(ramp..ramp + 1).map(|entry| entry.head()).collect();
+        let Some(first) = heads.iter().position(|head| head.has(Head::FAILED)) else { return Ok(false) };
         remove(&self.folder.complete())?;
-        for value in heads().map(|head| head.value).filter(|value| *value >= first.value) {
+        for Head { value, .. } in heads.into_iter().skip(first) {
             // A process that was killed just after it had finished the value may have left this file.
             remove(&self.folder.partial(ramp, value))?;
-            self.store.push(Head::new(ramp, value, Head::VOID, f32::NAN), &[])?;
+            self.store.push(Head { ramp, value, marks: Head::VOID, seconds: f32::NAN }, &[])?;
         }
-        self.store.refreshed()?;
+        self.store.sync(block)?;
         Ok(true)
     }
 
@@ -108,11 +114,11 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If files cannot be read.
     pub fn seconds(&self) -> Result<(f64, f64), StudyError> {
-        let entries = self.store.refreshed()?;
-        let timed = || entries.heads().map(|head| f64::from(head.seconds)).filter(|time| !time.is_nan());
+        self.store.refresh()?;
+        let timed = || self.store.heads().map(|head| f64::from(head.seconds)).filter(|time| !time.is_nan());
         let seconds = timed().fold(0.0, |sum, time| sum + time);
         let all = (self.plan.ramp_count() * self.plan.value_count()) as f64;
-        let left = f64::max(all - entries.heads().count() as f64, 0.0);
+        let left = f64::max(all - self.store.heads().count() as f64, 0.0);
         Ok((seconds, left * seconds / timed().count() as f64))
     }
 }

@@ -84,10 +84,10 @@ impl<E: Experiment> Study<E> {
     /// other code.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
-        if self.store.known().find(ramp, value).is_none() {
-            self.store.refreshed()?;
+        if self.store.find(ramp, value).is_none() {
+            self.store.refresh_block(self.store.block_of(ramp))?;
         }
-        match (self.known_record(ramp, value)?, self.store.damage()) {
+        match (self.known_record(ramp, value)?, self.store.damage(self.store.block_of(ramp))) {
             (None, Some(error)) => Err(error),
             (found, _) => Ok(found),
         }
@@ -95,7 +95,7 @@ impl<E: Experiment> Study<E> {
 
     /// Returns the record of a value, or `None` if the value was not finished when the store was last read.
     pub(super) fn known_record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
-        self.store.known().find(ramp, value).map(|entry| self.read(entry)).transpose()
+        self.store.find(ramp, value).map(|entry| self.read(&entry)).transpose()
     }
 
     /// Reads a record of the store.
@@ -104,7 +104,7 @@ impl<E: Experiment> Study<E> {
         // Code that the study has accepted may differ from this program.
         let is_ours = self.is_ours(&record.contents.origin);
         match record.changed_part().filter(|_| is_ours) {
-            Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
+            Some(part) => Err(StudyError::changed(&self.store.log_of(entry.head().ramp), part)),
             None => Ok(record),
         }
     }
@@ -113,7 +113,7 @@ impl<E: Experiment> Study<E> {
     /// making them.
     pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
-        self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(entry))?;
+        self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(head.ramp))?;
         let is_placed = match self.plan.step(head.value) {
             Some(step) => contents.leg.zip(contents.at) == Some(step),
             None => contents.at.is_none_or(|at| self.plan.ramp().is_some_and(|ramp| ramp.bisects(at))),
@@ -142,12 +142,12 @@ impl<E: Experiment> Study<E> {
         &self,
         ramps: Result<Range<usize>, StudyError>,
     ) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        let found = ramps.and_then(|ramps| Ok(self.store.refreshed()?.of(ramps).copied().collect()));
-        let (entries, error): (Vec<Entry>, _) = match found {
-            Ok(entries) => (entries, None),
-            Err(error) => (Vec::new(), Some(error)),
+        let found = ramps.and_then(|ramps| self.store.refresh().map(|()| ramps));
+        let (ramps, error) = match found {
+            Ok(ramps) => (ramps, None),
+            Err(error) => (0..0, Some(error)),
         };
-        error.into_iter().map(Err).chain(entries.into_iter().map(|entry| self.read(&entry)))
+        error.into_iter().map(Err).chain(self.store.of(ramps).map(|entry| self.read(&entry)))
     }
 
     /// Returns a value at a point of the grid, with all its finished repeats, or `None` if no repeat is
@@ -157,7 +157,7 @@ impl<E: Experiment> Study<E> {
     /// If there is no such point, or if a record cannot be read, is damaged, or comes from another study or
     /// other code.
     pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        self.store.refreshed()?;
+        self.store.refresh()?;
         self.known_point(index, value)
     }
 
@@ -177,7 +177,7 @@ impl<E: Experiment> Study<E> {
     ///
     /// Values that a refinement adds are left out, since different repeats have different ones.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
-        let error = self.store.refreshed().err();
+        let error = self.store.refresh().err();
         let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
         let places = (0..self.plan.point_count()).flat_map(values);
         let found = places.filter_map(|(index, value)| self.known_point(index, value).transpose());

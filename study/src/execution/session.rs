@@ -1,27 +1,16 @@
-//! One run of a study: its blocks of ramps, for all threads and processes, and the data that they share. The
-//! locks of a limited number of files decide which process runs which blocks.
+//! One run of a study: its blocks of ramps, for all threads and processes, and the data that they share.
 
 use std::collections::{BTreeSet, HashMap, VecDeque};
-use std::fs::{File, TryLockError};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use granular_edmd::file::Locked;
-use serde_json::json;
-
 use super::{Control, Progress, Summary};
-use crate::folder::{files_in, try_lock};
 use crate::parameters::{self, anywhere};
-use crate::store::{Entry, Head};
+use crate::store::Head;
 use crate::{Difference, Experiment, Plan, PlanError, Study, StudyError};
-
-/// Largest number of blocks of ramps, each with its lock file. A process claims whole blocks. With 64
-/// processes, a few percent of the time is lost at the end, when some processes have a block left and the
-/// others none. The folder of a study stays below a thousand files.
-const BLOCKS: usize = 960;
 
 /// Longest time between two checks in which a thread looks for a request to stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
@@ -32,7 +21,6 @@ pub(super) struct Session<'a, E: Experiment> {
     pub(super) control: &'a Control<'a>,
     /// Earlier studies, each with the indices of its ramps by seed.
     earlier: Vec<(Study<E>, HashMap<u64, usize>)>,
-    pub(super) claims: Claims,
     blocks: Mutex<Blocks>,
     /// The ramps to be run.
     pub(super) ramps: Range<usize>,
@@ -54,15 +42,14 @@ impl<'a, E: Experiment> Session<'a, E> {
         control: &'a Control<'a>,
         ramps: Range<usize>,
     ) -> Result<Self, StudyError> {
-        let claims = Claims::new(study.folder(), study.plan.ramp_count());
         let waiting = match ramps.len() {
-            1 => VecDeque::from([ramps.clone()]),
-            _ => begun_anywhere(claims.blocks().collect()),
+            1 => VecDeque::from([study.store.block_of(ramps.start)]),
+            _ => begun_anywhere((0..study.store.block_count()).collect()),
         };
         let open = |folder: &PathBuf| {
             let earlier = Study::open(folder)?;
             StudyError::if_different(folder, differences(&earlier.plan, &study.plan)?)?;
-            earlier.store.refreshed()?;
+            earlier.store.refresh()?;
             let seeds = (0..earlier.plan.ramp_count()).map(|ramp| (earlier.plan.ramp_seed(ramp), ramp));
             let ramps = seeds.collect();
             Ok((earlier, ramps))
@@ -72,7 +59,6 @@ impl<'a, E: Experiment> Session<'a, E> {
             study,
             control,
             earlier: control.earlier.iter().map(open).collect::<Result<_, StudyError>>()?,
-            claims,
             blocks: Mutex::new(Blocks { waiting, elsewhere: VecDeque::new() }),
             ramps,
             steps: [0, values * study.plan().protocol().steps()].map(AtomicU64::new),
@@ -87,17 +73,29 @@ impl<'a, E: Experiment> Session<'a, E> {
         if self.control.verifies {
             return Ok(());
         }
-        let (entries, mut ramps) = (self.study.store.refreshed()?, 0);
+        let mut ramps = 0;
         let Blocks { waiting, elsewhere } = &mut *self.blocks();
         for blocks in [waiting, elsewhere] {
-            blocks.retain(|block| {
-                let is_done = block.clone().all(|ramp| entries.is_done(ramp));
-                ramps += if is_done { block.len() } else { 0 };
-                !is_done
-            });
+            for block in std::mem::take(blocks) {
+                self.study.store.refresh_block(block)?;
+                if self.is_done(block) {
+                    ramps += self.ramps_of(block).count();
+                } else {
+                    blocks.push_back(block);
+                }
+            }
         }
         self.skip(ramps);
         Ok(())
+    }
+
+    /// Returns the ramps of a block that are to be run.
+    pub(super) fn ramps_of(&self, block: usize) -> impl Iterator<Item = usize> {
+        self.study.store.ramps_of(block).filter(|ramp| self.ramps.contains(ramp))
+    }
+
+    pub(super) fn is_done(&self, block: usize) -> bool {
+        self.ramps_of(block).all(|ramp| self.study.store.is_done(ramp))
     }
 
     pub(super) fn blocks(&self) -> MutexGuard<'_, Blocks> {
@@ -132,9 +130,7 @@ impl<'a, E: Experiment> Session<'a, E> {
     /// Returns the data that were read. If the file is damaged, notes it and returns `None`.
     pub(super) fn if_sound<T>(&self, read: Result<Option<T>, StudyError>) -> Result<Option<T>, StudyError> {
         match read {
-            Err(StudyError::Damaged { path, reason }) => {
-                let name = path.file_name().unwrap_or_default().to_string_lossy();
-                self.study.store.note(&json!({ "damaged": name, "reason": reason }).to_string())?;
+            Err(StudyError::Damaged { path, .. }) => {
                 self.redone.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
                 Ok(None)
             }
@@ -156,17 +152,22 @@ impl<'a, E: Experiment> Session<'a, E> {
     }
 
     /// Returns the summary of the run.
-    pub(super) fn summary(self, mut elsewhere: Vec<usize>) -> Result<Summary, StudyError> {
-        let entries = self.study.store.refreshed()?;
-        elsewhere.retain(|ramp| !entries.is_done(*ramp));
+    pub(super) fn summary(self) -> Result<Summary, StudyError> {
+        let store = &self.study.store;
+        store.refresh()?;
+        let elsewhere = std::mem::take(&mut self.blocks().elsewhere);
+        let mut elsewhere: Vec<usize> =
+            elsewhere.into_iter().flat_map(|block| self.ramps_of(block)).collect();
+        elsewhere.retain(|ramp| !store.is_done(*ramp));
+        elsewhere.sort_unstable();
         let values = self.study.plan().value_count();
-        let found = || entries.of(self.ramps.clone()).map(Entry::head);
+        let found = || store.of(self.ramps.clone()).map(|entry| entry.head());
         let with = |mark| found().filter(|head| head.has(mark)).count();
         let finished = found().count();
         let more = found().filter(|head| head.value >= values).count();
         // If a ramp is not done, at least one value is missing, even if a refinement has yet to add this
         // value.
-        let is_done = self.ramps.clone().all(|ramp| entries.is_done(ramp));
+        let is_done = self.ramps.clone().all(|ramp| store.is_done(ramp));
         let total = (self.ramps.len() * values + more).max(finished + usize::from(!is_done));
         let (failed, warned) = (with(Head::FAILED), with(Head::WARNED));
         let redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().collect();
@@ -180,14 +181,14 @@ impl<'a, E: Experiment> Session<'a, E> {
 /// block. A process that meets another one moves to a new random block.
 #[derive(Debug)]
 pub(super) struct Blocks {
-    pub(super) waiting: VecDeque<Range<usize>>,
-    pub(super) elsewhere: VecDeque<Range<usize>>,
+    pub(super) waiting: VecDeque<usize>,
+    pub(super) elsewhere: VecDeque<usize>,
 }
 
 impl Blocks {
     /// Notes that another process has a block, and moves to another waiting block.
-    pub(super) fn leave(&mut self, ramps: Range<usize>) {
-        self.elsewhere.push_back(ramps);
+    pub(super) fn leave(&mut self, block: usize) {
+        self.elsewhere.push_back(block);
         self.waiting = begun_anywhere(std::mem::take(&mut self.waiting));
     }
 
@@ -200,59 +201,9 @@ impl Blocks {
 }
 
 /// Rotates the blocks so that they begin at a random one.
-fn begun_anywhere(mut blocks: VecDeque<Range<usize>>) -> VecDeque<Range<usize>> {
+fn begun_anywhere(mut blocks: VecDeque<usize>) -> VecDeque<usize> {
     blocks.rotate_left(anywhere(blocks.len()));
     blocks
-}
-
-/// The lock files of the blocks.
-#[derive(Debug, Clone)]
-pub(crate) struct Claims {
-    folder: PathBuf,
-    /// Number of all ramps.
-    ramps: usize,
-    /// Number of ramps in a block.
-    size: usize,
-}
-
-impl Claims {
-    pub(crate) fn new(root: &Path, ramps: usize) -> Self {
-        Self { folder: root.join("locks"), ramps, size: ramps.div_ceil(BLOCKS).max(1) }
-    }
-
-    /// Returns the blocks into which the ramps are divided.
-    pub(crate) fn blocks(&self) -> impl Iterator<Item = Range<usize>> {
-        (0..self.ramps.div_ceil(self.size)).map(|block| self.block(block))
-    }
-
-    fn block(&self, block: usize) -> Range<usize> {
-        block * self.size..self.ramps.min((block + 1) * self.size)
-    }
-
-    /// Returns whether a block has several ramps, so that its lock may be held for another ramp.
-    pub(crate) const fn is_shared(&self) -> bool {
-        self.size > 1
-    }
-
-    /// Claims the block of a ramp, or returns `None` if another process has it.
-    pub(crate) fn claim(&self, ramp: usize) -> Result<Option<Locked>, StudyError> {
-        try_lock(&self.folder.join(format!("{:04}", ramp / self.size)))
-    }
-
-    /// Returns the blocks of ramps that processes are running.
-    pub(crate) fn taken(&self) -> Result<Vec<Range<usize>>, StudyError> {
-        let taken = files_in(&self.folder)?.into_iter().filter(|file| is_taken(&file.path()));
-        let numbers = taken.filter_map(|file| file.file_name().to_str()?.parse().ok());
-        Ok(numbers.filter(|block| *block < BLOCKS).map(|block| self.block(block)).collect())
-    }
-}
-
-/// Returns whether a process holds the lock on a file.
-fn is_taken(path: &Path) -> bool {
-    let Ok(file) = File::open(path) else { return false };
-    let locked = file.try_lock_shared();
-    let _ = file.unlock();
-    matches!(locked, Err(TryLockError::WouldBlock))
 }
 
 /// Returns the fields in which two plans differ, except for fields that may differ in a larger study.
@@ -277,25 +228,4 @@ fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Differ
         all.push(Difference { field, old: Some(old), new: Some(new) });
     }
     Ok(all)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_claim_is_seen_by_others_until_it_ends() {
-        let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
-        let claims = Claims::new(&root, 9_997);
-        let all: Vec<Range<usize>> = claims.blocks().collect();
-        assert_eq!((all.len(), &all[1], all.last()), (909, &(11..22), Some(&(9988..9_997))));
-        let claim = claims.claim(11).unwrap().unwrap();
-        assert!(claims.claim(17).unwrap().is_none());
-        assert!(claims.claim(22).unwrap().is_some());
-        assert_eq!(claims.taken().unwrap(), vec![Range { start: 11, end: 22 }]);
-        drop(claim);
-        assert_eq!(claims.taken().unwrap(), []);
-        assert!(claims.claim(17).unwrap().is_some());
-        std::fs::remove_dir_all(&root).unwrap();
-    }
 }
