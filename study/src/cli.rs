@@ -34,12 +34,9 @@
 //! `replay` has nothing to save: if it is stopped, it leaves no file.
 
 mod arguments;
-mod bench;
 mod convert;
-mod explain;
 mod plans;
 mod replay;
-mod source;
 mod terminal;
 
 use std::error::Error;
@@ -89,12 +86,12 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
-        Command::Trajectory(wishes) => source::trajectory::<E>(&wishes),
+        Command::Trajectory(wishes) => replay::trajectory::<E>(&wishes),
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
-        Command::Bench { plan, json, quick } => bench::plan::<E>(&plan, json, quick),
+        Command::Bench { plan, json, quick } => plans::bench::<E>(&plan, json, quick),
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),

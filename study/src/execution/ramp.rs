@@ -4,8 +4,8 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use super::session::{LOOK, Session};
 use super::value::{Active, Partial, Value};
+use super::{LOOK, Session};
 use crate::experiment::record::{Contents, Outcome, Record};
 use crate::folder::{create, encoded, read_sealed, remove, write_sealed};
 use crate::plan::ramp::{Seen, Step};
