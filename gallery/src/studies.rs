@@ -84,8 +84,12 @@ pub fn complete<E: Experiment>(
         crate::say!("{} was damaged and has been done again", file.display());
     }
     if summary.warned > 0 {
-        let logs = folder.join("logs/*.jsonl");
-        crate::say!("{} values have warnings; see {}", summary.warned, logs.display());
+        crate::say!("{} values have warnings", summary.warned);
+        for [ramp, value] in study.warned()? {
+            let record = study.record(ramp, value)?;
+            let warnings = record.map_or_else(String::new, |record| record.warnings().join("; "));
+            crate::say!("  ramp {ramp}, value {value}: {warnings}");
+        }
     }
     if study.all_status()?.iter().all(|status| *status == RampStatus::Done) {
         return Ok(Some(study));

@@ -23,10 +23,11 @@
 //! # Ok::<(), granular_edmd::ParameterError>(())
 //! ```
 
-mod classification;
 mod clusters;
 mod states;
 
-pub use classification::{Classification, StateCriteria, thermal_noise};
 pub use clusters::{Cluster, Clusters};
-pub use states::{ConvectiveRegime, ConvectiveState, Transition, TransitionLine, transitions};
+pub use states::{
+    Classification, ConvectiveRegime, ConvectiveState, StateCriteria, Transition, TransitionLine,
+    thermal_noise, transitions,
+};

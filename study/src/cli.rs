@@ -34,12 +34,9 @@
 //! `replay` has nothing to save: if it is stopped, it leaves no file.
 
 mod arguments;
-mod bench;
 mod convert;
-mod explain;
 mod plans;
 mod replay;
-mod source;
 mod terminal;
 
 use std::error::Error;
@@ -52,7 +49,7 @@ use clap::Parser;
 use serde_json::json;
 
 use super::errors::{PlanError, StudyError, chain};
-use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
+use super::{Control, Experiment, Plan, Progress, RampStatus, Record, Study};
 use arguments::{Arguments, Command, Manner};
 use terminal::{STOP, Watch, listen, read, say};
 
@@ -89,12 +86,12 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
-        Command::Trajectory(wishes) => source::trajectory::<E>(&wishes),
+        Command::Trajectory(wishes) => replay::trajectory::<E>(&wishes),
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
         Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
-        Command::Bench { plan, json, quick } => bench::plan::<E>(&plan, json, quick),
+        Command::Bench { plan, json, quick } => plans::bench::<E>(&plan, json, quick),
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),
@@ -145,13 +142,11 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         say("stopped; all work is saved, also on unfinished values: the same command continues")?;
     }
     say(&format!("{} of {} values have ended in {}", summary.finished, summary.total, out.display()))?;
-    let logs = out.join("logs/*.jsonl");
-    for (count, fate, of) in [
-        (summary.failed, "stalled, failed or reached a limit; status lists them,", "why"),
-        (summary.warned, "have warnings;", "of what"),
-    ] {
+    for (count, fate) in
+        [(summary.failed, "stalled, failed or reached a limit"), (summary.warned, "have warnings")]
+    {
         if count > 0 {
-            say(&format!("{count} of them {fate} {} say {of}", logs.display()))?;
+            say(&format!("{count} of them {fate}: `status {}` says why", out.display()))?;
         }
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
@@ -186,16 +181,9 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         if left.is_finite() {
             say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
         }
-        if !failed.is_empty() {
-            let first: Vec<String> =
-                failed.iter().take(LISTED).map(|[r, v]| format!("{r:04}/{v:04}")).collect();
-            let more = if failed.len() > LISTED { " …" } else { "" };
-            say(&format!(
-                "{} values stalled, failed or reached a limit: {}{more}",
-                failed.len(),
-                first.join(" ")
-            ))?;
-        }
+        let reason = |record: &Record<E>| record.outcome().reason().unwrap_or_default().to_owned();
+        list(&study, "stalled, failed or reached a limit", &failed, reason)?;
+        list(&study, "have warnings", &study.warned()?, |record| record.warnings().join("; "))?;
     }
     Ok(match (are_done, has_tables) {
         (true, true) if failed.is_empty() => End::Done,
@@ -204,6 +192,27 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         (false, _) if are_run => End::Elsewhere,
         (false, _) => End::Idle,
     })
+}
+
+/// Prints the first values that have a fate, each with the reason.
+fn list<E: Experiment>(
+    study: &Study<E>,
+    fate: &str,
+    values: &[[usize; 2]],
+    reason: impl Fn(&Record<E>) -> String,
+) -> Result<(), Failure> {
+    if values.is_empty() {
+        return Ok(());
+    }
+    say(&format!("{} values {fate}:", values.len()))?;
+    for &[ramp, value] in values.iter().take(LISTED) {
+        let reason = match study.record(ramp, value) {
+            Ok(record) => record.as_ref().map_or_else(String::new, &reason),
+            Err(error) => chain(&error),
+        };
+        say(&format!("  ramp {ramp}, value {value}: {reason}"))?;
+    }
+    if values.len() > LISTED { say("  …") } else { Ok(()) }
 }
 
 fn tables<E: Experiment>(folder: &Path, out: Option<&Path>) -> Result<End, Failure> {

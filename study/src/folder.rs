@@ -19,13 +19,9 @@ use super::StudyError;
 const ABOUT: &str = include_str!("folder.txt");
 
 const README: &str = "README.txt";
-const LOGS: &str = "logs";
+pub(super) const BLOCKS: &str = "blocks";
 const UNFINISHED: &str = "unfinished";
-/// Name of the folder in which version 0.3 kept records.
-const RAMPS: &str = "ramps";
 const LOCK: &str = "lock";
-const OUTDATED: &str = "holds a study of version 0.3, whose records this version does not read; \
-    finish it by the program of version 0.3 that began it, or take a new folder: its tables stay as they are";
 
 /// Magic number of the file of an unfinished value, and the version of the format that this crate writes and
 /// reads.
@@ -70,7 +66,7 @@ impl Folder {
     /// records. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(LOCK).metadata().is_ok_and(|lock| is_lock(&lock));
-        let has_others = || [README, LOGS, RAMPS].iter().any(|name| self.root.join(name).exists());
+        let has_others = || [README, BLOCKS].iter().any(|name| self.root.join(name).exists());
         self.plan().exists() && (has_lock || has_others())
     }
 
@@ -92,7 +88,7 @@ impl Folder {
         if !path.exists() || fs::read(&path).is_ok_and(is_cut) {
             write(&path, ABOUT.as_bytes())?;
         }
-        if self.provenance().exists() || self.root.join(LOGS).exists() {
+        if self.provenance().exists() || self.root.join(BLOCKS).exists() {
             return Ok(());
         }
         write(&self.provenance(), provenance.as_bytes())
@@ -115,12 +111,8 @@ impl Folder {
         Ok(())
     }
 
-    /// Returns the text of the plan, or an error if the folder has records of version 0.3, which this version
-    /// does not read.
+    /// Returns the text of the plan.
     pub(super) fn read_plan(&self) -> Result<String, StudyError> {
-        if self.root.join(RAMPS).exists() && !self.root.join(LOGS).exists() {
-            return Err(StudyError::refused(&self.root, OUTDATED));
-        }
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
     }
 

@@ -17,14 +17,13 @@
 //! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed. The
 //!    tables and the records of a complete study have the same bytes for any number of threads and processes,
 //!    however often these were interrupted or killed, and whether the study was run in one go or has grown
-//!    ([`Control::with_earlier_studies`]). Only wall-clock times and the division of the records into logs
+//!    ([`Control::with_earlier_studies`]). Only wall-clock times and the order of the records in a log
 //!    differ. A value that [`Control::with_most_seconds`] ended depends on the machine.
 //! 2. A record is complete or absent. A study names damaged records and never reads them as data;
 //!    [`Control::with_verification`] computes their values again.
 //! 3. Any number of processes, started at any time, can run a study at the same time, and each ramp is run by
 //!    one of them. The processes must see each other's file locks, as on a local file system, or on NFS from
-//!    version 4 on. A ramp that a process runs by [`Study::run_ramp`] may be computed by others, too, with
-//!    the same result.
+//!    version 4 on.
 //! 4. A study writes only into an empty folder or its own folder, and changes or removes only its own files.
 //! 5. All records of a study come from the same code, unless you accept a change. `provenance.json` keeps the
 //!    [`RESULTS`](granular_edmd::RESULTS) of the crate and the [revision](Experiment::revision) of the
@@ -67,7 +66,6 @@ mod folder;
 pub mod guide;
 mod parameters;
 mod plan;
-mod progress;
 mod records;
 mod sliced;
 mod store;
@@ -85,7 +83,6 @@ pub use plan::Plan;
 pub use plan::protocol::Protocol;
 pub use plan::ramp::{Bracket, Course, Ramp, Width};
 pub use plan::values::Axis;
-pub use progress::RampStatus;
-pub use records::Point;
+pub use records::{Point, RampStatus};
 pub use sliced::{SavedDriving, Start};
 pub use study::Study;

@@ -1,12 +1,14 @@
-//! The results of a study: records, points and transitions.
+//! The results of a study and its progress: records, points and transitions; ramps, failed values, and the
+//! time that it takes.
 
 use std::ops::Range;
 
 use granular_edmd::statistics::Estimate;
 
 use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
+use super::folder::remove;
 use super::plan::ramp::{Bracket, Seen};
-use super::store::Entry;
+use super::store::{Entry, Head};
 use super::{Experiment, Plan, Study, StudyError};
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and
@@ -84,10 +86,10 @@ impl<E: Experiment> Study<E> {
     /// other code.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
-        if self.store.known().find(ramp, value).is_none() {
-            self.store.refreshed()?;
+        if self.store.find(ramp, value).is_none() {
+            self.store.refresh_block(self.store.block_of(ramp))?;
         }
-        match (self.known_record(ramp, value)?, self.store.damage()) {
+        match (self.known_record(ramp, value)?, self.store.damage(self.store.block_of(ramp))) {
             (None, Some(error)) => Err(error),
             (found, _) => Ok(found),
         }
@@ -95,7 +97,7 @@ impl<E: Experiment> Study<E> {
 
     /// Returns the record of a value, or `None` if the value was not finished when the store was last read.
     pub(super) fn known_record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
-        self.store.known().find(ramp, value).map(|entry| self.read(entry)).transpose()
+        self.store.find(ramp, value).map(|entry| self.read(&entry)).transpose()
     }
 
     /// Reads a record of the store.
@@ -104,7 +106,7 @@ impl<E: Experiment> Study<E> {
         // Code that the study has accepted may differ from this program.
         let is_ours = self.is_ours(&record.contents.origin);
         match record.changed_part().filter(|_| is_ours) {
-            Some(part) => Err(StudyError::changed(&self.store.log_of(entry), part)),
+            Some(part) => Err(StudyError::changed(&self.store.log_of(entry.head().ramp), part)),
             None => Ok(record),
         }
     }
@@ -113,7 +115,7 @@ impl<E: Experiment> Study<E> {
     /// making them.
     pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
-        self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(entry))?;
+        self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(head.ramp))?;
         let is_placed = match self.plan.step(head.value) {
             Some(step) => contents.leg.zip(contents.at) == Some(step),
             None => contents.at.is_none_or(|at| self.plan.ramp().is_some_and(|ramp| ramp.bisects(at))),
@@ -142,12 +144,12 @@ impl<E: Experiment> Study<E> {
         &self,
         ramps: Result<Range<usize>, StudyError>,
     ) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        let found = ramps.and_then(|ramps| Ok(self.store.refreshed()?.of(ramps).copied().collect()));
-        let (entries, error): (Vec<Entry>, _) = match found {
-            Ok(entries) => (entries, None),
-            Err(error) => (Vec::new(), Some(error)),
+        let found = ramps.and_then(|ramps| self.store.refresh().map(|()| ramps));
+        let (ramps, error) = match found {
+            Ok(ramps) => (ramps, None),
+            Err(error) => (0..0, Some(error)),
         };
-        error.into_iter().map(Err).chain(entries.into_iter().map(|entry| self.read(&entry)))
+        error.into_iter().map(Err).chain(self.store.of(ramps).map(|entry| self.read(&entry)))
     }
 
     /// Returns a value at a point of the grid, with all its finished repeats, or `None` if no repeat is
@@ -157,7 +159,7 @@ impl<E: Experiment> Study<E> {
     /// If there is no such point, or if a record cannot be read, is damaged, or comes from another study or
     /// other code.
     pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        self.store.refreshed()?;
+        self.store.refresh()?;
         self.known_point(index, value)
     }
 
@@ -177,7 +179,7 @@ impl<E: Experiment> Study<E> {
     ///
     /// Values that a refinement adds are left out, since different repeats have different ones.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
-        let error = self.store.refreshed().err();
+        let error = self.store.refresh().err();
         let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
         let places = (0..self.plan.point_count()).flat_map(values);
         let found = places.filter_map(|(index, value)| self.known_point(index, value).transpose());
@@ -216,4 +218,123 @@ fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(),
         check([state.rule(), state.boundary()] == record.contents.parts, "its state is of other parts")?;
     }
     measured.check(&record.experiment, state.as_ref())
+}
+
+/// Progress of a ramp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RampStatus {
+    /// All values of the ramp have a record.
+    Done,
+    /// A process is running the ramp.
+    Running,
+    /// Some work on the ramp is saved, but the ramp is not finished, and no process is known to be running
+    /// it.
+    Begun,
+    /// No work on the ramp is saved, and no process is known to be running the ramp.
+    Waiting,
+}
+
+impl<E: Experiment> Study<E> {
+    /// Returns the progress of a ramp.
+    ///
+    /// # Errors
+    /// If there is no such ramp, or the folder cannot be read.
+    pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
+        self.check_ramp(ramp)?;
+        Ok(self.all_status()?[ramp])
+    }
+
+    /// Returns the progress of all ramps.
+    ///
+    /// # Errors
+    /// If the folder cannot be read.
+    pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
+        let mut all = vec![RampStatus::Waiting; self.plan.ramp_count()];
+        let (taken, unfinished) = (self.store.taken(), self.folder.unfinished()?);
+        self.store.refresh()?;
+        let begun = self.store.heads().map(|head| head.ramp).chain(unfinished.iter().map(|place| place[0]));
+        let begun = begun.map(|ramp| (ramp, RampStatus::Begun));
+        for (ramp, status) in begun.chain(taken.map(|ramp| (ramp, RampStatus::Running))) {
+            if let Some(place) = all.get_mut(ramp) {
+                *place = status;
+            }
+        }
+        for (ramp, status) in all.iter_mut().enumerate().filter(|(_, status)| **status != RampStatus::Waiting)
+        {
+            // A ramp that was finished in between counts as finished.
+            *status = if self.store.is_done(ramp) { RampStatus::Done } else { *status };
+        }
+        Ok(all)
+    }
+
+    /// Returns the ramp and value indices of all values that stalled, failed or reached a limit.
+    ///
+    /// # Errors
+    /// If files cannot be read.
+    pub fn failed(&self) -> Result<Vec<[usize; 2]>, StudyError> {
+        self.with_mark(Head::FAILED)
+    }
+
+    /// Returns the ramp and value indices of all values whose runs have [warnings](crate::Record::warnings).
+    ///
+    /// # Errors
+    /// If files cannot be read.
+    pub fn warned(&self) -> Result<Vec<[usize; 2]>, StudyError> {
+        self.with_mark(Head::WARNED)
+    }
+
+    fn with_mark(&self, mark: u32) -> Result<Vec<[usize; 2]>, StudyError> {
+        self.store.refresh()?;
+        let found = self.store.heads().filter(|head| head.has(mark));
+        Ok(found.map(|head| [head.ramp, head.value]).collect())
+    }
+
+    /// Marks the first failed value of a finished ramp and all later values as unfinished, since a new result
+    /// changes the states from which the later values start. The next run computes these values again.
+    /// Returns whether there were failed values. A failed value has stalled, failed or reached a limit.
+    ///
+    /// The same code fails again, with the same bytes: call this for code whose changes were
+    /// [accepted](Self::accept_changes), or with a longer limit of seconds. A ramp that another process is
+    /// running is not changed.
+    ///
+    /// # Errors
+    /// If there is no such ramp, the plan or the code of the study has changed, or files cannot be read or
+    /// written.
+    pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
+        self.check_ramp(ramp)?;
+        self.check_unchanged()?;
+        let block = self.store.block_of(ramp);
+        let Some(_claim) = self.store.claim(block)? else { return Ok(false) };
+        if !self.store.is_done(ramp) {
+            return Ok(false);
+        }
+        let heads: Vec<Head> = self.store.of(ramp..ramp + 1).map(|entry| entry.head()).collect();
+        let Some(first) = heads.iter().position(|head| head.has(Head::FAILED)) else { return Ok(false) };
+        remove(&self.folder.complete())?;
+        for Head { value, .. } in heads.into_iter().skip(first) {
+            // A process that was killed just after it had finished the value may have left this file.
+            remove(&self.folder.partial(ramp, value))?;
+            self.store.push(Head { ramp, value, marks: Head::VOID, seconds: f32::NAN }, &[])?;
+        }
+        self.store.sync(block)?;
+        Ok(true)
+    }
+
+    /// Returns the seconds of one thread that the finished values took, and an estimate for the other values,
+    /// which assumes that they take as long on average. The estimate is NaN before a value is finished.
+    ///
+    /// The first number is a lower bound: for a value that was interrupted, only the time since it was last
+    /// resumed counts.
+    ///
+    /// # Errors
+    /// If files cannot be read.
+    pub fn seconds(&self) -> Result<(f64, f64), StudyError> {
+        self.store.refresh()?;
+        let timed = || self.store.heads().map(|head| f64::from(head.seconds)).filter(|time| !time.is_nan());
+        let seconds = timed().fold(0.0, |sum, time| sum + time);
+        let all = (self.plan.ramp_count() * self.plan.value_count()) as f64;
+        let left = f64::max(all - self.store.heads().count() as f64, 0.0);
+        Ok((seconds, left * seconds / timed().count() as f64))
+    }
 }

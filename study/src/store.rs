@@ -1,267 +1,230 @@
-//! The store of a study: logs of records, one log for each process that ran at the same time as others.
+//! The store of a study: blocks of ramps, each with a log of their records. The process that runs a block has
+//! the lock of its log.
 //!
-//! A process appends each finished value to its own log, as a whole piece with a checksum. Readers merge all
-//! logs by ramp and value. A log outlives its process: the next process continues it.
+//! A process appends each finished value to the log of its block, as a whole piece with a checksum. If the
+//! process is killed, its lock ends, and another process continues the log.
 
 mod log;
 
-use std::collections::HashSet;
-use std::fs::{DirEntry, File};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::fs::{File, TryLockError};
+use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use granular_edmd::file::{Locked, Seal};
+use granular_edmd::file::Seal;
 use serde::de::DeserializeOwned;
 
 use super::StudyError;
-use super::folder::{decoded, files_in, try_lock};
-use super::parameters::anywhere;
-use log::{HEAD, Log, Piece, pieces, read_piece};
+use super::folder::{BLOCKS, decoded, try_lock};
+use log::{HEAD, Log, Piece};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANSTUD", 6);
+const SEAL: Seal = Seal::new(*b"GRANSTUD", 7);
+
+/// Largest number of blocks. With 64 processes, a few percent of the time is lost at the end, when some
+/// processes have a block left and the others none. The folder of a study stays below a thousand files.
+const MOST_BLOCKS: usize = 960;
 
 /// Most seconds of work on finished values that a power failure may cost a process.
 const AT_RISK: f32 = 0.1;
 
-/// The logs in the folder of a study.
+/// The blocks of a study.
+///
+/// Ramps go around: with 960 blocks, ramps 0, 960, 1920 and so on are in block 0. Batch engines that start one
+/// ramp after the other thus have their processes in different blocks.
 #[derive(Debug, Clone)]
 pub(super) struct Store {
-    folder: PathBuf,
-    state: Arc<Mutex<State>>,
+    blocks: Arc<[Mutex<Block>]>,
+    /// Number of all ramps.
+    ramps: usize,
 }
 
-#[derive(Debug, Default)]
-struct State {
-    logs: Vec<LogFile>,
-    entries: Arc<Entries>,
-    /// The log of this process; `None` until the process writes.
-    writer: Option<Writer>,
-}
-
-/// A log, up to the point to which it was read.
+/// The log of a block, and the entries that were read from it.
 #[derive(Debug)]
-struct LogFile {
-    path: PathBuf,
-    end: u64,
-    is_damaged: bool,
-    file: Option<File>,
-}
-
-/// A log that this process alone writes, and its second file, which holds readable lines. The lock is on the
-/// second file.
-#[derive(Debug)]
-struct Writer {
-    path: PathBuf,
+struct Block {
     log: Log,
-    lines: Locked,
-    /// True if the last line is complete.
-    is_whole: bool,
+    /// One entry for each ramp and value, in order.
+    entries: Vec<Entry>,
     /// Seconds of work whose records are not yet synced to the disk.
     at_risk: f32,
 }
 
+/// A block that this process runs. Dropping the value releases the block.
+#[derive(Debug)]
+pub(super) struct Claim<'a> {
+    store: &'a Store,
+    block: usize,
+}
+
+impl Drop for Claim<'_> {
+    fn drop(&mut self) {
+        self.store.block(self.block).log.leave();
+    }
+}
+
 impl Store {
-    pub(super) fn new(root: &Path) -> Self {
-        Self { folder: root.join("logs"), state: Arc::default() }
+    pub(super) fn new(root: &Path, ramps: usize) -> Self {
+        let path = |number: usize| root.join(BLOCKS).join(format!("{number:04}.log"));
+        let blocks = (0..ramps.clamp(1, MOST_BLOCKS)).map(|number| Mutex::new(Block::new(path(number))));
+        Self { blocks: blocks.collect(), ramps }
     }
 
-    /// Reads the new entries of all processes, and returns all entries.
-    pub(super) fn refreshed(&self) -> Result<Arc<Entries>, StudyError> {
-        let state = &mut *self.state();
-        let known: HashSet<&Path> = state.logs.iter().map(|log| log.path.as_path()).collect();
-        let mut found = logs(&self.folder)?;
-        found.retain(|path| !known.contains(&**path));
-        let new = found.into_iter().map(|path| LogFile { path, end: 0, is_damaged: false, file: None });
-        state.logs.extend(new);
-        let sorted = state.entries.0.len();
-        for (number, log) in state.logs.iter_mut().enumerate() {
-            // Each time, the file is opened anew, since an NFS client asks for the present length only when
-            // it opens a file.
-            let read = pieces(&log.path, SEAL, log.end).map_err(|error| failed("read", &log.path, error))?;
-            log.end = read.end;
-            log.is_damaged |= read.is_damaged;
-            if !read.found.is_empty() {
-                let new = read.found.into_iter().map(|piece| Entry { log: number as u32, ..piece });
-                Arc::make_mut(&mut state.entries).0.extend(new);
-            }
+    /// Returns the block of a ramp.
+    pub(super) fn block_of(&self, ramp: usize) -> usize {
+        ramp % self.blocks.len()
+    }
+
+    pub(super) fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Returns the ramps of a block.
+    pub(super) fn ramps_of(&self, block: usize) -> impl Iterator<Item = usize> + Clone + use<> {
+        (block..self.ramps).step_by(self.blocks.len())
+    }
+
+    /// Claims a block and reads what others have added to it, or returns `None` if another process or thread
+    /// has the block.
+    pub(super) fn claim(&self, block: usize) -> Result<Option<Claim<'_>>, StudyError> {
+        let mut found = self.block(block);
+        let Some(file) = try_lock(&found.log.path)? else { return Ok(None) };
+        found.entries.clear();
+        let pieces = found.log.begin(file).map_err(|error| failed("write", &found.log.path, error))?;
+        for piece in pieces {
+            found.add(piece);
         }
-        if state.entries.0.len() > sorted {
-            Arc::make_mut(&mut state.entries).settle(sorted);
-        }
-        Ok(Arc::clone(&state.entries))
+        Ok(Some(Claim { store: self, block }))
     }
 
-    /// Returns all entries that were read so far.
-    pub(super) fn known(&self) -> Arc<Entries> {
-        Arc::clone(&self.state().entries)
+    /// Returns the ramps of all blocks that processes are running.
+    pub(super) fn taken(&self) -> impl Iterator<Item = usize> {
+        let taken = (0..self.blocks.len()).filter(|&block| is_taken(&self.block(block).log.path));
+        taken.flat_map(|block| self.ramps_of(block))
     }
 
-    /// Returns the error of a log that is unreadable in part, if there is such a log. That part may have held
-    /// any record.
-    pub(super) fn damage(&self) -> Option<StudyError> {
-        let state = self.state();
-        let found = state.logs.iter().find(|log| log.is_damaged)?;
-        Some(StudyError::damaged(&found.path, "a part of it is no record"))
+    /// Reads what other processes have added.
+    pub(super) fn refresh(&self) -> Result<(), StudyError> {
+        (0..self.blocks.len()).try_for_each(|block| self.refresh_block(block))
     }
 
-    /// Returns the path of the log that holds `entry`, for use in error messages.
-    pub(super) fn log_of(&self, entry: &Entry) -> PathBuf {
-        self.state().logs[entry.log as usize].path.clone()
+    /// Reads what other processes have added to a block.
+    pub(super) fn refresh_block(&self, block: usize) -> Result<(), StudyError> {
+        self.block(block).refresh()
+    }
+
+    /// Returns the error of a log that is unreadable in part. That part may have held any record of its block.
+    pub(super) fn damage(&self, block: usize) -> Option<StudyError> {
+        let Log { path, is_damaged, .. } = &self.block(block).log;
+        is_damaged.then(|| StudyError::damaged(path, "a part of it is no record"))
+    }
+
+    /// Returns the path of the log that holds the records of a ramp, for use in error messages.
+    pub(super) fn log_of(&self, ramp: usize) -> PathBuf {
+        self.of_ramp(ramp).log.path.clone()
     }
 
     /// Returns the error for a damaged record.
     pub(super) fn damaged(&self, entry: &Entry, reason: impl std::fmt::Display) -> StudyError {
         let Head { ramp, value, .. } = entry.head();
-        StudyError::damaged(&self.log_of(entry), format!("value {value} of ramp {ramp}: {reason}"))
+        StudyError::damaged(&self.log_of(ramp), format!("value {value} of ramp {ramp}: {reason}"))
     }
 
     /// Reads the contents of an entry.
     pub(super) fn read<T: DeserializeOwned>(&self, entry: &Entry) -> Result<T, StudyError> {
-        let mut state = self.state();
-        let LogFile { path, file, .. } = &mut state.logs[entry.log as usize];
-        let opened = match file {
-            Some(file) => Ok(file),
-            none => File::open(&*path).map(|file| none.insert(file)),
-        };
-        let read = opened.and_then(|file| read_piece(file, entry)).map_err(StudyError::io("read", path))?;
-        drop(state);
+        let block = self.of_ramp(entry.head().ramp);
+        let read = block.log.contents(entry).map_err(StudyError::io("read", &block.log.path))?;
+        drop(block);
         let contents = read.map_err(|_| "its checksum does not match");
         contents.and_then(|contents| decoded(&contents)).map_err(|reason| self.damaged(entry, reason))
     }
 
-    /// Appends the encoded record of a value to the log of this process.
+    /// Appends the encoded record of a value to the log of its block, which this process has claimed.
     pub(super) fn push(&self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
-        let mut state = self.state();
-        let before = state.entries.latest(head.ramp, head.value);
-        let edition = before.map_or(0, |entry| entry.head().edition + 1);
-        state.writer(&self.folder)?.push(Head { edition, ..head }, contents)
+        self.of_ramp(head.ramp).push(head, contents)
     }
 
-    /// Adds a readable line to the log's second file.
-    pub(super) fn note(&self, line: &str) -> Result<(), StudyError> {
-        self.state().writer(&self.folder).map(|writer| writer.note(line))
+    /// Waits until the system has stored all records of a block that this process has claimed.
+    pub(super) fn sync(&self, block: usize) -> Result<(), StudyError> {
+        self.block(block).sync()
     }
 
-    /// Waits until the system has stored all records of this process.
-    pub(super) fn sync(&self) -> Result<(), StudyError> {
-        self.state().writer.as_mut().map_or(Ok(()), Writer::sync)
+    /// Returns the entry of the record of a value.
+    pub(super) fn find(&self, ramp: usize, value: usize) -> Option<Entry> {
+        let block = self.of_ramp(ramp);
+        let place = block.entries.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
+        Some(block.entries[place]).filter(Entry::is_record)
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl State {
-    fn writer(&mut self, folder: &Path) -> Result<&mut Writer, StudyError> {
-        match &mut self.writer {
-            Some(writer) => Ok(writer),
-            none => Ok(none.insert(Writer::open(folder)?)),
-        }
-    }
-}
-
-impl Writer {
-    /// Opens a log that no process is writing, or creates a new log.
-    fn open(folder: &Path) -> Result<Self, StudyError> {
-        let mut known = logs(folder)?;
-        known.sort();
-        let count = known.len();
-        known.rotate_left(anywhere(count));
-        let names =
-            known.into_iter().chain((count..).map(|number| folder.join(format!("{number:04}.records"))));
-        for path in names {
-            if let Some(lines) = try_lock(&path.with_extension("jsonl"))? {
-                let log = Log::open(&path, SEAL).map_err(|error| failed("write", &path, error))?;
-                return Ok(Self { path, log, lines, is_whole: false, at_risk: 0.0 });
-            }
-        }
-        Err(StudyError::NoLock { path: folder.to_owned(), source: io::ErrorKind::WouldBlock.into() })
-    }
-
-    /// Appends a piece.
-    fn push(&mut self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
-        self.log.push(head.bytes(), contents).map_err(StudyError::io("write", &self.path))?;
-        // Not every record is synced, since syncing a disk can take longer than running a value again.
-        self.at_risk += head.seconds.max(0.0);
-        if self.at_risk > AT_RISK {
-            self.sync()?;
-        }
-        Ok(())
-    }
-
-    fn sync(&mut self) -> Result<(), StudyError> {
-        self.at_risk = 0.0;
-        self.log.sync().map_err(StudyError::io("write", &self.path))
-    }
-
-    /// Adds a line. An error is ignored: a log line that cannot be written must not abort the work.
-    fn note(&mut self, line: &str) {
-        let whole = if self.is_whole { Ok(self.lines.file()) } else { to_last_line_end(self.lines.file()) };
-        self.is_whole = whole.and_then(|mut end| end.write_all(format!("{line}\n").as_bytes())).is_ok();
-    }
-}
-
-/// Moves to the end of the last complete line, and removes everything after it.
-fn to_last_line_end(mut file: &File) -> io::Result<&File> {
-    let mut bytes = Vec::new();
-    file.rewind()?;
-    file.read_to_end(&mut bytes)?;
-    let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1) as u64;
-    if whole < bytes.len() as u64 {
-        file.set_len(whole)?;
-    }
-    file.seek(SeekFrom::Start(whole))?;
-    Ok(file)
-}
-
-/// All entries, one for each ramp and value, in order.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Entries(Vec<Entry>);
-
-impl Entries {
-    /// Sorts all entries. The first `sorted` entries are in order already.
-    fn settle(&mut self, sorted: usize) {
-        let key = |entry: &Entry| (entry.place(), std::cmp::Reverse(entry.head().edition));
-        // If most entries are sorted already, a stable sort takes only linear time. It needs additional
-        // memory.
-        match sorted {
-            0 => self.0.sort_unstable_by_key(key),
-            _ => self.0.sort_by_key(key),
-        }
-        self.0.dedup_by_key(|entry| entry.place());
-    }
-
-    /// Returns the entry of a value, even if the value counts as unfinished.
-    fn latest(&self, ramp: usize, value: usize) -> Option<&Entry> {
-        let place = self.0.binary_search_by_key(&(ramp, value), Entry::place).ok()?;
-        Some(&self.0[place])
-    }
-
-    /// Returns the record of a value.
-    pub(super) fn find(&self, ramp: usize, value: usize) -> Option<&Entry> {
-        self.latest(ramp, value).filter(|entry| !entry.head().has(Head::VOID))
-    }
-
-    /// Iterates over the records of some ramps.
-    pub(super) fn of(&self, ramps: std::ops::Range<usize>) -> impl Iterator<Item = &Entry> {
-        let [from, to] =
-            [ramps.start, ramps.end].map(|ramp| self.0.partition_point(|entry| entry.place() < (ramp, 0)));
-        self.0[from..to].iter().filter(|entry| !entry.head().has(Head::VOID))
+    /// Iterates over the entries of all records of some ramps, in order.
+    pub(super) fn of(&self, ramps: Range<usize>) -> impl Iterator<Item = Entry> {
+        ramps.flat_map(|ramp| self.of_ramp(ramp).of(ramp).copied().collect::<Vec<_>>())
     }
 
     /// Iterates over the headers of all records.
     pub(super) fn heads(&self) -> impl Iterator<Item = Head> {
-        self.0.iter().map(Entry::head).filter(|head| !head.has(Head::VOID))
+        self.of(0..self.ramps).map(|entry| entry.head())
     }
 
     /// Returns whether all values of a ramp have a record.
     pub(super) fn is_done(&self, ramp: usize) -> bool {
-        let found = self.of(ramp..ramp + 1).map(Entry::head);
+        let block = self.of_ramp(ramp);
+        let found = block.of(ramp).map(Entry::head);
         let mut whole = found.enumerate().take_while(|(index, head)| head.value == *index);
         whole.any(|(_, head)| head.has(Head::LAST))
+    }
+
+    fn of_ramp(&self, ramp: usize) -> MutexGuard<'_, Block> {
+        self.block(self.block_of(ramp))
+    }
+
+    fn block(&self, block: usize) -> MutexGuard<'_, Block> {
+        self.blocks[block].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Block {
+    const fn new(path: PathBuf) -> Self {
+        Self { log: Log::new(path, SEAL), entries: Vec::new(), at_risk: 0.0 }
+    }
+
+    fn refresh(&mut self) -> Result<(), StudyError> {
+        let news = self.log.news().map_err(|error| failed("read", &self.log.path, error))?;
+        for piece in news {
+            self.add(piece);
+        }
+        Ok(())
+    }
+
+    /// Adds an entry, in place of an earlier one of the same value.
+    fn add(&mut self, entry: Entry) {
+        if self.entries.last().is_none_or(|last| last.place() < entry.place()) {
+            return self.entries.push(entry);
+        }
+        match self.entries.binary_search_by_key(&entry.place(), Entry::place) {
+            Ok(place) => self.entries[place] = entry,
+            Err(place) => self.entries.insert(place, entry),
+        }
+    }
+
+    /// Iterates over the entries of the records of a ramp, in order.
+    fn of(&self, ramp: usize) -> impl Iterator<Item = &Entry> {
+        let [from, to] =
+            [ramp, ramp + 1].map(|ramp| self.entries.partition_point(|entry| entry.place() < (ramp, 0)));
+        self.entries[from..to].iter().filter(|entry| entry.is_record())
+    }
+
+    fn push(&mut self, head: Head, contents: &[u8]) -> Result<(), StudyError> {
+        let piece = self.log.push(head.bytes(), contents).map_err(StudyError::io("write", &self.log.path))?;
+        self.add(piece);
+        // Not every record is synced, since syncing a disk can take longer than running a value again.
+        self.at_risk += head.seconds.max(0.0);
+        if self.at_risk > AT_RISK { self.sync() } else { Ok(()) }
+    }
+
+    fn sync(&mut self) -> Result<(), StudyError> {
+        self.at_risk = 0.0;
+        self.log.sync().map_err(StudyError::io("write", &self.log.path))
     }
 }
 
@@ -274,8 +237,7 @@ impl Entry {
         Head {
             ramp: number(0) as usize,
             value: number(4) as usize,
-            edition: number(8) as u16,
-            marks: (number(8) >> 16) as u16,
+            marks: number(8),
             seconds: f32::from_bits(number(12)),
         }
     }
@@ -284,37 +246,34 @@ impl Entry {
         let Head { ramp, value, .. } = self.head();
         (ramp, value)
     }
+
+    fn is_record(&self) -> bool {
+        !self.head().has(Head::VOID)
+    }
 }
 
-/// The header of a record in a log.
+/// The header of a record in a log. Of several records of a value, the last one counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Head {
     pub(super) ramp: usize,
     pub(super) value: usize,
-    /// If a value has several records, the one with the highest edition is used. Records of a value with
-    /// equal editions have the same contents.
-    edition: u16,
     /// The marks of the record: a sum of the constants of this type.
-    marks: u16,
+    pub(super) marks: u32,
     /// Wall-clock seconds that the value took; NaN if the value was taken over from another study.
     pub(super) seconds: f32,
 }
 
 impl Head {
     /// The mark of a value that counts as unfinished.
-    pub(super) const VOID: u16 = 1;
+    pub(super) const VOID: u32 = 1;
     /// The mark of the last value of its ramp.
-    pub(super) const LAST: u16 = 2;
+    pub(super) const LAST: u32 = 2;
     /// The mark of a value that stalled, failed or reached a limit.
-    pub(super) const FAILED: u16 = 4;
+    pub(super) const FAILED: u32 = 4;
     /// The mark of a value whose run has warnings.
-    pub(super) const WARNED: u16 = 8;
+    pub(super) const WARNED: u32 = 8;
 
-    pub(super) const fn new(ramp: usize, value: usize, marks: u16, seconds: f32) -> Self {
-        Self { ramp, value, edition: 0, marks, seconds }
-    }
-
-    pub(super) const fn has(&self, mark: u16) -> bool {
+    pub(super) const fn has(&self, mark: u32) -> bool {
         self.marks & mark != 0
     }
 
@@ -323,22 +282,18 @@ impl Head {
         // A plan has at most a million values, and a refinement adds some thousands in each ramp.
         bytes[..4].copy_from_slice(&(self.ramp as u32).to_le_bytes());
         bytes[4..8].copy_from_slice(&(self.value as u32).to_le_bytes());
-        bytes[8..10].copy_from_slice(&self.edition.to_le_bytes());
-        bytes[10..12].copy_from_slice(&self.marks.to_le_bytes());
+        bytes[8..12].copy_from_slice(&self.marks.to_le_bytes());
         bytes[12..].copy_from_slice(&self.seconds.to_le_bytes());
         bytes
     }
 }
 
-/// Returns the logs in a folder.
-fn logs(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let mut found: Vec<PathBuf> = files_in(folder)?.iter().map(DirEntry::path).collect();
-    // A copy of a log under another name is not a log.
-    let is_numbered = |path: &Path| {
-        path.file_stem().is_some_and(|stem| stem.as_encoded_bytes().iter().all(u8::is_ascii_digit))
-    };
-    found.retain(|path| path.extension().is_some_and(|ending| ending == "records") && is_numbered(path));
-    Ok(found)
+/// Returns whether a process holds the lock on a file.
+fn is_taken(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let locked = file.try_lock_shared();
+    let _ = file.unlock();
+    matches!(locked, Err(TryLockError::WouldBlock))
 }
 
 /// Returns the error for a log that cannot be read or written, or has another format.
@@ -346,5 +301,28 @@ fn failed(action: &'static str, path: &Path, error: io::Error) -> StudyError {
     match error.kind() {
         io::ErrorKind::InvalidData => StudyError::damaged(path, error.to_string()),
         _ => StudyError::io(action, path)(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_is_seen_by_others_until_it_ends() {
+        let root = std::env::temp_dir().join(format!("granular-edmd-claims-{}", std::process::id()));
+        let [one, other] = [(); 2].map(|()| Store::new(&root, 1000));
+        assert!(one.block_count() == 960 && one.ramps_of(7).eq([7, 967]));
+        let claim = one.claim(7).unwrap().unwrap();
+        assert!(other.claim(7).unwrap().is_none() && other.claim(8).unwrap().is_some());
+        assert!(other.taken().eq([7, 967]));
+        let head = Head { ramp: 967, value: 0, marks: Head::LAST, seconds: 0.0 };
+        one.push(head, b"record").unwrap();
+        drop(claim);
+        assert!(one.push(head, b"record").is_err(), "nobody writes to a block without its lock");
+        assert_eq!(other.taken().count(), 0);
+        let _claim = other.claim(7).unwrap().unwrap();
+        assert!(other.is_done(967) && !other.is_done(7));
+        std::fs::remove_dir_all(&root).unwrap();
     }
 }

@@ -128,7 +128,7 @@ impl<E: Experiment> Study<E> {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let (revision, columns) = (E::revision(), columns::<E>());
         let maker = Maker { version, results: RESULTS, revision, columns };
-        let store = Store::new(folder.root());
+        let store = Store::new(folder.root(), plan.ramp_count());
         Ok(Self { folder, store, plan, text, hash, maker, accepted: String::new() })
     }
 

@@ -60,29 +60,29 @@ impl<E: Experiment> Study<E> {
 
     /// Writes tables. Returns the number of records in them, and whether these are all records of the plan.
     fn tables(&self, folder: &Path) -> Result<(usize, bool), StudyError> {
-        let entries = self.store.refreshed()?;
+        self.store.refresh()?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let (mut finished, mut are_all) = (0, true);
         // Only a selection of the records is compared with the present rule and walls, since making walls
         // takes longer than reading a small record.
-        let stride = 1 + entries.heads().count() / MOST_TRIED;
+        let stride = 1 + self.store.heads().count() / MOST_TRIED;
         for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();
-            for entry in entries.of(ramp..ramp + 1) {
+            for entry in self.store.of(ramp..ramp + 1) {
                 let is_tried = finished % stride == 0;
-                let record = if is_tried { self.read(entry)? } else { self.read_unproven(entry)? };
+                let record = if is_tried { self.read(&entry)? } else { self.read_unproven(&entry)? };
                 tables.add(&record)?;
                 seen.push(self.plan.seen(&record));
                 finished += 1;
             }
             // In a complete or damaged study, a missing record is an error: a table that lacks a row must not
             // look complete.
-            let is_done = entries.is_done(ramp);
+            let (is_done, damage) = (self.store.is_done(ramp), self.store.damage(self.store.block_of(ramp)));
             are_all &= is_done;
-            if !is_done && (self.folder.complete().exists() || self.store.damage().is_some()) {
+            if !is_done && (self.folder.complete().exists() || damage.is_some()) {
                 let missing =
                     || StudyError::damaged(self.folder(), format!("a record of ramp {ramp} is missing"));
-                return Err(self.store.damage().unwrap_or_else(missing));
+                return Err(damage.unwrap_or_else(missing));
             }
             tables.end_ramp(ramp, &self.plan.brackets(&seen))?;
         }

@@ -167,7 +167,7 @@ fn ramps_in_many_processes_are_a_study() {
     assert!(start("3").wait().unwrap().success());
     assert_eq!(code(&scratch.runs(&["status", "many"])), Some(0));
     // The command that writes the tables notes it, too. A copy of a log is the user's.
-    let [log, copy] = ["0000.records", "copy.records"].map(|name| scratch.0.join("many/logs").join(name));
+    let [log, copy] = ["0000.log", "copy.log"].map(|name| scratch.0.join("many/blocks").join(name));
     fs::copy(log, &copy).unwrap();
     let kept = fs::read(&copy).unwrap();
     fs::remove_file(scratch.0.join("many/complete")).unwrap();
@@ -199,9 +199,10 @@ fn failed_values_are_listed_and_tried_again() {
     };
     let before = run(&[]);
     let status = said(&scratch.runs(&["status", "study"]));
-    assert!(status.contains("1 values stalled, failed or reached a limit: 0000/0001"), "{status}");
+    let why = "1 values stalled, failed or reached a limit:\n  ramp 0, value 1: the run stalled at time ";
+    assert!(status.contains(why), "{status}");
     assert!(said(&scratch.runs(&["status", "study", "--json"])).contains(r#""failed":[[0,1]]"#));
-    let log = || logs::lines(&scratch.0.join("study")).lines().count();
+    let log = || logs::finished(&scratch.0.join("study")).values().flatten().count();
     assert!(run(&[]) == before && log() == 3);
     assert!(run(&["--retry"]) == before, "the same code fails with the same bytes");
     assert_eq!(log(), 5, "the failed value and the one after it");
@@ -220,9 +221,9 @@ fn warnings_of_values_are_told() {
     let output = scratch.runs(&["run", "plan.toml", "--out", "study"]);
     assert_eq!(code(&output), Some(0), "{}", said(&output));
     let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(told.contains("of them have warnings; study/logs/*.jsonl say of what"), "{told}");
-    let log = logs::lines(&scratch.0.join("study"));
-    assert!(log.contains("the contact duration is"), "{log}");
+    assert!(told.contains("of them have warnings: `status study` says why"), "{told}");
+    let told = said(&scratch.runs(&["status", "study"]));
+    assert!(told.contains("values have warnings:") && told.contains("the contact duration is"), "{told}");
 }
 
 /// A larger plan takes over what a smaller one has done, into a folder of its own.
@@ -235,12 +236,9 @@ fn a_study_grows() {
     fs::write(scratch.0.join("larger.toml"), &larger).unwrap();
     let output = scratch.runs(&["run", "larger.toml", "--out", "larger", "--from", "study"]);
     assert_eq!((code(&output), said(&output).as_str()), (Some(0), "9 of 9 values have ended in larger\n"));
-    let log = logs::lines(&scratch.0.join("larger"));
-    let is_taken = |ramp: &usize| {
-        let own = format!("{{\"ramp\":{ramp},");
-        log.lines().any(|line| line.starts_with(&own) && line.contains("taken_over"))
-    };
-    let taken: Vec<usize> = (0..9).filter(is_taken).collect();
+    let finished = logs::finished(&scratch.0.join("larger"));
+    let taken: Vec<u32> =
+        (0..9).filter(|ramp| finished[&[*ramp, 0]].iter().all(|seconds| seconds.is_nan())).collect();
     assert_eq!(taken, [0, 1, 6, 7]);
     fs::write(scratch.0.join("other.toml"), larger.replace("settle = 10", "settle = 20")).unwrap();
     let output = scratch.runs(&["run", "other.toml", "--out", "other", "--from", "study"]);

@@ -1,18 +1,15 @@
 //! One ramp, value after value: a finished value is read, an unfinished value is continued, and any other
 //! value is run from its start.
 
-use std::ops::Range;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
-use granular_edmd::simulation::Warning;
-
-use super::session::{LOOK, Session};
 use super::value::{Active, Partial, Value};
+use super::{LOOK, Session};
 use crate::experiment::record::{Contents, Outcome, Record};
 use crate::folder::{create, encoded, read_sealed, remove, write_sealed};
 use crate::plan::ramp::{Seen, Step};
-use crate::store::{Entries, Head};
+use crate::store::Head;
 use crate::{Experiment, Plan, Study, StudyError};
 
 /// Shortest part of a run between two saves. It makes a run advance even if saving takes longer than the save
@@ -23,8 +20,6 @@ const SHORTEST: Duration = Duration::from_millis(20);
 struct Walk<'a, 's, E: Experiment> {
     session: &'a Session<'s, E>,
     ramp: usize,
-    /// The records that the store had when the ramp was claimed.
-    entries: &'a Entries,
     /// The ramps of earlier studies that have agreed with this ramp in all values so far.
     earlier: Vec<(&'a Study<E>, usize)>,
     seen: Vec<Seen>,
@@ -36,39 +31,29 @@ struct Walk<'a, 's, E: Experiment> {
 
 /// Runs the ramps of a block until they are done or the run must stop. Returns false if another process is
 /// running the block.
-pub(super) fn attempt<E: Experiment>(
-    session: &Session<'_, E>,
-    ramps: &Range<usize>,
-) -> Result<bool, StudyError> {
+pub(super) fn attempt<E: Experiment>(session: &Session<'_, E>, block: usize) -> Result<bool, StudyError> {
     let study = session.study;
-    let claim = session.claims.claim(ramps.start)?;
-    // A single ramp of a larger block can run without a claim: a caller that runs a single ramp assigns each
-    // ramp to one process.
-    if claim.is_none() && !(session.ramps.len() == 1 && session.claims.is_shared()) {
-        return Ok(false);
-    }
-    // Other processes may have finished some of the ramps before this process got the claim.
-    let entries = study.store.refreshed()?;
-    if let Some(error) = study.store.damage().filter(|_| !ramps.clone().all(|ramp| entries.is_done(ramp))) {
+    let Some(_claim) = study.store.claim(block)? else { return Ok(false) };
+    if let Some(error) = study.store.damage(block).filter(|_| !session.is_done(block)) {
         session.if_sound::<()>(Err(error))?;
     }
-    for ramp in ramps.clone() {
+    for ramp in session.ramps_of(block) {
         if session.must_stop() {
             break;
         }
-        if entries.is_done(ramp) && !session.control.verifies {
+        if study.store.is_done(ramp) && !session.control.verifies {
             session.skip(1);
             continue;
         }
         let earlier = session.earlier_ramps(study.plan().ramp_seed(ramp));
-        let (entries, seen, last) = (&entries, Vec::new(), None);
-        let mut walk = Walk { session, ramp, entries, earlier, seen, last, has_partial: false };
+        let mut walk = Walk { session, ramp, earlier, seen: Vec::new(), last: None, has_partial: false };
         while let Some(step) = study.plan().next(&walk.seen) {
             if !walk.take(step)? {
                 break;
             }
         }
     }
+    study.store.sync(block)?;
     Ok(true)
 }
 
@@ -99,11 +84,15 @@ impl<E: Experiment> Walk<'_, '_, E> {
     /// Returns the record of the next value, or `None` if the value is not finished.
     fn known(&mut self, step: Step) -> Result<Option<Record<E>>, StudyError> {
         let (study, ramp, value) = (self.session.study, self.ramp, self.seen.len());
-        let Some(entry) = self.entries.find(ramp, value) else { return Ok(None) };
-        let read = study.read(entry).and_then(|record| {
+        let Some(entry) = study.store.find(ramp, value) else { return Ok(None) };
+        let read = study.read(&entry).and_then(|record| {
             // The record may belong to another step, if an earlier value was run again since.
             let is_same = (record.leg(), record.ramped_value()) == (step.leg, step.at);
-            if is_same { Ok(Some(record)) } else { Err(study.store.damaged(entry, "it is of another value")) }
+            if is_same {
+                Ok(Some(record))
+            } else {
+                Err(study.store.damaged(&entry, "it is of another value"))
+            }
         });
         let record = self.session.if_sound(read)?;
         if record.is_some() {
@@ -123,9 +112,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let mut earlier = self.earlier(step)?;
         if let Some(record) = earlier.take_if(|record| work.is_finished_by(record)) {
             self.advance(study.plan.protocol().steps());
-            let record = work.taken_over(record);
-            let warnings = record.counters().warnings();
-            return self.keep(record, &warnings, None);
+            return self.keep(work.taken_over(record), None);
         }
         let mut active = match self.saved(&work)? {
             Some(active) => active,
@@ -133,8 +120,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         };
         self.advance(active.steps());
         let Some(outcome) = self.steps(&mut active)? else { return Ok(false) };
-        let (record, warnings) = active.record(outcome)?;
-        self.keep(record, &warnings, Some(started.elapsed()))
+        self.keep(active.record(outcome)?, Some(started.elapsed()))
     }
 
     /// Returns an earlier study's record of the next value, or `None` if no earlier study has a suitable one.
@@ -214,14 +200,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
         write_sealed::<Partial<E>>(&path, &partial)
     }
 
-    /// Stores the record of a value, with the warnings of the simulation and the time that the value took
-    /// (`None` if the record comes from an earlier study). The record becomes the last one of this ramp.
-    fn keep(
-        &mut self,
-        record: Record<E>,
-        warnings: &[Warning],
-        time: Option<Duration>,
-    ) -> Result<bool, StudyError> {
+    /// Stores the record of a value, with the time that the value took (`None` if the record comes from an
+    /// earlier study). The record becomes the last one of this ramp.
+    fn keep(&mut self, record: Record<E>, time: Option<Duration>) -> Result<bool, StudyError> {
         let study = self.session.study;
         self.seen.push(study.plan.seen(&record));
         // The tables may lack this value, and later ones of the run.
@@ -231,27 +212,13 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let marks = [
             (Head::LAST, study.plan.next(&self.seen).is_none()),
             (Head::FAILED, record.outcome().reason().is_some()),
-            (Head::WARNED, !warnings.is_empty()),
+            (Head::WARNED, !record.warnings().is_empty()),
         ];
         let marks = marks.iter().filter(|(_, is_due)| *is_due).map(|(mark, _)| mark).sum();
         let seconds = time.map_or(f32::NAN, |time| time.as_secs_f32());
-        let line = Line {
-            ramp: record.ramp_index(),
-            value: record.value_index(),
-            outcome: record.outcome().name(),
-            reason: record.outcome().reason(),
-            warnings: &warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
-            collisions: record.counters().disk_collisions,
-            taken_over: time.is_none(),
-            seconds: time.map(|time| (1e3 * time.as_secs_f64()).round() / 1e3),
-            unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
-        };
-        // Numbers and texts are always JSON.
-        let line = serde_json::to_string(&line).unwrap_or_default();
-        let head = Head::new(self.ramp, record.value_index(), marks, seconds);
+        let head = Head { ramp: self.ramp, value: record.value_index(), marks, seconds };
         let contents = encoded::<Contents<E::Sample, E::Observer>>(study.folder(), &record.contents)?;
         study.store.push(head, &contents)?;
-        study.store.note(&line)?;
         if self.has_partial {
             remove(&study.folder.partial(self.ramp, record.value_index()))?;
         }
@@ -263,23 +230,4 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn advance(&self, steps: u64) {
         self.session.advance(self.ramp, self.seen.len(), steps);
     }
-}
-
-/// The readable line about a record in the log.
-#[derive(serde::Serialize)]
-struct Line<'a> {
-    ramp: usize,
-    value: usize,
-    outcome: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<&'a str>,
-    #[serde(skip_serializing_if = "str::is_empty")]
-    warnings: &'a str,
-    collisions: u64,
-    /// True if the value was taken over from an earlier study; the line then has no `seconds`.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    taken_over: bool,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    seconds: Option<f64>,
-    unix_time: u64,
 }

@@ -10,7 +10,7 @@ use std::time::Duration;
 use granular_edmd::Simulation;
 use granular_edmd::observable::Observer;
 use granular_edmd::random::{Stream, derived_seed};
-use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError, Warning};
+use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
@@ -267,10 +267,9 @@ impl<E: Experiment> Active<'_, E> {
         Ok((&self.work, self.run.checkpoint(), self.riders.saved()?))
     }
 
-    /// Returns the record of the value after its last step, and the warnings of the simulation. If the value
-    /// stalled, failed or reached a limit, the record holds the state in which the value started, and the
-    /// next value starts from this state.
-    pub(super) fn record(self, outcome: Outcome) -> Result<(Record<E>, Vec<Warning>), StudyError> {
+    /// Returns the record of the value after its last step. If the value stalled, failed or reached a limit,
+    /// the record holds the state in which the value started, and the next value starts from this state.
+    pub(super) fn record(self, outcome: Outcome) -> Result<Record<E>, StudyError> {
         let Self { value, work, run, riders } = self;
         let (start, cycles) = (work.start, value.study.plan.protocol().cycles());
         let (end, state) = match outcome {
@@ -289,11 +288,12 @@ impl<E: Experiment> Active<'_, E> {
             end,
             measured: work.measured,
             counters: run.counters().since(&work.counters),
+            warnings: run.warnings().iter().map(ToString::to_string).collect(),
             parts,
             driving: driving.filter(|_| state.is_some()),
             state,
         };
-        Ok((Record { experiment: value.experiment.clone(), contents }, run.warnings()))
+        Ok(Record { experiment: value.experiment.clone(), contents })
     }
 }
 

@@ -91,6 +91,11 @@ impl<E: Experiment> Record<E> {
         &self.contents.counters
     }
 
+    /// Returns the [warnings](granular_edmd::Simulation::warnings) of the simulation at the end of the value.
+    pub fn warnings(&self) -> &[String] {
+        &self.contents.warnings
+    }
+
     /// Returns the state at the end of the value; `None` if the record does not keep it
     /// ([`Plan::with_end_states`](crate::Plan::with_end_states)).
     pub const fn checkpoint(&self) -> Option<&Checkpoint> {
@@ -215,6 +220,7 @@ pub(crate) struct Contents<S, O> {
     pub(crate) end: Cycles,
     pub(crate) measured: Measured<S, O>,
     pub(crate) counters: Counters,
+    pub(crate) warnings: Vec<String>,
     /// Fingerprints of the rule and the walls that made the value.
     pub(crate) parts: [Option<Fingerprint>; 2],
     /// The state and the driving at the end, if the plan keeps them.

@@ -2,9 +2,9 @@
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::PathBuf;
 
-use granular_edmd::file::{Damage, Seal};
+use granular_edmd::file::{Damage, Locked, Seal};
 
 /// First bytes of every piece, by which the next piece is found after damage.
 const MARK: [u8; 4] = *b"\xabPC\n";
@@ -19,16 +19,24 @@ const BEFORE: usize = 4 + HEAD + 4 + 8 + 16;
 /// Number of bytes before the first piece: the first bytes and the version of the format.
 pub(crate) const START: u64 = 12;
 
-/// A log: a file to which one process appends, while any number of others may read.
+/// The number of the error with which Windows refuses to read a file that another process has locked.
+const LOCKED_ON_WINDOWS: i32 = 33;
+
+/// A log, up to the point to which it was read or written: a file to which the process appends that has locked
+/// it, while any number of others may read.
 ///
 /// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or an
-/// incomplete piece at the end, which the next piece overwrites. Nothing locks the file: the caller must make
-/// sure that only one process appends.
+/// incomplete piece at the end, which the next piece overwrites.
 #[derive(Debug)]
 pub(crate) struct Log {
-    file: File,
+    pub(crate) path: PathBuf,
+    seal: Seal,
     /// End of the last complete piece.
     end: u64,
+    /// True if bytes that are not a piece precede a piece.
+    pub(crate) is_damaged: bool,
+    /// The file, while this process appends to it.
+    file: Option<Locked>,
     /// True if nothing can follow the last complete piece.
     is_cut: bool,
 }
@@ -44,25 +52,70 @@ pub(crate) struct Piece {
     pub(crate) start: u64,
     /// Number of bytes of the contents.
     pub(crate) length: u32,
-    /// Number by which the reader identifies the log.
-    pub(crate) log: u32,
 }
 
 impl Log {
-    /// Opens a log to append to it, and creates the log if it does not exist.
-    pub(crate) fn open(path: &Path, seal: Seal) -> io::Result<Self> {
-        let end = if path.exists() { pieces(path, seal, 0)?.end } else { 0 };
-        let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
-        let mut log = Self { file, end, is_cut: false };
-        if end < START {
-            log.end = 0;
-            log.append(&start(seal))?;
+    pub(crate) const fn new(path: PathBuf, seal: Seal) -> Self {
+        Self { path, seal, end: 0, is_damaged: false, file: None, is_cut: false }
+    }
+
+    /// Returns the complete pieces that were added since the last reading. The checksums of the contents are
+    /// not compared.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or has another format or version ([`io::ErrorKind::InvalidData`]).
+    pub(crate) fn news(&mut self) -> io::Result<Vec<Piece>> {
+        if self.file.is_some() {
+            return Ok(Vec::new());
         }
-        Ok(log)
+        // Each time, the file is opened anew, since an NFS client asks for the present length only when it
+        // opens a file.
+        let found = File::open(&self.path).and_then(|file| self.read(&file));
+        match found {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+            Err(error) if cfg!(windows) && error.raw_os_error() == Some(LOCKED_ON_WINDOWS) => Ok(Vec::new()),
+            found => found,
+        }
+    }
+
+    /// Begins to append to the file of this log, which this process has locked. Returns all its complete
+    /// pieces.
+    pub(crate) fn begin(&mut self, file: Locked) -> io::Result<Vec<Piece>> {
+        (self.end, self.is_damaged, self.is_cut) = (0, false, false);
+        let found = self.read(file.file())?;
+        self.file = Some(file);
+        if self.end < START {
+            self.append(&start(self.seal))?;
+        }
+        Ok(found)
+    }
+
+    /// Releases the lock.
+    pub(crate) fn leave(&mut self) {
+        self.file = None;
+    }
+
+    fn read(&mut self, mut file: &File) -> io::Result<Vec<Piece>> {
+        let (mut found, length) = (Vec::new(), file.seek(SeekFrom::End(0))?);
+        if self.end >= length {
+            return Ok(found);
+        }
+        file.seek(SeekFrom::Start(self.end))?;
+        let mut input = BufReader::with_capacity(1 << 16, file);
+        if self.end == 0 && !begins(&mut input, self.seal)? {
+            return Ok(found);
+        }
+        self.end = self.end.max(START);
+        while let Some(piece) = next(&mut input, self.end, length)? {
+            self.is_damaged |= piece.start - BEFORE as u64 != self.end;
+            self.end = piece.start + u64::from(piece.length);
+            found.push(piece);
+        }
+        Ok(found)
     }
 
     /// Appends a piece, completely or not at all.
-    pub(crate) fn push(&mut self, head: [u8; HEAD], contents: &[u8]) -> io::Result<()> {
+    pub(crate) fn push(&mut self, head: [u8; HEAD], contents: &[u8]) -> io::Result<Piece> {
         let length = u32::try_from(contents.len()).map_err(io::Error::other)?;
         let mut bytes = Vec::with_capacity(BEFORE + contents.len());
         bytes.extend_from_slice(&MARK);
@@ -71,65 +124,43 @@ impl Log {
         bytes.extend_from_slice(&check(&bytes));
         bytes.extend_from_slice(&blake3::hash(contents).as_bytes()[..16]);
         bytes.extend_from_slice(contents);
-        self.append(&bytes)
+        let start = self.end + BEFORE as u64;
+        self.append(&bytes).map(|()| Piece { head, start, length })
     }
 
     /// Writes after the last complete piece. If the write fails, the incomplete bytes are removed, at the
     /// latest before the next write.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let mut file = self.locked()?.file();
         if !self.is_cut {
-            self.file.set_len(self.end)?;
+            file.set_len(self.end)?;
         }
-        self.file.seek(SeekFrom::Start(self.end))?;
-        let written = self.file.write_all(bytes);
-        self.is_cut = written.is_ok() || self.file.set_len(self.end).is_ok();
+        file.seek(SeekFrom::Start(self.end))?;
+        let written = file.write_all(bytes);
+        let is_cut = written.is_ok() || file.set_len(self.end).is_ok();
+        self.is_cut = is_cut;
         written.inspect(|()| self.end += bytes.len() as u64)
     }
 
     /// Waits until the system has stored everything.
     pub(crate) fn sync(&self) -> io::Result<()> {
-        self.file.sync_data()
+        self.locked()?.file().sync_data()
+    }
+
+    fn locked(&self) -> io::Result<&Locked> {
+        self.file.as_ref().ok_or_else(|| io::Error::other("this process has not locked it"))
+    }
+
+    /// Reads the contents of a piece, or returns an error if they are damaged.
+    pub(crate) fn contents(&self, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage>> {
+        match &self.file {
+            Some(locked) => contents(locked.file(), piece),
+            None => contents(&File::open(&self.path)?, piece),
+        }
     }
 }
 
-/// The complete pieces of a log from a position on.
-#[derive(Debug)]
-pub(crate) struct Pieces {
-    pub(crate) found: Vec<Piece>,
-    /// End of the last piece.
-    pub(crate) end: u64,
-    /// True if bytes that are not a piece precede a piece.
-    pub(crate) is_damaged: bool,
-}
-
-/// Finds the complete pieces of a log from a position on: 0, or the end of an earlier reading. The checksums
-/// of the contents are not compared.
-///
-/// # Errors
-/// If the file cannot be read, or has another format or version ([`io::ErrorKind::InvalidData`]).
-pub(crate) fn pieces(path: &Path, seal: Seal, from: u64) -> io::Result<Pieces> {
-    let mut pieces = Pieces { found: Vec::new(), end: from, is_damaged: false };
-    let mut file = File::open(path)?;
-    let length = file.seek(SeekFrom::End(0))?;
-    if from >= length {
-        return Ok(pieces);
-    }
-    file.seek(SeekFrom::Start(from))?;
-    let mut input = BufReader::with_capacity(1 << 16, file);
-    if from == 0 && !begins(&mut input, seal)? {
-        return Ok(pieces);
-    }
-    pieces.end = from.max(START);
-    while let Some(piece) = next(&mut input, pieces.end, length)? {
-        pieces.is_damaged |= piece.start - BEFORE as u64 != pieces.end;
-        pieces.end = piece.start + u64::from(piece.length);
-        pieces.found.push(piece);
-    }
-    Ok(pieces)
-}
-
-/// Reads the contents of a piece, or returns an error if they are damaged.
-pub(crate) fn read_piece(file: &mut File, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage>> {
+fn contents(mut file: &File, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage>> {
     let mut bytes = vec![0; 16 + piece.length as usize];
     file.seek(SeekFrom::Start(piece.start - 16))?;
     match file.read_exact(&mut bytes) {
@@ -156,7 +187,7 @@ fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
 }
 
 /// Finds the next complete piece at a position or after it, and moves to its end.
-fn next(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
+fn next(input: &mut BufReader<&File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
     if length.saturating_sub(place) < BEFORE as u64 {
         return Ok(None);
     }
@@ -174,7 +205,7 @@ fn next(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Opti
 }
 
 /// Finds a complete piece after bytes that are not a piece.
-fn search(input: &mut BufReader<File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
+fn search(input: &mut BufReader<&File>, place: u64, length: u64) -> io::Result<Option<Piece>> {
     let mut rest = Vec::new();
     input.seek(SeekFrom::Start(place))?;
     input.read_to_end(&mut rest)?;
@@ -194,7 +225,7 @@ fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
     let size = u32::from_le_bytes(*checked.last_chunk()?);
     let start = place + BEFORE as u64;
     let is_whole = before.starts_with(&MARK) && check(checked) == rest[..8];
-    (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size, log: 0 })
+    (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size })
 }
 
 /// Returns the bytes before the first piece.

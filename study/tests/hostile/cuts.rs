@@ -1,22 +1,19 @@
 //! Logs that are cut or changed, at every byte.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::Path;
 
-use granular_edmd::file::Seal;
-
-use crate::logs::log::{self, HEAD, Log, Piece, START, read_piece};
-
-const SEAL: Seal = Seal::new(*b"TEST LOG", 1);
+use crate::logs::log::{HEAD, Log, Piece, START};
+use crate::logs::{SEAL, begun};
 
 fn found_in(path: &Path) -> Vec<Piece> {
-    log::pieces(path, SEAL, 0).unwrap().found
+    Log::new(path.to_owned(), SEAL).news().unwrap()
 }
 
 fn pieces(path: &Path) -> Vec<Vec<u8>> {
-    let mut file = File::open(path).unwrap();
-    found_in(path).iter().filter_map(|piece| read_piece(&mut file, piece).unwrap().ok()).collect()
+    let log = Log::new(path.to_owned(), SEAL);
+    found_in(path).iter().filter_map(|piece| log.contents(piece).unwrap().ok()).collect()
 }
 
 /// However a log is cut, its complete pieces stay, and the next piece follows them. Whatever byte is
@@ -26,16 +23,17 @@ fn whole_pieces_survive_cuts_and_damage() {
     let path = std::env::temp_dir().join(format!("granular-edmd-pieces-{}", std::process::id()));
     let _ = fs::remove_file(&path);
     let written = [vec![1; 10], Vec::new(), vec![3; 40]];
-    let mut log = Log::open(&path, SEAL).unwrap();
+    let mut log = begun(&path);
     for (index, piece) in written.iter().enumerate() {
         log.push([index as u8; HEAD], piece).unwrap();
     }
+    drop(log);
     let (bytes, ends) = (fs::read(&path).unwrap(), found_in(&path));
     for length in 0..=bytes.len() {
         fs::write(&path, &bytes[..length]).unwrap();
         let whole = ends.iter().filter(|end| end.start + u64::from(end.length) <= length as u64).count();
         assert_eq!(pieces(&path), written[..whole], "{length}");
-        Log::open(&path, SEAL).unwrap().push([9; HEAD], b"next").unwrap();
+        begun(&path).push([9; HEAD], b"next").unwrap();
         let expected = [&written[..whole], &[b"next".to_vec()]].concat();
         assert_eq!(pieces(&path), expected, "{length}");
     }
@@ -48,6 +46,7 @@ fn whole_pieces_survive_cuts_and_damage() {
         assert!(found.iter().all(|piece| written.contains(piece)), "{place}");
     }
     fs::write(&path, b"something else").unwrap();
-    assert_eq!(Log::open(&path, SEAL).unwrap_err().kind(), io::ErrorKind::InvalidData);
+    let error = Log::new(path.clone(), SEAL).news().unwrap_err();
+    assert_eq!(error.kind(), io::ErrorKind::InvalidData);
     fs::remove_file(&path).unwrap();
 }

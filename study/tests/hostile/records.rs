@@ -101,7 +101,7 @@ fn what_a_forged_record_said_is_done_again() {
     let sample = record.study.record(0, 1).unwrap().unwrap().samples()[0];
     record.put(f64::NAN, sample.height);
     let summary = record.study.run(&Control::default().with_verification()).unwrap();
-    assert_eq!(summary.redone, [record.scratch.0.join("logs/0000.records")]);
+    assert_eq!(summary.redone, [record.scratch.0.join("blocks/0000.log")]);
     assert!(logs::record(&record.scratch.0, 0, 1) == record.contents);
 }
 
@@ -124,7 +124,7 @@ fn files_of_another_plan_are_told_apart() {
     let mut record = Specimen::record("not-this-plan");
     record.write(&scratch.0, &record.contents.clone());
     let error = record.study.run(&Control::default().with_verification()).unwrap_err();
-    assert!(is_of_another_plan(&error, "0000.records"), "{error}");
+    assert!(is_of_another_plan(&error, "0000.log"), "{error}");
 }
 
 fn is_of_another_plan(error: &StudyError, file: &str) -> bool {

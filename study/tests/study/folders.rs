@@ -46,12 +46,10 @@ fn folders_that_cannot_be_used_are_named() -> Result<(), AnyError> {
     let other = Plan::new(small_box(), Protocol::new(1, 1, 1)?, 1)?;
     assert!(matches!(Study::open_or_create(&scratch.0, &other), Err(StudyError::Different { .. })));
     // A file where a folder should be cannot be written into, not even by the superuser.
-    for name in ["locks", "logs"] {
-        fs::write(scratch.0.join(name), "not a folder")?;
-        let error = study.run(&Control::default()).unwrap_err().to_string();
-        assert!(error.starts_with("cannot ") && error.contains(name), "{error}");
-        fs::remove_file(scratch.0.join(name))?;
-    }
+    fs::write(scratch.0.join("blocks"), "not a folder")?;
+    let error = study.run(&Control::default()).unwrap_err().to_string();
+    assert!(error.starts_with("cannot ") && error.contains("blocks"), "{error}");
+    fs::remove_file(scratch.0.join("blocks"))?;
     let error = Study::create(scratch.0.join("README.txt"), &small_plan()).unwrap_err();
     assert!(matches!(error, StudyError::Io { .. }), "{error}");
     Ok(())
@@ -156,23 +154,9 @@ fn a_plan_edited_after_the_start_is_refused_with_what_differs() -> Result<(), An
     fs::write(&path, fs::read_to_string(&path)?.replace("seed = 7", "seed = 8"))?;
     let told = study.run(&Control::default()).unwrap_err().to_string();
     assert!(told.contains("seed is 8 there and 7 here"), "{told}");
-    assert!(!scratch.0.join("logs").exists());
+    assert!(!scratch.0.join("blocks").exists());
     // Written otherwise, it is the same plan.
     fs::write(&path, format!("# a comment\n{}", small_plan().to_toml()?))?;
     assert!(study.run(&Control::default())?.is_complete());
-    Ok(())
-}
-
-/// Records of version 0.3 are files of their own, which this version does not read.
-#[test]
-fn a_study_of_version_0_3_is_refused_by_name() -> Result<(), AnyError> {
-    let (scratch, _) = done(&small_plan(), "outdated");
-    fs::remove_dir_all(scratch.0.join("logs"))?;
-    fs::create_dir_all(scratch.0.join("ramps/0000"))?;
-    for error in [Study::<VibratedBox>::open(&scratch.0), Study::open_or_create(&scratch.0, &small_plan())] {
-        let error = error.unwrap_err();
-        assert!(matches!(&error, StudyError::Refused { path, .. } if *path == scratch.0), "{error}");
-        assert!(error.to_string().contains("by the program of version 0.3"), "{error}");
-    }
     Ok(())
 }

@@ -13,7 +13,7 @@ use support::report::report;
 
 /// Returns the number of values that the logs say were taken over.
 fn taken<E: Experiment>(study: &Study<E>) -> usize {
-    logs::lines(study.folder()).matches("taken_over").count()
+    logs::finished(study.folder()).values().flatten().filter(|seconds| seconds.is_nan()).count()
 }
 
 /// Does these plans, then a larger one after them, and checks that it is as if it had done everything.
@@ -182,7 +182,7 @@ fn what_must_not_differ_is_named() -> Result<(), AnyError> {
         let study = Study::create(scratch.0.join(index.to_string()), &plan)?;
         let error = report(&study.run(&Control::default().with_earlier_studies(&from)).unwrap_err());
         assert!(error.contains(reason), "{error}");
-        assert!(!study.folder().join("logs").exists(), "{error}");
+        assert!(!study.folder().join("blocks").exists(), "{error}");
     }
     Ok(())
 }

@@ -173,7 +173,7 @@ fn accepted_code_goes_on_and_tables_tell_which_made_what() -> Result<(), AnyErro
 fn a_record_of_other_code_is_refused() -> Result<(), AnyError> {
     let (mine, theirs) = (half_done("identity-mine"), Scratch::new("identity-theirs"));
     Study::create(&theirs.0, &plan::<SAMPLE>())?.run(&Control::default())?;
-    fs::copy(theirs.0.join("logs/0000.records"), mine.0.join("logs/9999.records"))?;
+    fs::copy(theirs.0.join("blocks/0001.log"), mine.0.join("blocks/0001.log"))?;
     let study = Study::open_or_create(&mine.0, &plan::<AS_IT_WAS>())?;
     let error = study.run(&Control::default().with_verification()).unwrap_err();
     assert!(error.to_string().contains("was made with another revision"), "{error}");

@@ -2,39 +2,37 @@
 #![allow(dead_code, reason = "each target needs some of it")]
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::file::Seal;
+use granular_edmd::file::{Locked, Seal};
 
-use log::{Log, Piece, read_piece};
+use log::{Log, Piece};
 
 // The store's own reader and writer, which are not public.
 #[path = "../../src/store/log.rs"]
 pub(crate) mod log;
 
-pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 6);
+pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 7);
 
-/// A piece of a log, with ramp, value and edition.
+/// A piece of a log, with ramp and value.
 struct Found {
     log: PathBuf,
     piece: Piece,
     place: [u32; 2],
-    edition: u16,
 }
 
 impl Found {
     fn contents(&self) -> Vec<u8> {
-        read_piece(&mut File::open(&self.log).unwrap(), &self.piece).unwrap().unwrap_or_default()
+        Log::new(self.log.clone(), SEAL).contents(&self.piece).unwrap().unwrap_or_default()
     }
 }
 
-/// Returns the files of an ending in the folder `logs`.
-fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
-    let all = fs::read_dir(folder.join("logs")).into_iter().flatten();
+/// Returns the logs of all blocks.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let all = fs::read_dir(folder.join("blocks")).into_iter().flatten();
     let mut all: Vec<PathBuf> = all.map(|file| file.unwrap().path()).collect();
-    all.retain(|path| path.extension().is_some_and(|found| found == ending));
     all.sort();
     all
 }
@@ -43,22 +41,17 @@ fn pieces(log: &Path) -> Vec<Found> {
     let number = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().unwrap());
     let found = |piece: Piece| {
         let place = [number(&piece.head[..4]), number(&piece.head[4..8])];
-        Found { log: log.to_owned(), piece, place, edition: number(&piece.head[8..12]) as u16 }
+        Found { log: log.to_owned(), piece, place }
     };
-    self::log::pieces(log, SEAL, 0).unwrap().found.into_iter().map(found).collect()
+    Log::new(log.to_owned(), SEAL).news().unwrap().into_iter().map(found).collect()
 }
 
-/// Returns the last edition of each record.
+/// Returns the last piece of each record.
 fn latest(folder: &Path) -> BTreeMap<[u32; 2], Found> {
-    let mut all = BTreeMap::new();
-    for found in files(folder, "records").iter().flat_map(|log| pieces(log)) {
-        let is_newer = all.get(&found.place).is_none_or(|known: &Found| known.edition < found.edition);
-        if is_newer {
-            all.insert(found.place, found);
-        }
-    }
+    let found = files(folder).into_iter().flat_map(|log| pieces(&log));
+    let mut all: BTreeMap<[u32; 2], Found> = found.map(|found| (found.place, found)).collect();
     // A value that counts as not done.
-    all.retain(|_, found| found.piece.head[10] & 1 == 0);
+    all.retain(|_, found| found.piece.head[8] & 1 == 0);
     all
 }
 
@@ -91,7 +84,7 @@ fn rewrite(log: &Path, mut change: impl FnMut([u32; 2], Vec<u8>) -> Option<Vec<u
     let all: Vec<_> =
         pieces(log).into_iter().map(|found| (found.piece.head, found.place, found.contents())).collect();
     fs::write(log, "").unwrap();
-    let mut log = Log::open(log, SEAL).unwrap();
+    let mut log = begun(log);
     for (head, place, contents) in all {
         if let Some(contents) = change(place, contents) {
             log.push(head, &contents).unwrap();
@@ -99,29 +92,42 @@ fn rewrite(log: &Path, mut change: impl FnMut([u32; 2], Vec<u8>) -> Option<Vec<u
     }
 }
 
+/// Begins to append to a log.
+pub(crate) fn begun(path: &Path) -> Log {
+    let file = fs::File::options().read(true).write(true).create(true).truncate(false).open(path).unwrap();
+    let mut log = Log::new(path.to_owned(), SEAL);
+    log.begin(Locked::take(file).unwrap()).unwrap();
+    log
+}
+
 /// Takes a record out.
 pub(crate) fn forget(folder: &Path, ramp: u32, value: u32) {
-    for log in files(folder, "records") {
+    for log in files(folder) {
         rewrite(&log, |place, contents| (place != [ramp, value]).then_some(contents));
     }
 }
 
 /// Gives a record other contents, under a right checksum.
 pub(crate) fn replace(folder: &Path, ramp: u32, value: u32, new: &[u8]) {
-    for log in files(folder, "records") {
+    for log in files(folder) {
         rewrite(&log, |place, contents| Some(if place == [ramp, value] { new.to_vec() } else { contents }));
     }
 }
 
-/// Returns the lines for people of all processes.
-pub(crate) fn lines(folder: &Path) -> String {
-    files(folder, "jsonl").iter().map(|path| fs::read_to_string(path).unwrap()).collect()
+/// Returns the seconds that each value took, for each time that it was finished; NaN if it was taken over.
+pub(crate) fn finished(folder: &Path) -> BTreeMap<[u32; 2], Vec<f32>> {
+    let mut all: BTreeMap<_, Vec<f32>> = BTreeMap::new();
+    for Found { place, piece, .. } in files(folder).iter().flat_map(|log| pieces(log)) {
+        if piece.head[8] & 1 == 0 {
+            all.entry(place).or_default().push(f32::from_le_bytes(piece.head[12..].try_into().unwrap()));
+        }
+    }
+    all
 }
 
-/// Returns whether a file of a study has the same bytes however its work was divided: not those of logs and
-/// locks.
+/// Returns whether a file of a study has the same bytes however its work was divided: not those of logs.
 fn is_the_same_always(name: &Path) -> bool {
-    !name.starts_with("logs") && !name.starts_with("locks")
+    !name.starts_with("blocks")
 }
 
 /// Returns all files of a study whose bytes do not depend on how its work was divided or how often it was
