@@ -20,7 +20,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::Kind;
-use granular_edmd::boundary::Obstacles;
+use granular_edmd::boundary::Container;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::OfKind;
 use granular_edmd::prelude::*;

@@ -15,7 +15,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::boundary::{Obstacles, Region};
+use granular_edmd::boundary::{Container, Region};
 use granular_edmd::observable::{FieldCell, Grid};
 use granular_edmd::prelude::*;
 

@@ -127,7 +127,7 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
         Container::closed(WIDTH, HEIGHT)?.with_periodic_ends()?.with_piston(Wall::Left, piston)?;
     let [left, right] = [Wall::Left, Wall::Right].map(|wall| container.index(wall).unwrap_or_default());
     let line = [DVec2::new(MEMBRANE, 0.0), DVec2::new(MEMBRANE, HEIGHT)];
-    let vessel = Vessel::new(container).with("membrane", Part::polyline(line)?.only_for([SOLUTE]))?;
+    let vessel = container.with_part("membrane", Part::polyline(line)?.only_for([SOLUTE]))?;
     let disks = grid(SOLUTE, solutes, 0.0).chain(grid(SOLVENT, SOLVENTS, MEMBRANE));
     let disks = initial::with_maxwellian_velocities(disks.collect::<Result<_, _>>()?, 1.0, 1)?;
     let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use granular_edmd::boundary::Obstacles;
+use granular_edmd::boundary::Container;
 use granular_edmd::collision::TangentialResponse::{Reversing, Unchanged};
 use granular_edmd::collision::{ElasticBelow, SpeedDependent};
 use granular_edmd::prelude::*;
@@ -190,10 +190,10 @@ fn reason(error: &RunError) -> String {
 const GLUED: f64 = 1.2;
 
 /// Returns the floor, flat or with a row of grains glued to it.
-fn floor(flat: bool) -> Result<Obstacles<Container>, ParameterError> {
+fn floor(flat: bool) -> Result<Container, ParameterError> {
     let count = if flat { 0 } else { (WIDTH / GLUED) as usize };
     let grain = |k| Disk::new(DVec2::new((k as f64 + 0.5) * GLUED, 0.5), 0.5);
-    Ok(Obstacles::new(Container::open(WIDTH)?, (0..count).map(grain).collect::<Result<Vec<_>, _>>()?))
+    Ok(Container::open(WIDTH)?.with_pegs((0..count).map(grain).collect::<Result<Vec<_>, _>>()?)?)
 }
 
 /// Returns a column of grains above the middle of the floor.

@@ -16,7 +16,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::boundary::Obstacles;
+use granular_edmd::boundary::Container;
 use granular_edmd::collision::RollingFriction;
 use granular_edmd::observable::{Crossings, measured_by};
 use granular_edmd::prelude::*;

@@ -2,7 +2,9 @@
 
 use glam::DVec2;
 
-use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch, WallView};
+use super::{
+    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch, WallView,
+};
 use crate::forward::forward;
 use crate::{Fingerprint, Flight, ParameterError};
 

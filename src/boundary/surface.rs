@@ -136,9 +136,9 @@ impl Response<'_> {
     pub(super) fn has_friction(&self) -> bool {
         match self {
             Self::Thermal(thermal) => !thermal.slip(),
-            Self::Rule(rule) => hostile_contacts().map(|contact| rule.impulse(&contact)).any(|impulse| {
-                impulse.tangential() != 0.0 || impulse.couple() != 0.0
-            }),
+            Self::Rule(rule) => hostile_contacts()
+                .map(|contact| rule.impulse(&contact))
+                .any(|impulse| impulse.tangential() != 0.0 || impulse.couple() != 0.0),
             Self::Shared | Self::Absorbing => true,
         }
     }

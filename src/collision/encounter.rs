@@ -22,9 +22,8 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Returns the properties of a wall with these masses against impulses along its normal and along its
-    /// surface. Infinite masses keep the motion of the wall unchanged. A curved wall with a mass along its
-    /// surface turns about the center of the surface.
+    /// Returns the properties of a wall with this mass against impulses along its normal. An infinite mass
+    /// keeps the motion of the wall unchanged.
     pub(crate) fn of_wall(kind: Kind, radius: f64, mass: f64) -> Self {
         Self {
             arm: 0.0,

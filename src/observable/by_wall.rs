@@ -3,11 +3,13 @@
 use super::Snapshot;
 use super::marks::Mark;
 use crate::ParameterError;
+use crate::boundary::WallView;
 
 /// Largest number of names that an error lists.
 const LISTED: usize = 8;
 
-/// A value for each of some walls and parts. All walls of one name share a value.
+/// A value for each of some walls and parts. All walls of a part share a value, unless one of them is named by
+/// its number, as in "funnel, brick 2".
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct ByWall<T> {
@@ -40,7 +42,8 @@ impl<T: Default> ByWall<T> {
         }
         self.walls = start.walls_mark();
         let place = |name: &str| self.values.iter().position(|(other, _)| other == name);
-        self.places = start.walls().map(|wall| place(&wall.name)).collect();
+        let of = |wall: WallView<'_>| place(&wall.name).or_else(|| place(&wall.to_string()));
+        self.places = start.walls().map(of).collect();
         let missing = |place: &usize| !self.places.contains(&Some(*place));
         match (0..self.values.len()).find(missing) {
             Some(place) => Err(unknown(&self.values[place].0, start)),

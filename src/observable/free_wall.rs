@@ -61,8 +61,7 @@ impl Observable for FreeWall {
             let ((displacement, _), velocity) = (wall.motion?, snapshot.wall_velocity(index)?);
             Some(FreeWallMotion { displacement, velocity, energy: wall.energy? })
         });
-        let unknown =
-            FreeWallMotion { displacement: DVec2::NAN, velocity: DVec2::NAN, energy: f64::NAN };
+        let unknown = FreeWallMotion { displacement: DVec2::NAN, velocity: DVec2::NAN, energy: f64::NAN };
         motion.unwrap_or(unknown)
     }
 }

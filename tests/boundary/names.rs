@@ -1,9 +1,7 @@
 //! Names of walls that are made at run time, and are found in errors.
 
-use std::borrow::Cow;
-
 use granular_edmd::boundary::{
-    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch,
+    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch, WallView,
 };
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
@@ -20,9 +18,9 @@ impl Boundary for Named {
     fn wall_count(&self) -> usize {
         self.0.wall_count()
     }
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+    fn wall(&self, wall: usize, _time: f64) -> WallView<'_> {
         let name = self.1.as_ref().and_then(|names| names.get(wall));
-        name.map_or_else(|| format!("wall {wall}").into(), Into::into)
+        name.map_or_else(|| WallView::new(format!("wall {wall}")), |name| WallView::new(name.as_str()))
     }
     fn set_time_origin(&mut self, origin: f64) {
         self.0.set_time_origin(origin);

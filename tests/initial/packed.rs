@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall};
+use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError, Radii};
 use granular_edmd::wall::{BiParabolic, Piston};

@@ -1,8 +1,6 @@
 //! No check refuses a part of the library, whatever the seed.
 
-use granular_edmd::boundary::{
-    Boundary, Container, Part, Thermal, Wall, laws as boundary_laws,
-};
+use granular_edmd::boundary::{Boundary, Container, Part, Thermal, Wall, laws as boundary_laws};
 use granular_edmd::collision::laws::{self as collision_laws, Promises};
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, LeastRebound,
@@ -103,7 +101,10 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
         ("turning exit", vessel(bar.clone().absorbing_centers().with_rotation(middle, 0.8)?)?),
         ("turning bar", vessel(bar.with_rotation(middle, 0.8)?)?),
         ("moving block", vessel(Part::block(triangle)?.with_motion(DVec2::new(0.6, 0.8), sine)?)?),
-        ("drum", Box::new(Container::around([("drum", Part::drum(middle, 4.0)?.with_rotation(middle, 0.5)?)])?)),
+        (
+            "drum",
+            Box::new(Container::around([("drum", Part::drum(middle, 4.0)?.with_rotation(middle, 0.5)?)])?),
+        ),
         ("polygon", Box::new(Container::around([("outer", Part::polygon(outer)?)])?)),
     ])
 }

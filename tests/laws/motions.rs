@@ -99,30 +99,66 @@ fn narrowed(lower: f64, upper: f64) -> impl Fn(&mut AccelerationBounds, f64) + S
 
 fn places() -> Vec<Fault<Altered>> {
     vec![
-        Fault(Blind, "the velocity is larger than the derivative by 1e-5", harmonic().state(|state, _| state.velocity *= 1.0 + 1e-5)),
-        Fault(Informed, "the velocity is 1 % too small for 1e-4 of the period", harmonic().state(|state, phase| {
-            state.velocity *= if (0.4..0.4001).contains(&share(phase)) { 0.99 } else { 1.0 };
-        })),
-        Fault(Informed, "the displacement has steps of a millionth", harmonic().state(|state, _| {
-            state.displacement = (state.displacement * 1e7).round() / 1e7;
-        })),
-        Fault(Blind, "a sawtooth falls slowly and jumps up", sawtooth().state(|state, _| {
-            *state = WallState::new(-state.displacement, -state.velocity);
-        })),
+        Fault(
+            Blind,
+            "the velocity is larger than the derivative by 1e-5",
+            harmonic().state(|state, _| state.velocity *= 1.0 + 1e-5),
+        ),
+        Fault(
+            Informed,
+            "the velocity is 1 % too small for 1e-4 of the period",
+            harmonic().state(|state, phase| {
+                state.velocity *= if (0.4..0.4001).contains(&share(phase)) { 0.99 } else { 1.0 };
+            }),
+        ),
+        Fault(
+            Informed,
+            "the displacement has steps of a millionth",
+            harmonic().state(|state, _| {
+                state.displacement = (state.displacement * 1e7).round() / 1e7;
+            }),
+        ),
+        Fault(
+            Blind,
+            "a sawtooth falls slowly and jumps up",
+            sawtooth().state(|state, _| {
+                *state = WallState::new(-state.displacement, -state.velocity);
+            }),
+        ),
         Fault(Blind, "a sawtooth does not say that it jumps", Altered { jumps: false, ..sawtooth() }),
-        Fault(Informed, "half a period is higher by 1e-11 of the amplitude", parabolic().state(|state, phase| {
-            state.displacement -= if share(phase) < 0.5 { 1e-11 * AMPLITUDE } else { 0.0 };
-        })),
-        Fault(Blind, "the reach is too small by 1e-6", harmonic().reach(-AMPLITUDE * (1.0 - 1e-6), AMPLITUDE)),
-        Fault(Informed, "the wall is beyond its reach for 1e-3 of the period", parabolic().state(|state, phase| {
-            state.displacement *= if (0.2495..0.2505).contains(&share(phase)) { 1.0 + 1e-6 } else { 1.0 };
-        })),
-        Fault(Blind, "the displacement is not a number at phase 0", parabolic().state(|state, phase| {
-            state.displacement *= 0.0 / phase + 1.0;
-        })),
-        Fault(Informed, "the velocity at negative phases is not a number", harmonic().state(|state, phase| {
-            state.velocity += 0.0 * phase.sqrt();
-        })),
+        Fault(
+            Informed,
+            "half a period is higher by 1e-11 of the amplitude",
+            parabolic().state(|state, phase| {
+                state.displacement -= if share(phase) < 0.5 { 1e-11 * AMPLITUDE } else { 0.0 };
+            }),
+        ),
+        Fault(
+            Blind,
+            "the reach is too small by 1e-6",
+            harmonic().reach(-AMPLITUDE * (1.0 - 1e-6), AMPLITUDE),
+        ),
+        Fault(
+            Informed,
+            "the wall is beyond its reach for 1e-3 of the period",
+            parabolic().state(|state, phase| {
+                state.displacement *= if (0.2495..0.2505).contains(&share(phase)) { 1.0 + 1e-6 } else { 1.0 };
+            }),
+        ),
+        Fault(
+            Blind,
+            "the displacement is not a number at phase 0",
+            parabolic().state(|state, phase| {
+                state.displacement *= 0.0 / phase + 1.0;
+            }),
+        ),
+        Fault(
+            Informed,
+            "the velocity at negative phases is not a number",
+            harmonic().state(|state, phase| {
+                state.velocity += 0.0 * phase.sqrt();
+            }),
+        ),
     ]
 }
 
@@ -132,35 +168,67 @@ fn periods_and_bounds() -> Vec<Fault<Altered>> {
     vec![
         Fault(Blind, "the period is too long by 1e-6", harmonic().period(PERIOD * (1.0 + 1e-6))),
         Fault(Blind, "a motion that starts late has a period", Altered::new(delayed).period(PERIOD)),
-        Fault(Informed, "each fifth period is lower by a hundredth", parabolic().state(|state, phase| {
-            if (phase / PERIOD).rem_euclid(5.0) >= 4.0 {
-                *state = WallState::new(0.99 * state.displacement, 0.99 * state.velocity);
-            }
-        })),
-        Fault(Blind, "both bounds are too small by 1e-5", parabolic().bounds(narrowed(1.0 - 1e-5, 1.0 - 1e-5))),
-        Fault(Informed, "the lower bound is too high by 1e-6 of the range", harmonic().bounds(|bounds, _| {
-            bounds.min += 1e-6 * (bounds.max - bounds.min);
-        })),
-        Fault(Informed, "within a piece, the bounds are 0", harmonic().bounds(|bounds, phase| {
-            let place = 16.0 * phase / PERIOD;
-            if (place - place.round()).abs() > 1e-3 {
-                (bounds.min, bounds.max) = (0.0, 0.0);
-            }
-        })),
-        Fault(Blind, "a piece ends at the phase asked for", harmonic().bounds(|bounds, phase| bounds.until = phase)),
-        Fault(Informed, "a piece lasts two arcs", parabolic().bounds(|bounds, _| bounds.until += 0.5 * PERIOD)),
+        Fault(
+            Informed,
+            "each fifth period is lower by a hundredth",
+            parabolic().state(|state, phase| {
+                if (phase / PERIOD).rem_euclid(5.0) >= 4.0 {
+                    *state = WallState::new(0.99 * state.displacement, 0.99 * state.velocity);
+                }
+            }),
+        ),
+        Fault(
+            Blind,
+            "both bounds are too small by 1e-5",
+            parabolic().bounds(narrowed(1.0 - 1e-5, 1.0 - 1e-5)),
+        ),
+        Fault(
+            Informed,
+            "the lower bound is too high by 1e-6 of the range",
+            harmonic().bounds(|bounds, _| {
+                bounds.min += 1e-6 * (bounds.max - bounds.min);
+            }),
+        ),
+        Fault(
+            Informed,
+            "within a piece, the bounds are 0",
+            harmonic().bounds(|bounds, phase| {
+                let place = 16.0 * phase / PERIOD;
+                if (place - place.round()).abs() > 1e-3 {
+                    (bounds.min, bounds.max) = (0.0, 0.0);
+                }
+            }),
+        ),
+        Fault(
+            Blind,
+            "a piece ends at the phase asked for",
+            harmonic().bounds(|bounds, phase| bounds.until = phase),
+        ),
+        Fault(
+            Informed,
+            "a piece lasts two arcs",
+            parabolic().bounds(|bounds, _| bounds.until += 0.5 * PERIOD),
+        ),
     ]
 }
 
 fn states() -> Vec<Fault<Altered>> {
     let [often, seldom] = [one_in(50), one_in(3000)];
     vec![
-        Fault(Blind, "one answer in 50 is higher by 1e-3", parabolic().state(move |state, _| {
-            state.displacement -= if often() { 1e-3 * AMPLITUDE } else { 0.0 };
-        })),
-        Fault(Informed, "one answer in 3000 is higher by 1e-3", parabolic().state(move |state, _| {
-            state.displacement -= if seldom() { 1e-3 * AMPLITUDE } else { 0.0 };
-        })),
+        Fault(
+            Blind,
+            "one answer in 50 is higher by 1e-3",
+            parabolic().state(move |state, _| {
+                state.displacement -= if often() { 1e-3 * AMPLITUDE } else { 0.0 };
+            }),
+        ),
+        Fault(
+            Informed,
+            "one answer in 3000 is higher by 1e-3",
+            parabolic().state(move |state, _| {
+                state.displacement -= if seldom() { 1e-3 * AMPLITUDE } else { 0.0 };
+            }),
+        ),
         Fault(Honest, "parabolic", parabolic()),
         Fault(Honest, "harmonic", harmonic()),
         Fault(Honest, "sawtooth", sawtooth()),

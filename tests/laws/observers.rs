@@ -89,31 +89,60 @@ impl Observer for Altered {
 fn faults() -> Vec<Fault<Altered>> {
     vec![
         Fault(Blind, "the first sample is at no number", Altered::start(|clock, _| clock.next = f64::NAN)),
-        Fault(Informed, "question 777 has no number", Altered {
-            ask: |clock| if clock.asked.get() == 777 { f64::NAN } else { clock.next },
-            ..Altered::honest()
-        }),
+        Fault(
+            Informed,
+            "question 777 has no number",
+            Altered {
+                ask: |clock| if clock.asked.get() == 777 { f64::NAN } else { clock.next },
+                ..Altered::honest()
+            },
+        ),
         Fault(Blind, "the sample is asked for again", Altered::sample(|clock, time| clock.next = time)),
-        Fault(Informed, "after 5000, samples are asked for again", Altered::sample(|clock, time| {
-            clock.next = if time > 5000.0 { time } else { clock.next };
-        })),
-        Fault(Blind, "the first sample is before the start by 1e-7", Altered::start(|clock, time| clock.next = time - 1e-7)),
-        Fault(Informed, "the fifth run starts a little early", Altered::start(|clock, time| {
-            clock.next = if clock.runs == 5 { time - 1e-6 } else { clock.next };
-        })),
-        Fault(Blind, "a collision puts the sample off", Altered::collision(|clock, collision| clock.next = collision.time + INTERVAL)),
-        Fault(Informed, "a collision of the regime least rebound puts the sample off", Altered::collision(|clock, collision| {
-            clock.next += if collision.impulse.regime() == Regime::LeastRebound { 1.0 } else { 0.0 };
-        })),
-        Fault(Informed, "a disk that comes in puts the sample off", Altered {
-            insert: |clock, time| clock.next = time + 1.0,
-            ..Altered::honest()
-        }),
-        Fault(Blind, "each run counts its samples from its own start", Altered {
-            start: |clock, time| clock.next = time + INTERVAL,
-            sample: |clock, time| clock.next = time + INTERVAL,
-            ..Altered::honest()
-        }),
+        Fault(
+            Informed,
+            "after 5000, samples are asked for again",
+            Altered::sample(|clock, time| {
+                clock.next = if time > 5000.0 { time } else { clock.next };
+            }),
+        ),
+        Fault(
+            Blind,
+            "the first sample is before the start by 1e-7",
+            Altered::start(|clock, time| clock.next = time - 1e-7),
+        ),
+        Fault(
+            Informed,
+            "the fifth run starts a little early",
+            Altered::start(|clock, time| {
+                clock.next = if clock.runs == 5 { time - 1e-6 } else { clock.next };
+            }),
+        ),
+        Fault(
+            Blind,
+            "a collision puts the sample off",
+            Altered::collision(|clock, collision| clock.next = collision.time + INTERVAL),
+        ),
+        Fault(
+            Informed,
+            "a collision of the regime least rebound puts the sample off",
+            Altered::collision(|clock, collision| {
+                clock.next += if collision.impulse.regime() == Regime::LeastRebound { 1.0 } else { 0.0 };
+            }),
+        ),
+        Fault(
+            Informed,
+            "a disk that comes in puts the sample off",
+            Altered { insert: |clock, time| clock.next = time + 1.0, ..Altered::honest() },
+        ),
+        Fault(
+            Blind,
+            "each run counts its samples from its own start",
+            Altered {
+                start: |clock, time| clock.next = time + INTERVAL,
+                sample: |clock, time| clock.next = time + INTERVAL,
+                ..Altered::honest()
+            },
+        ),
         Fault(Informed, "each run leaves out a sample", Altered::start(|clock, _| clock.next += INTERVAL)),
         Fault(Honest, "clock", Altered::honest()),
     ]

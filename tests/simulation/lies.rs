@@ -497,7 +497,7 @@ fn an_outcome_that_is_no_motion_names_both_partners_and_the_contact() {
                 }
                 Partner::Wall(wall) => {
                     walls_named += 1;
-                    let name = run.boundary().wall_name(wall).into_owned();
+                    let name = run.boundary().wall(wall, 0.0).to_string();
                     let names = format!("disk {} with the wall {name:?}", failed.disk);
                     assert_eq!(failed.wall, Some(name));
                     names

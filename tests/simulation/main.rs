@@ -36,7 +36,6 @@ mod rotor;
 mod scratch;
 mod seeds;
 mod setups;
-mod sled;
 mod slopes;
 mod steps;
 mod stopping;

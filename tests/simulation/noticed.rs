@@ -2,8 +2,7 @@
 //! that is wrong does not end as if it were right.
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Vessel,
-    Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Wall,
 };
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
@@ -46,8 +45,8 @@ impl Boundary for Faulty {
     fn wall_count(&self) -> usize {
         self.honest.wall_count()
     }
-    fn wall_name(&self, wall: usize) -> std::borrow::Cow<'_, str> {
-        self.honest.wall_name(wall)
+    fn wall(&self, wall: usize, time: f64) -> granular_edmd::boundary::WallView<'_> {
+        self.honest.wall(wall, time)
     }
     fn set_time_origin(&mut self, origin: f64) {
         self.honest.set_time_origin(origin);
@@ -355,7 +354,7 @@ fn gravity_has_no_sign_where_there_is_none() {
 #[test]
 fn the_wall_that_a_disk_is_in_is_named_and_not_the_one_it_touches() {
     let bowl = Part::new([Brick::arc(DVec2::new(10.0, 10.0), 8.0, 4.0, 5.0).unwrap()]).unwrap();
-    let vessel = Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("bowl", bowl).unwrap();
+    let vessel = Container::closed(20.0, 20.0).unwrap().with_part("bowl", bowl).unwrap();
     let disk = Disk::new(DVec2::new(15.0, 8.0), 0.3).unwrap();
     let mut run = Simulation::builder(Elastic, vessel).disks([disk]).gravity(1.0).build().unwrap();
     let error = run.run_until(60.0, &mut ()).unwrap_err();

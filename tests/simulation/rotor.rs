@@ -1,14 +1,10 @@
-//! A free drum with a moment of inertia, which the disks turn: a custom boundary that reacts.
+//! Disks on walls that turn.
 
-use granular_edmd::boundary::{
-    Boundary, Brick, Domain, FirstTouch, Impact, Overlap, Part, Probe, Reaction, Region, Surface, Touch,
-    Vessel, laws,
-};
-use granular_edmd::collision::{CollisionRule, Elastic, RollingFriction, Rough};
+use granular_edmd::boundary::{Container, Part};
+use granular_edmd::collision::{Elastic, RollingFriction};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision};
-use granular_edmd::simulation::Limits;
-use granular_edmd::{Disk, Flight, Kind, ParameterError, Simulation, initial};
+use granular_edmd::{Disk, Simulation};
 
 const RADIUS: f64 = 6.0;
 const INERTIA: f64 = 400.0;
@@ -140,7 +136,7 @@ fn a_disk_that_turns_with_its_wall_does_not_roll() -> Result<(), Box<dyn std::er
     let spin = 0.5;
     let round = Part::drum(DVec2::ZERO, RADIUS)?;
     for part in [round.clone().with_rotation(DVec2::ZERO, spin)?, round.with_surface_speed(spin * RADIUS)?] {
-        let vessel = Vessel::around([("drum", part)])?;
+        let vessel = Container::around([("drum", part)])?;
         let disk = Disk::new(DVec2::new(4.0, 0.0), 0.5)?.with_angular_velocity(spin)?;
         let disk = disk.with_velocity(DVec2::new(1.0, 0.0))?;
         let rule = RollingFriction::new(Elastic, 0.3)?;

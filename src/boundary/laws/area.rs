@@ -110,7 +110,8 @@ impl Cell {
     fn free_share(&self, trial: &Trial<'_>, radius: f64, time: f64) -> Option<f64> {
         let reach = self.half.length();
         let of_disk = Gap { boundary: &*trial.boundary, radius, kind: Kind::DEFAULT };
-        let gap = |x: f64, y: f64, reach: f64| of_disk.at(self.middle + DVec2::new(x, y) * self.half, reach, time);
+        let gap =
+            |x: f64, y: f64, reach: f64| of_disk.at(self.middle + DVec2::new(x, y) * self.half, reach, time);
         let middle = gap(0.0, 0.0, reach);
         if middle.abs() >= reach {
             return Some(if middle > 0.0 { 1.0 } else { 0.0 });

@@ -37,7 +37,9 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
     check_meetings(trial, touch, place)?;
     // One of the blows leaves the wall almost at rest: its motion must not stick.
     let stop = -1e-5 - velocity.dot(normal) / trial.speed;
-    for share in BLOWS.map(|share| if trial.is_struck { -0.75 * share } else { -share }).into_iter().chain([stop]) {
+    for share in
+        BLOWS.map(|share| if trial.is_struck { -0.75 * share } else { -share }).into_iter().chain([stop])
+    {
         check_blow(trial, touch, place, share)?;
         let (changed, after) = (trial.boundary.state(), View::of(trial, touch, place));
         for longer in [&[&changed[..], &[0.0]].concat(), &changed[..changed.len().saturating_sub(1)]] {

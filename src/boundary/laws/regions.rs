@@ -44,8 +44,10 @@ fn open_at_edges(trial: &Trial<'_>, Region { min, max }: Region) -> Region {
     let Domain { periodic_sides, periodic_ends, .. } = trial.domain;
     let (near, domain) = (2.0 * trial.radius, trial.domain.region());
     let open = |is_near: bool, edge: f64, end: f64| if is_near { end } else { edge };
-    let low = |periodic: bool, edge: f64, end: f64| open(!periodic && edge < end + near, edge, f64::NEG_INFINITY);
-    let high = |periodic: bool, edge: f64, end: f64| open(!periodic && edge > end - near, edge, f64::INFINITY);
+    let low =
+        |periodic: bool, edge: f64, end: f64| open(!periodic && edge < end + near, edge, f64::NEG_INFINITY);
+    let high =
+        |periodic: bool, edge: f64, end: f64| open(!periodic && edge > end - near, edge, f64::INFINITY);
     Region::new(
         DVec2::new(low(periodic_sides, min.x, domain.min.x), low(periodic_ends, min.y, domain.min.y)),
         DVec2::new(high(periodic_sides, max.x, domain.max.x), high(periodic_ends, max.y, domain.max.y)),

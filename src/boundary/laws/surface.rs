@@ -55,7 +55,12 @@ pub(super) fn check_surface(trial: &Trial<'_>, touch: Touch, place: DVec2) -> Re
 }
 
 /// Returns whether another wall has the same surface at a place, as the next brick of a corner.
-pub(super) fn is_same(trial: &Trial<'_>, Touch { wall, time, .. }: Touch, other: usize, place: DVec2) -> bool {
+pub(super) fn is_same(
+    trial: &Trial<'_>,
+    Touch { wall, time, .. }: Touch,
+    other: usize,
+    place: DVec2,
+) -> bool {
     let [one, two] = [wall, other].map(|wall| trial.boundary.surface(wall, place, time));
     let speeds = one.velocity.length() + trial.speed;
     one.normal.distance(two.normal) <= SAME && one.velocity.distance(two.velocity) <= SAME * speeds
@@ -86,8 +91,8 @@ impl Around<'_, '_> {
         let far = trial.extent() + velocity.length() * time;
         let late = 0.5 * scale * (time + trial.origin);
         let along = |direction: DVec2| move |step: f64| self.gap(step * direction, 0.0);
-        let is_gradient = has_slope(1.0, step, far, along(normal))
-            && has_slope(0.0, step, far, along(normal.perp()));
+        let is_gradient =
+            has_slope(1.0, step, far, along(normal)) && has_slope(0.0, step, far, along(normal.perp()));
         require!(PART, "normal", is_gradient;
             "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}, is not the gradient of the gap");
         let speed = velocity.dot(normal);
@@ -141,12 +146,13 @@ impl Around<'_, '_> {
             (beside - size * other.normal, other.velocity.dot(normal))
         });
         let slack = SAME * (turning.abs() + (trial.speed + here.1.abs()) / size);
-        let turns = [(low, high), (low, here), (here, high)].into_iter().any(|((from, before), (to, after))| {
-            // On a small roller, the point of the touch moves by less than the disk.
-            let along = (to - from).dot(normal.perp());
-            along < TIP * step
-                || ((before - after) / along - turning).abs() <= slack * (step / along).max(1.0)
-        });
+        let turns =
+            [(low, high), (low, here), (here, high)].into_iter().any(|((from, before), (to, after))| {
+                // On a small roller, the point of the touch moves by less than the disk.
+                let along = (to - from).dot(normal.perp());
+                along < TIP * step
+                    || ((before - after) / along - turning).abs() <= slack * (step / along).max(1.0)
+            });
         require!(PART, "angular velocity", turns;
             "wall {wall} has the angular velocity {turning:?}, but its velocities around {place:?}, {time:?}, turn \
              it otherwise");

@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::{Part, Travel, corners, polygon};
-use crate::{Disk, Kind};
 use crate::boundary::WallError;
 use crate::boundary::brick::Brick;
 use crate::boundary::conduct::Conduct;
 use crate::quantity::accept;
+use crate::{Disk, Kind};
 
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.

@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::{Along, Part, Travel, Turning};
-use crate::boundary::{Region, WallError};
+use crate::ParameterError;
 use crate::boundary::brick::Brick;
 use crate::boundary::vector::{direction, finite_point, unit};
+use crate::boundary::{Region, WallError};
 use crate::quantity::{accept, finite};
-use crate::ParameterError;
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 
 /// Position and motion.
@@ -227,9 +227,7 @@ impl Part {
             let Region { min, max } = self.travel.bounds(tip);
             min.cmplt(room.max).all() && max.cmpgt(room.min).all()
         };
-        let holds = |brick: &Brick| {
-            brick.is_across(*direction) || brick.is_point() && !is_reached(brick)
-        };
+        let holds = |brick: &Brick| brick.is_across(*direction) || brick.is_point() && !is_reached(brick);
         !self.all_bricks().all(holds)
     }
 

@@ -87,8 +87,9 @@ impl Parts {
     /// therefore examined only if its left and lower neighbors do not decide.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
-        let has_brick =
-            |cell: usize| self.index.within(cell).any(|entry| self.bricks[entry.wall as usize].part == number);
+        let has_brick = |cell: usize| {
+            self.index.within(cell).any(|entry| self.bricks[entry.wall as usize].part == number)
+        };
         let is_behind = |cell: usize| self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some();
         // The results so far for cells without a brick of the part: true if the cell is behind the part.
         let mut known: Vec<Option<bool>> = vec![None; self.index.len()];

@@ -2,7 +2,9 @@
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallView};
+use crate::boundary::{
+    Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallView,
+};
 use crate::initial::cut;
 use crate::roots::first_descent;
 use crate::{Flight, ParameterError};

@@ -129,7 +129,8 @@ impl Stroke {
         let Piece { start, displacement, velocity, .. } = self.pieces[0];
         let elapsed = (until - start).max(0.0);
         // The pull is largest at the lower stop, and smallest at the upper one, if it changes at all.
-        let [up, down] = [self.piston.lowest, self.piston.highest].map(|stop| self.piston.acceleration_at(stop));
+        let [up, down] =
+            [self.piston.lowest, self.piston.highest].map(|stop| self.piston.acceleration_at(stop));
         let way = |speed: f64, pull: f64| (speed + 0.5 * pull * elapsed) * elapsed;
         let low = displacement + way(velocity.min(0.0), down.min(0.0));
         let high = displacement + way(velocity.max(0.0), up.max(0.0));

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, VesselError,
+    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallError,
 };
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
@@ -23,7 +23,7 @@ pub struct Drum {
 impl Drum {
     /// # Errors
     /// If the radius is not finite and positive.
-    pub fn new(radius: f64) -> Result<Self, VesselError> {
+    pub fn new(radius: f64) -> Result<Self, WallError> {
         let wall = Brick::circle(DVec2::ZERO, radius)?;
         Ok(Self { wall, radius, angular_velocity: 0.0, rule: None })
     }
