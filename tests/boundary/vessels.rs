@@ -458,7 +458,7 @@ fn a_polygon_may_end_where_it_begins() {
 fn an_unknown_part_is_answered_with_those_there_are() {
     let mut vessel = room().with_part("gate", triangle()).unwrap().with_part("bowl", mixed()).unwrap();
     let said = vessel.remove_part("gaet").unwrap_err().to_string();
-    assert_eq!(said, "the vessel has no part \"gaet\"; its parts are \"gate\", \"bowl\"");
+    assert_eq!(said, "the container has no part \"gaet\"; its parts are \"gate\", \"bowl\"");
     let mut many = room();
     for number in 0..9 {
         many.add_part(format!("part {number}"), triangle()).unwrap();
@@ -489,7 +489,9 @@ fn a_part_turns_and_travels() {
 
     // The equation of the documentation, also long after the start: the phases keep their digits.
     for time in [0.0, 1.3, 1e9] {
-        let line = lines(&both, time).remove(0);
+        let mut both = both.clone();
+        both.set_time_origin(time);
+        let line = lines(&both, 0.0).remove(0);
         let shift = sine(0.3).state(time % sine(0.3).period().unwrap()).displacement;
         let turn = DVec2::from_angle(0.7 * (time % (std::f64::consts::TAU / 0.7)));
         let end = about + shift * up + turn.rotate(DVec2::new(1.5, 0.0));

@@ -143,7 +143,7 @@ pub(super) const HEADINGS: &str = "number,time,disk,partner,wall,x,y,closing_spe
 pub(super) fn row(number: u64, it: &Collision, boundary: &impl Boundary) -> String {
     let [id, partner] = it.ids;
     let (partner, wall) = match it.partner {
-        Partner::Wall(wall) => (String::new().into(), boundary.wall_name(wall).to_string()),
+        Partner::Wall(wall) => (String::new().into(), boundary.wall(wall, 0.0).to_string()),
         Partner::Disk(_) => (Scalar::from(partner), String::new()),
     };
     let (contact, impulse) = (&it.contact, &it.impulse);
