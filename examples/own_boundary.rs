@@ -5,19 +5,20 @@
 //! ```
 //!
 //! It takes less than a second. You learn which questions a boundary answers (where it is, when a disk
-//! touches it, how its surface moves), and that you can build it from the bricks of the library's vessels.
+//! touches it, how its surface moves), and that you can build it from the bricks of the library's parts.
 
 use granular_edmd::Flight;
 use granular_edmd::boundary::{
-    Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch, laws,
+    Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch, WallView, laws,
 };
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
-/// A round drum about the origin. Its right half is thermal wall 0, its left half thermal wall 1.
-#[derive(Clone)]
+
 /// The names of both walls.
 const HALVES: [&str; 2] = ["hot half", "cold half"];
 
+/// A round drum about the origin. Its right half is thermal wall 0, its left half thermal wall 1.
+#[derive(Clone)]
 struct Drum {
     radius: f64,
     rim: Brick,

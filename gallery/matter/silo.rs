@@ -161,7 +161,7 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let shot = run.disks();
     run.run_until(SETTLE + begin, &mut progress)?;
     let times = SampleTimes::every(time / INTERVALS)?.starting_at(run.time())?;
-    let mut flow = Arrivals::at(run.boundary().walls_of("exit").into_iter().flatten(), times);
+    let mut flow = Arrivals::at(["exit"], times);
     run.run_until(SETTLE + begin + time, &mut (&mut flow, &mut progress))?;
     gallery::output::warn(&run.warnings());
     Ok(Flow { outlet, rate: flow.rate()?, shot })

@@ -22,6 +22,7 @@ mod noticed;
 mod oracle;
 mod order;
 mod parting;
+mod partition;
 mod periodic;
 mod pistons;
 mod population;
