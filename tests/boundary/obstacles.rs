@@ -35,7 +35,7 @@ fn obstacles_keep_the_contract() {
 /// A gas between pegs keeps its energy, and no disk comes into a peg, also through periodic sides and ends.
 #[test]
 fn a_gas_flows_around_obstacles() {
-    let board = || Obstacles::new(Container::periodic(12.0, 12.0).unwrap(), pegs());
+    let board = || Container::periodic(12.0, 12.0).unwrap().with_pegs(pegs()).unwrap();
     let disks = initial::scattered(&board(), 40, 0.4, 12.0, 1).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
     let energy = |disks: &[Disk]| disks.iter().map(Disk::translational_energy).sum::<f64>();

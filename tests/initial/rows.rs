@@ -113,7 +113,7 @@ fn disks_stand_and_are_packed_where_their_kind_may_be() {
 #[test]
 fn a_packing_names_a_sink_among_the_disks() {
     let exit = Part::polyline([(0.0, 3.0), (10.0, 3.0)].map(DVec2::from)).unwrap().absorbing_centers();
-    let silo = Vessel::new(Container::closed(10.0, 20.0).unwrap()).with("exit", exit).unwrap();
+    let silo = Container::closed(10.0, 20.0).unwrap().with_part("exit", exit).unwrap();
     let refused = initial::packed_mix(&silo, disks(vec![0.5; 100]), 20.0, 1).unwrap_err();
     assert!(refused.to_string().contains("sink \"exit\""), "{refused}");
 }

@@ -79,7 +79,6 @@ fn a_sheared_gas_drags_its_walls_as_it_is_sheared() -> Outcome {
     let container = container
         .with_temperature(Wall::Floor, Thermal::new(1.0)?)?
         .with_temperature(Wall::Lid, Thermal::new(1.0)?)?;
-    let [floor, lid] = [Wall::Floor, Wall::Lid].map(|wall| container.index(wall).unwrap());
     let disks = initial::scattered(&container, 120, 0.5, 15.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
     let mut run = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.3)?, container)

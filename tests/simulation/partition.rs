@@ -29,7 +29,7 @@ fn peg() -> Outcome<Container> {
 }
 
 fn gas<B: Boundary + Clone>(walls: &B, count: usize) -> Outcome<Vec<Disk>> {
-    let disks = initial::placed_at_random(walls, initial::homogeneous(vec![0.4; count], 1.0)?, 8.0, 1)?;
+    let disks = initial::scattered(walls, count, 0.4, 8.0, 1)?;
     Ok(initial::with_maxwellian_velocities(disks, 1.0, 2)?)
 }
 

@@ -57,7 +57,7 @@ fn energy_is_kept_over_a_million_blows() -> Outcome {
     let mut run = Simulation::builder(Elastic, container).disks([disk]).gravity(0.1).build()?;
     let before = energy(&run.snapshot(), &piston, height);
     let mut counts = CollisionCounts::default();
-    while counts.collisions_with_wall(LID) < 1_000_000 {
+    while counts.collisions_with_wall("lid") < 1_000_000 {
         run.run(&Limits::collisions(1_000_000), &mut counts)?;
     }
     let blows = counts.collisions_with_wall("lid");

@@ -65,7 +65,7 @@ const GRAINS: usize = 60;
 fn chute(angle: f64) -> Outcome<Run> {
     let bump = |k: u32| Disk::new(DVec2::new(1.5 * f64::from(k), 0.0), 0.5);
     let bumps = (0..12).map(bump).collect::<Result<Vec<_>, _>>()?;
-    let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps);
+    let ground = Container::open(WIDTH)?.with_periodic_sides()?.with_pegs(bumps)?;
     let disks = initial::scattered(&ground, GRAINS, 0.5, 8.0, 3)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.6, 0.0, 0.5)?, 0.05)?;
     Ok(Simulation::builder(rule, ground)
