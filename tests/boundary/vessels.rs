@@ -420,6 +420,9 @@ fn gates_open_and_shut_between_runs() {
     let mut other = Simulation::resume(&checkpoint, Elastic, open).build().unwrap();
     assert!(Simulation::resume(&checkpoint, Elastic, shut.clone()).build().is_err(), "the gate is open");
 
+    while run.disks().iter().all(|disk| (disk.position().y - 6.0).abs() > 0.45) {
+        run.run_until(run.time() + 0.125, &mut ()).unwrap();
+    }
     let before = run.disks();
     let error = run.set_boundary(shut).unwrap_err().to_string();
     assert!(error.contains("gate"), "{error}");

@@ -20,6 +20,8 @@ pub(crate) struct Altered {
     /// The origin, and the domain.
     domain: fn(f64, Domain) -> Domain,
     interior: fn(Domain) -> Domain,
+    /// The origin, and the number of walls.
+    walls: fn(f64, usize) -> usize,
     may_touch: fn(&dyn Boundary, &Region, f64) -> bool,
     touch: Box<dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>>,
     /// The surface, the position of the disk, and the time.
@@ -45,6 +47,7 @@ impl Altered {
             origin: |origin| origin,
             domain: |_, domain| domain,
             interior: |domain| domain,
+            walls: |_, count| count,
             may_touch: |honest, region, radius| honest.may_touch(region, radius),
             touch: Box::new(|honest, flight, until| honest.first_touch(flight, until)),
             surface: |_, _, _| (),
@@ -130,7 +133,7 @@ impl Boundary for Altered {
     }
 
     fn wall_count(&self) -> usize {
-        self.honest.wall_count()
+        (self.walls)(self.since, self.honest.wall_count())
     }
 
     fn set_time_origin(&mut self, origin: f64) {
@@ -499,6 +502,17 @@ fn overlaps_and_areas() -> Vec<Fault<Altered>> {
                 ..shaken()
             },
         ),
+        Fault(
+            Informed,
+            "the right edge of the domain is not a number",
+            Altered { domain: |_, domain| Domain::new(domain.left, f64::NAN, 0.0, domain.top), ..shaken() },
+        ),
+        Fault(
+            Blind,
+            "a wall is added at later origins",
+            Altered { walls: |since, count| if since > 0.0 { count + 1 } else { count }, ..shaken() },
+        ),
+        Fault(Blind, "the whole box is full", shaken().overlap(|_, _| Some(Overlap::new(0, 1.0)))),
         Fault(Blind, "the origin is forgotten", Altered { origin: |_| 0.0, ..shaken() }),
         Fault(
             Informed,
@@ -596,6 +610,16 @@ fn reactions() -> Vec<Fault<Altered>> {
         Fault(Honest, "torus", torus()),
         Fault(Honest, "sprung", sprung()),
     ]
+}
+
+/// A violation names the law, the numbers and the flight that show it.
+#[test]
+fn violations_name_their_numbers() {
+    let violation =
+        laws::check(&mut shaken().renamed(|wall| wall + 4), 0.5, 1.0, 1).expect_err("a violation");
+    let text = violation.to_string();
+    assert!(text.starts_with("boundary, law \"touched wall\": wall "), "{text}");
+    assert!(text.contains("but there are 4, on Flight"), "{text}");
 }
 
 #[test]
