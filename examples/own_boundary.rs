@@ -5,15 +5,17 @@
 //! ```
 //!
 //! It takes less than a second. You learn which questions a boundary answers (where it is, when a disk
-//! touches it, how its surface moves), and that you can build it from the bricks of the library's vessels.
+//! touches it, how its surface moves), and that you can build it from the bricks of the library's parts.
 
 use granular_edmd::Flight;
 use granular_edmd::boundary::{
-    Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch, laws,
+    Brick, Domain, FirstTouch, Overlap, Probe, Response, Surface, Thermal, Touch, WallView, laws,
 };
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
-use std::borrow::Cow;
+
+/// The names of both walls.
+const HALVES: [&str; 2] = ["hot half", "cold half"];
 
 /// A round drum about the origin. Its right half is thermal wall 0, its left half thermal wall 1.
 #[derive(Clone)]
@@ -32,8 +34,8 @@ impl Boundary for Drum {
         2
     }
 
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        if wall == 0 { "hot half".into() } else { "cold half".into() }
+    fn wall(&self, wall: usize, _time: f64) -> WallView<'_> {
+        WallView::new(HALVES[wall])
     }
 
     // The drum does not move, so it needs no clock.
@@ -74,9 +76,9 @@ fn main() -> anyhow::Result<()> {
     simulation.run_until(100.0, &mut ())?;
     let mut heat = EnergyChange::default();
     simulation.run_until(600.0, &mut heat)?;
-    for wall in [0, 1] {
-        let flow = heat.wall(wall).mean() * heat.wall(wall).count() as f64 / 500.0;
-        println!("{}: energy {flow:+.2} per unit of time", simulation.boundary().wall_name(wall));
+    for half in HALVES {
+        let flow = heat.wall(half).mean() * heat.wall(half).count() as f64 / 500.0;
+        println!("{half}: energy {flow:+.2} per unit of time");
     }
     Ok(())
 }

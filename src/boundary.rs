@@ -4,28 +4,28 @@
 //! floor that is fixed, moving or thermal, and a lid or an open top. Each wall can have its own rule. Walls
 //! can slide tangentially, and the box can be shaken as a whole.
 //!
-//! A [`Vessel`] can have any shape. It is a container with named [`Part`]s in it, and each part consists of
-//! [`Brick`]s.
+//! Named [`Part`]s in it can have any shape: each part consists of [`Brick`]s.
 //!
 //! | shape | how |
 //! |---|---|
 //! | hourglass, funnel, any polygon with the disks inside | [`Part::polygon`] |
 //! | ramp, hopper side, any polygon with the disks outside | [`Part::block`] |
 //! | gate, baffle, any thin wall | [`Part::polyline`] |
-//! | drum; round obstacle | [`Part::drum`]; [`Part::peg`] |
+//! | drum; round obstacle | [`Part::drum`]; [`Part::peg`], [`Container::with_pegs`] |
 //! | segments, arcs, circles and points in any mix | [`Part::new`] of [`Brick`]s |
 //! | conveyor | [`Part::with_surface_speed`] |
 //! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
 //! | part that turns: a drum, a stirrer | [`Part::with_rotation`], which combines with a motion |
+//! | wall or part that the disks push | [`Container::with_piston`], [`Part::with_piston`] |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
 //! Parts are added, replaced and removed by name, even between runs; this is how a gate opens. With the
-//! feature `serde`, bricks, parts, vessels and containers can be written to files, and reading them repeats
-//! their checks. A rule or a custom motion cannot be written.
+//! feature `serde`, bricks, parts and containers can be written to files, and reading them repeats their
+//! checks. A rule or a custom motion cannot be written.
 //!
-//! [`Obstacles`] puts fixed round obstacles into any boundary. A custom geometry implements [`Boundary`];
-//! [`roots`](crate::roots) provides the numerical methods that it needs, and [`laws`] checks it.
+//! A custom geometry implements [`Boundary`]; [`roots`](crate::roots) provides the numerical methods that it
+//! needs, and [`laws`] checks it.
 
 mod area;
 mod brick;
@@ -35,8 +35,8 @@ mod domain;
 mod error;
 mod forward;
 pub mod laws;
-mod obstacles;
 mod part;
+mod parts;
 mod plane;
 mod probe;
 mod reaction;
@@ -44,14 +44,14 @@ mod squares;
 mod surface;
 mod touch;
 mod vector;
-mod vessel;
+mod view;
 mod wall;
 
 pub use brick::Brick;
+#[doc(alias("vessel", "silo", "hopper", "hourglass", "obstacles"))]
 pub use container::Container;
 pub use domain::{Domain, Region};
-pub use error::VesselError;
-pub use obstacles::Obstacles;
+pub use error::WallError;
 pub use part::Part;
 pub use probe::{Overlap, Probe};
 pub use reaction::{Impact, Reaction};
@@ -61,19 +61,15 @@ pub use surface::Thermal;
 pub use surface::{Response, Surface};
 pub use touch::Touch;
 pub(crate) use vector::direction;
-#[doc(alias("silo", "hopper", "hourglass"))]
-pub use vessel::Vessel;
-pub use wall::{Wall, WallError};
+pub use view::WallView;
+pub use wall::Wall;
 
 pub use crate::wall::FirstTouch;
-
-use std::borrow::Cow;
 
 use glam::DVec2;
 
 use crate::quantity::accept;
 use crate::{Fingerprint, Flight, ParameterError};
-use area::Curves;
 
 /// The walls around the disks.
 ///
@@ -88,9 +84,8 @@ use area::Curves;
 /// when                          who asks     asks                                for
 /// ----------------------------  -----------  ----------------------------------  -------------------------
 /// a run is built, or its walls  the engine   set_time_origin, domain, interior,  cells of neighbors; disks
-/// are set                                    wall_count, overlap, tight_fit,     that do not fit are
-///                                            wall_point                          refused; a wall that has
-///                                                                                jumped is a warning
+/// are set                                    wall_count, overlap, tight_fit      that do not fit are
+///                                                                                refused
 /// cells are made                the engine   may_touch of each cell              cells away from walls
 /// a disk's flight is predicted  the engine   first_touch (in cells at walls)     the end of the flight
 /// the touch is due              the engine   overlap, surface                    the contact, for a rule;
@@ -102,10 +97,10 @@ use area::Curves;
 ///                                                                                digits; disks in walls
 /// a checkpoint, a resumption    checkpoints  fingerprint, state; set_state       the same walls, where they
 ///                                                                                were
-/// a sample, a picture           a Snapshot   wall_point, wall_motion, surface,   observables, files and
-///                                            area, wall_lines, edges             pictures
+/// a sample, a picture           a Snapshot   wall, surface, area                 observables, files and
+///                                                                                pictures
 /// an initial state              initial      interior, overlap                   places for disks
-/// an error, a warning           the engine   wall_name                           its text
+/// an error                      the engine   wall                                its text
 /// ```
 ///
 /// # Contract
@@ -141,20 +136,17 @@ use area::Curves;
 /// 7. Another origin changes only the numerical values of times: the same flight touches the same wall at the
 ///    same absolute time.
 /// 8. The same calls return the same results, bit for bit, until the origin is set or a wall reacts.
-/// 9. [`react`](Self::react) applies the impulse and the couple to the wall that was hit. The velocity of the
-///    wall changes by the impulse along the normal divided by the [`mass`](Surface::mass), and by the impulse
-///    along the surface divided by the [`tangential_mass`](Surface::tangential_mass). A couple C on a wall of
-///    radius R with a tangential mass counts as the impulse C/R along the surface. Elsewhere, walls answer as
-///    bodies do: the speed that a blow here gives to a surface there, along some direction, is the speed that
-///    the same blow there, along this direction, gives here along its own. A blow along a surface without
-///    friction is exempt; without a tangential mass, such a surface may also move along itself. No wall
-///    jumps. The result is [`Reaction::Moved`] if the velocity changes, which needs a finite mass.
+/// 9. [`react`](Self::react) applies the impulse to the wall that was hit. Its velocity changes along the
+///    normal by the impulse along the normal divided by the [`mass`](Surface::mass), and along the surface
+///    not at all: walls are guided. Only a surface without friction may also move along itself, as on a guide
+///    at a slant. No wall jumps. The result is [`Reaction::Moved`] if the velocity changes, which needs a
+///    finite mass.
 /// 10. [`may_meet`](Self::may_meet) is true for each region in which a disk touches this wall, or another
-///     wall that moves with it as a part of one body, at a time up to `until`.
+///     wall that moves with it, at a time up to `until`.
 /// 11. [`state`](Self::state) and [`set_state`](Self::set_state) restore walls that have reacted: all results
 ///     are as before, and `state` returns the state that was set. A state of another length is refused.
 /// 12. [`area`](Self::area), if it is known, is the area of the positions at which a disk of the default kind
-///     has no `overlap`, and [`wall_point`](Self::wall_point) stays on its wall.
+///     has no `overlap`, and the [`point`](WallView::point) of a wall stays on it.
 /// 13. Boundaries with equal [fingerprints](Self::fingerprint) return the same results in the same state, and
 ///     a boundary keeps its fingerprint, whatever its present state and its origin.
 ///
@@ -170,7 +162,7 @@ use area::Curves;
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests promises 1 to 12, except that points lie on walls, and
+/// [`laws::check`] tests promises 1 to 12, except for the points of walls, and
 /// [`laws::check_fingerprints`] tests 13; `docs/validation.md` says which planted faults they find. The
 /// engine notices many faults, too.
 ///
@@ -183,21 +175,19 @@ use area::Curves;
 ///
 /// After each impulse on a wall with a mass, its velocity must be the one that the impulse gives, to 1e-6 of
 /// the speeds, or the lower, opposite one of a wall that a stop holds, and it must still touch the disk. A
-/// run does not notice what an impulse does to other walls of a body, nor that a wall that keeps a
+/// run does not notice what an impulse does to other walls, nor that a wall that keeps a
 /// [`state`](Self::state) never leaves its rest, or stops or turns around without a stop.
 ///
 /// ```
-/// use std::borrow::Cow;
 /// use granular_edmd::Flight;
-/// use granular_edmd::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch};
-/// use granular_edmd::boundary::laws;
+/// use granular_edmd::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region};
+/// use granular_edmd::boundary::{Surface, Touch, WallView, laws};
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::roots::first_descent_of_quartic;
 ///
 /// /// A round dish about the origin.
 /// struct Dish {
 ///     radius: f64,
-///     name: String,
 /// }
 ///
 /// impl Boundary for Dish {
@@ -207,8 +197,8 @@ use area::Curves;
 ///     fn wall_count(&self) -> usize {
 ///         1
 ///     }
-///     fn wall_name(&self, _wall: usize) -> Cow<'_, str> {
-///         Cow::Borrowed(&self.name)
+///     fn wall(&self, _wall: usize, _time: f64) -> WallView<'_> {
+///         WallView::new("rim")
 ///     }
 ///     fn set_time_origin(&mut self, _origin: f64) {}
 ///     fn may_touch(&self, region: &Region, radius: f64) -> bool {
@@ -238,7 +228,7 @@ use area::Curves;
 ///     }
 /// }
 ///
-/// let mut dish = Dish { radius: 6.0, name: "rim".to_owned() };
+/// let mut dish = Dish { radius: 6.0 };
 /// assert_eq!(laws::check(&mut dish, 0.5, 1.0, 42), Ok(()));
 /// ```
 #[diagnostic::on_unimplemented(
@@ -260,44 +250,15 @@ pub trait Boundary {
     /// Returns the number of walls; their indices are less than this number.
     fn wall_count(&self) -> usize;
 
-    /// Returns the name of a wall, for messages and for measurements.
+    /// Returns the view of a wall at `time`, for messages, measurements, files and pictures.
     ///
-    /// If other walls are set, a measurement at a wall notices by the name alone that its index now means
-    /// another wall. The default name is the index and shows no such change, so walls whose indices may
-    /// change need names that say what they are, such as "floor". For an index without a wall, the name may
-    /// be a number.
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        Cow::Owned(format!("wall {wall}"))
-    }
-
-    /// Returns a point of a wall, at its position at `time`, or `None` if the boundary knows no such point.
-    /// The point is no hinge: it moves whenever the wall moves so that the free [`area`](Self::area) changes,
-    /// and if its motion has a period, the area has it, too.
-    ///
-    /// If other walls are set between two runs, this point shows whether a wall of the same name has jumped
-    /// to a place where no wall was. The default is `None`.
-    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        let _ = (wall, time);
-        None
-    }
-
-    /// Returns the rectangle of the domain with its edges where the walls are at `time`, for pictures.
-    ///
-    /// The edges of the domain leave room for walls that move. The default is the domain.
-    fn edges(&self, time: f64) -> Domain {
+    /// Observers find walls by their [`name`](WallView::name). The default name is the index, and nothing
+    /// else is known: a boundary of several walls gives names, such as "floor", and a boundary that knows its
+    /// free [`area`](Self::area) the points of walls that move. For an index without a wall, the name may be a
+    /// number.
+    fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
         let _ = time;
-        self.domain()
-    }
-
-    /// Returns, at `time`, the displacement of a wall from its rest position and the phase of its motion: the
-    /// time minus whole periods, as [`WallMotion`](crate::wall::WallMotion) expects it.
-    ///
-    /// The result is `None` for a wall that does not move, and for a wall that moves together with a wall of
-    /// a smaller index, as the bricks of a part do. The phase of a [`Piston`](crate::wall::Piston) is 0. The
-    /// default is `None`.
-    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
-        let _ = (wall, time);
-        None
+        WallView::new(format!("wall {wall}"))
     }
 
     /// Sets the absolute time from which all times are measured.
@@ -330,14 +291,6 @@ pub trait Boundary {
     /// A wall that lets disks of the probe's kind pass does not count.
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
 
-    /// Returns the walls at `time` as polylines, for pictures.
-    ///
-    /// The edges of the domain are left out, since they are drawn anyway.
-    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
-        let _ = time;
-        Vec::new()
-    }
-
     /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, or `None` if no wall
     /// has such a hollow.
     ///
@@ -353,21 +306,14 @@ pub trait Boundary {
     ///
     /// With a radius of 0, the result is the area that matter can fill. Stresses, densities and profiles
     /// divide by this area. Where walls occupy part of the domain, these observables refuse to measure if the
-    /// area is unknown. They may reuse the area as long as the [points](Self::wall_point) of all walls stay
+    /// area is unknown. They may reuse the area as long as the [points](WallView::point) of all walls stay
     /// where they are. The default is `None`; so is a free area that depends on the kind of the matter.
     ///
-    /// Containers, vessels and obstacles know the area to 1e-10, even if walls overlap, unless a part with an
-    /// inside is [for some kinds only](Part::only_for). The exceptions are parts whose lines end inside the
-    /// container with disks on one side only, and obstacles that reach into them or into custom walls. There,
-    /// pieces thinner than 1/16 of the distance between the surrounding walls, or 1/256, may be missed.
+    /// Containers know the area to 1e-10, even if parts overlap, unless a part with an inside is
+    /// [for some kinds only](Part::only_for). The exceptions are parts whose lines end inside the container
+    /// with disks on one side only. There, pieces thinner than 1/16 of the distance between the surrounding
+    /// walls may be missed.
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
-        let _ = (region, radius, time);
-        None
-    }
-
-    // Only the library's own walls answer, for exact areas where obstacles reach into them.
-    #[doc(hidden)]
-    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
         let _ = (region, radius, time);
         None
     }

@@ -13,8 +13,8 @@
 //!
 //! [`Radii`] draws radii from distributions, and [`disks_from_radii`] makes disks of them.
 //! [`with_maxwellian_velocities`] sets disks in motion, and [`without_drift`] stops their center of mass. To
-//! place disks around other disks, put the other disks into the boundary as
-//! [`Obstacles`](crate::boundary::Obstacles).
+//! place disks around other disks, put the other disks into the container as
+//! [pegs](crate::boundary::Container::with_pegs).
 //!
 //! The functions place no disk in a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in

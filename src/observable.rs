@@ -105,6 +105,7 @@
 mod arrivals;
 mod by_collisions;
 mod by_kind;
+mod by_wall;
 mod center_of_mass;
 mod closures;
 mod collision_counts;
@@ -118,6 +119,7 @@ mod energy_change;
 mod energy_change_profile;
 mod fields;
 mod free_shares;
+mod free_wall;
 mod grid;
 mod height_profile;
 mod hexatic_order;
@@ -143,7 +145,6 @@ mod temperatures;
 mod temperatures_about_flow;
 mod time_correlation;
 mod velocity_distribution;
-mod wall_names;
 mod wall_stress;
 
 #[doc(alias("flow", "flux", "discharge"))]
@@ -169,6 +170,8 @@ pub use energy_change::EnergyChange;
 pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
 #[doc(alias("density", "velocity field", "coarse-graining"))]
 pub use fields::{FieldCell, Fields};
+#[doc(alias("piston"))]
+pub use free_wall::{FreeWall, FreeWallMotion};
 pub use grid::Grid;
 #[doc(alias("density profile", "volume fraction"))]
 pub use height_profile::{DenseLayer, HeightProfile};

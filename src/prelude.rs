@@ -3,7 +3,7 @@
 //!
 //! All other names are imported from their modules.
 
-pub use crate::boundary::{Boundary, Container, Part, Region, Vessel, Wall};
+pub use crate::boundary::{Boundary, Container, Part, Region, Wall};
 pub use crate::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, LeastRebound, Smooth,
 };

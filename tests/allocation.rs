@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-use granular_edmd::boundary::{Domain, Part, Vessel};
+use granular_edmd::boundary::{Container, Domain, Part};
 use granular_edmd::collision::LeastRebound;
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::prelude::*;
@@ -81,12 +81,12 @@ fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Returns a silo whose grains, of three sizes, come back above when they have left.
-fn silo() -> Result<Simulation<LeastRebound<Frictional>, Vessel>, Box<dyn std::error::Error>> {
+fn silo() -> Result<Simulation<LeastRebound<Frictional>, Container>, Box<dyn std::error::Error>> {
     let line = |from: f64, to: f64, y: f64| Part::polyline([DVec2::new(from, y), DVec2::new(to, y)]);
-    let vessel = Vessel::new(Container::open(12.0)?)
-        .with("left half", line(-1.0, 4.0, 4.0)?)?
-        .with("right half", line(8.0, 13.0, 4.0)?)?
-        .with("exit", line(-1.0, 13.0, 1.0)?.absorbing_centers())?;
+    let vessel = Container::open(12.0)?
+        .with_part("left half", line(-1.0, 4.0, 4.0)?)?
+        .with_part("right half", line(8.0, 13.0, 4.0)?)?
+        .with_part("exit", line(-1.0, 13.0, 1.0)?.absorbing_centers())?;
     let grain = |k: u32| {
         let place = DVec2::new(0.5 + f64::from(k % 12), 5.0 + f64::from(k / 12));
         let moving = DVec2::new(0.1 * libm::sin(f64::from(k)), 0.0);

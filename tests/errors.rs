@@ -5,7 +5,7 @@ use std::error::Error;
 use std::io;
 use std::path::Path;
 
-use granular_edmd::boundary::{Container, VesselError, Wall};
+use granular_edmd::boundary::{Container, Wall, WallError};
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::simulation::{BoundaryFault, Checkpoint};
@@ -85,7 +85,7 @@ fn an_error_that_repeats_its_source_is_noticed() {
 
 /// Returns a number as a message about periods shows it.
 fn rounded(number: f64) -> String {
-    let error = VesselError::TooManyPeriods { name: String::new(), periods: number, most: 64.0 };
+    let error = WallError::TooManyPeriods { name: String::new(), periods: number, most: 64.0 };
     let said = error.to_string();
     said.split(' ').nth(5).unwrap().to_owned()
 }

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use std::process::ExitCode;
 
 use benches::{Outcome, ask};
-use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
+use granular_edmd::boundary::{Boundary, Container, Part};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BoxedBoundary;
@@ -70,19 +70,19 @@ fn square() -> Outcome<Container> {
     Ok(Container::closed(area().sqrt(), area().sqrt())?)
 }
 
-fn polygon(sides: u32) -> Outcome<Vessel> {
+fn polygon(sides: u32) -> Outcome<Container> {
     let step = TAU / f64::from(sides);
     let radius = (area() / (0.5 * f64::from(sides) * step.sin())).sqrt();
     let corner = |k: u32| radius * DVec2::from_angle(step * (f64::from(k) + 0.5));
-    Ok(Vessel::around([("polygon", Part::polygon((0..sides).map(corner))?)])?)
+    Ok(Container::around([("polygon", Part::polygon((0..sides).map(corner))?)])?)
 }
 
-fn pegs(rows: u32) -> Outcome<Vessel> {
-    let mut vessel = Vessel::new(square()?);
+fn pegs(rows: u32) -> Outcome<Container> {
+    let mut vessel = square()?;
     let pitch = area().sqrt() / f64::from(rows);
     for (row, column) in (0..rows).flat_map(|row| (0..rows).map(move |column| (row, column))) {
         let place = pitch * DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
-        vessel.put(format!("peg {row} {column}"), Part::peg(place, PEG)?)?;
+        vessel.add_part(format!("peg {row} {column}"), Part::peg(place, PEG)?)?;
     }
     Ok(vessel)
 }
@@ -94,11 +94,11 @@ fn run() -> Outcome<()> {
     benches::print_circumstances();
     let mut gases = vec![
         Gas::new("box", square()?)?,
-        Gas::new("box as a vessel", Vessel::new(square()?))?,
+        Gas::new("box as a vessel", square()?)?,
         Gas::new("polygon of 4 sides", polygon(4)?)?,
         Gas::new("polygon of 40 sides", polygon(40)?)?,
         Gas::new("polygon of 400 sides", polygon(400)?)?,
-        Gas::new("circle", Vessel::around([("drum", Part::drum(DVec2::ZERO, (area() / PI).sqrt())?)])?)?,
+        Gas::new("circle", Container::around([("drum", Part::drum(DVec2::ZERO, (area() / PI).sqrt())?)])?)?,
         Gas::new("box with 4 pegs", pegs(2)?)?,
         Gas::new("box with 36 pegs", pegs(6)?)?,
         Gas::new("box with 400 pegs", pegs(20)?)?,

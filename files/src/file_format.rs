@@ -128,7 +128,7 @@ pub struct Gsd;
 /// # std::fs::create_dir_all(&folder)?;
 /// # let path = folder.join("run.pvd");
 /// let drum = Part::drum(DVec2::splat(4.0), 4.0)?.with_rotation(DVec2::splat(4.0), 1.0)?;
-/// let vessel = Vessel::around([("drum", drum)])?;
+/// let vessel = Container::around([("drum", drum)])?;
 /// let disks = initial::scattered(&vessel, 10, 0.5, 8.0, 1)?;
 /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
 ///

@@ -20,7 +20,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::Kind;
-use granular_edmd::boundary::Obstacles;
+use granular_edmd::boundary::Container;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::OfKind;
 use granular_edmd::prelude::*;
@@ -149,7 +149,7 @@ fn initial_disks(
     let height = if density > 1.0 { PACKED + 1.0 + radius } else { 1.01 + radius };
     let intruder = Disk::new(DVec2::new(0.5 * WIDTH, height), radius)?;
     let intruder = intruder.with_mass(density * diameter * diameter)?.with_kind(INTRUDER);
-    let around = Obstacles::new(container.clone(), [intruder]);
+    let around = container.clone().with_pegs([intruder])?;
     let grains = initial::disks_from_radii([0.5; GRAINS], 1.0)?;
     let mut disks = initial::packed_mix(&around, grains, PACKED, seed)?;
     disks.push(intruder);

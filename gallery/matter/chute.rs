@@ -15,7 +15,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::boundary::{Obstacles, Region};
+use granular_edmd::boundary::{Container, Region};
 use granular_edmd::observable::{FieldCell, Grid};
 use granular_edmd::prelude::*;
 
@@ -77,7 +77,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn flow(arguments: &Arguments, angle: f64) -> Result<Flow, Box<dyn Error>> {
     let bump = |k: u32| Disk::new(DVec2::new(PITCH * (0.5 + f64::from(k)), 0.0), 0.5);
     let bumps = (0..BUMPS).map(bump).collect::<Result<Vec<_>, _>>()?;
-    let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps.iter().copied());
+    let ground = Container::open(WIDTH)?.with_periodic_sides()?.with_pegs(bumps.iter().copied())?;
     let disks = initial::scattered(&ground, GRAINS, 0.5, 30.0, 1)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.7, 0.0, 0.5)?, 0.05)?;
     let gravity = Gravity::tilted(1.0, angle.to_radians())?;

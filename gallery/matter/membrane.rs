@@ -125,9 +125,9 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
     let piston = Piston::new(20.0, [-10.0, 4.0])?.with_spring(STIFFNESS, SLACK)?;
     let container =
         Container::closed(WIDTH, HEIGHT)?.with_periodic_ends()?.with_piston(Wall::Left, piston)?;
-    let [left, right] = [Wall::Left, Wall::Right].map(|wall| container.index(wall).unwrap_or_default());
+    let left = container.index(Wall::Left).unwrap_or_default();
     let line = [DVec2::new(MEMBRANE, 0.0), DVec2::new(MEMBRANE, HEIGHT)];
-    let vessel = Vessel::new(container).with("membrane", Part::polyline(line)?.only_for([SOLUTE]))?;
+    let vessel = container.with_part("membrane", Part::polyline(line)?.only_for([SOLUTE]))?;
     let disks = grid(SOLUTE, solutes, 0.0).chain(grid(SOLVENT, SOLVENTS, MEMBRANE));
     let disks = initial::with_maxwellian_velocities(disks.collect::<Result<_, _>>()?, 1.0, 1)?;
     let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
@@ -149,11 +149,12 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
         (push, densities, Temperatures.measure(snapshot).translational())
     });
     let mut series = Series::new(state, SampleTimes::every(1.0)?);
-    let mut stress = WallStress::new(SampleTimes::every(4.0 * INTERVAL)?).with_wall(right, HEIGHT)?;
+    let mut stress = WallStress::new(SampleTimes::every(4.0 * INTERVAL)?).with_wall("right", HEIGHT)?;
     run.run_until(end, &mut (&mut exchange, (&mut series, &mut stress), &mut progress))?;
     gallery::output::warn(&run.warnings());
 
-    let (solution, solvent) = (series.mean(|state| state.0)?, stress.pressure(right).ok_or("a right wall")?);
+    let (solution, solvent) =
+        (series.mean(|state| state.0)?, stress.pressure("right").ok_or("a right wall")?);
     let mean = |number: usize| series.mean(|state| state.1[number]).map(|mean| mean.mean());
     let temperature = series.mean(|state| state.2)?.mean();
     let error = solution.standard_error().hypot(solvent.standard_error());

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use granular_edmd::boundary::Obstacles;
+use granular_edmd::boundary::{Container, WallError};
 use granular_edmd::collision::TangentialResponse::{Reversing, Unchanged};
 use granular_edmd::collision::{ElasticBelow, SpeedDependent};
 use granular_edmd::prelude::*;
@@ -178,7 +178,7 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
         heat: (samples > 0.0).then(|| heat / samples),
         creep: way.sum::<f64>() / (GRAINS as f64 * (time - since)),
         disks,
-        glued: simulation.boundary().obstacles().to_vec(),
+        glued: glued(arguments.flat)?,
     })
 }
 
@@ -190,10 +190,14 @@ fn reason(error: &RunError) -> String {
 const GLUED: f64 = 1.2;
 
 /// Returns the floor, flat or with a row of grains glued to it.
-fn floor(flat: bool) -> Result<Obstacles<Container>, ParameterError> {
+fn floor(flat: bool) -> Result<Container, WallError> {
+    Container::open(WIDTH)?.with_pegs(glued(flat)?)
+}
+
+fn glued(flat: bool) -> Result<Vec<Disk>, ParameterError> {
     let count = if flat { 0 } else { (WIDTH / GLUED) as usize };
     let grain = |k| Disk::new(DVec2::new((k as f64 + 0.5) * GLUED, 0.5), 0.5);
-    Ok(Obstacles::new(Container::open(WIDTH)?, (0..count).map(grain).collect::<Result<Vec<_>, _>>()?))
+    (0..count).map(grain).collect()
 }
 
 /// Returns a column of grains above the middle of the floor.

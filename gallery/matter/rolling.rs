@@ -16,7 +16,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::boundary::Obstacles;
+use granular_edmd::boundary::Container;
 use granular_edmd::collision::RollingFriction;
 use granular_edmd::observable::{Crossings, measured_by};
 use granular_edmd::prelude::*;
@@ -106,7 +106,7 @@ fn rolling_speed(coefficient: f64, time: f64) -> f64 {
 
 /// Returns the number of grains that flow down a slope per unit of time, and the grains at the end.
 fn flow(arguments: &Arguments, coefficient: f64) -> Result<(Estimate, Vec<Disk>), Box<dyn Error>> {
-    let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps()?);
+    let ground = Container::open(WIDTH)?.with_periodic_sides()?.with_pegs(bumps()?)?;
     let grains = initial::disks_from_radii(initial::Radii::uniform(0.4, 0.5)?.draw(GRAINS, 1), 1.0)?;
     let disks = initial::scattered_mix(&ground, grains, 24.0, 1)?;
     let gravity = Gravity::tilted(1.0, SLOPE.to_radians())?;

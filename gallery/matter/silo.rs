@@ -124,16 +124,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Returns a silo whose outlet is shut by a gate.
-fn silo(outlet: f64) -> Result<Vessel, Box<dyn Error>> {
+fn silo(outlet: f64) -> Result<Container, Box<dyn Error>> {
     let (from, to) = (0.5 * (WIDTH - outlet), 0.5 * (WIDTH + outlet));
     let floor = |from: f64, to: f64| Part::polyline([DVec2::new(from, FLOOR), DVec2::new(to, FLOOR)]);
     let exit = Part::polyline([DVec2::new(-1.0, EXIT), DVec2::new(WIDTH + 1.0, EXIT)])?;
     let gate = [(0.0, 0.0), (WIDTH, 0.0), (WIDTH, FLOOR), (0.0, FLOOR)].map(DVec2::from);
-    Ok(Vessel::new(Container::open(WIDTH)?)
-        .with("left half of the silo's floor", floor(-1.0, from)?)?
-        .with("right half of the silo's floor", floor(to, WIDTH + 1.0)?)?
-        .with("exit", exit.absorbing_centers())?
-        .with("gate", Part::block(gate)?)?)
+    Ok(Container::open(WIDTH)?
+        .with_part("left half of the silo's floor", floor(-1.0, from)?)?
+        .with_part("right half of the silo's floor", floor(to, WIDTH + 1.0)?)?
+        .with_part("exit", exit.absorbing_centers())?
+        .with_part("gate", Part::block(gate)?)?)
 }
 
 /// Measures the flow through an outlet.
@@ -152,7 +152,7 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let layer = |disk: Disk| disk.with_kind(Kind::new(((disk.position().y - FLOOR) / LAYER) as u16));
     let settled = run.remove(|_, _| true)?;
     run.insert(settled.into_iter().map(layer))?;
-    vessel.remove("gate")?;
+    vessel.remove_part("gate")?;
     run.set_boundary(vessel)?;
     let places = [DVec2::new(0.6, TOP[0]), DVec2::new(WIDTH - 0.6, TOP[1])];
     let refill = Inlet::refill(places, DVec2::new(0.0, -FALL), SampleTimes::every(REFILL)?, arguments.seed)?;
@@ -161,7 +161,7 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let shot = run.disks();
     run.run_until(SETTLE + begin, &mut progress)?;
     let times = SampleTimes::every(time / INTERVALS)?.starting_at(run.time())?;
-    let mut flow = Arrivals::at(run.boundary().walls("exit").into_iter().flatten(), times);
+    let mut flow = Arrivals::at(["exit"], times);
     run.run_until(SETTLE + begin + time, &mut (&mut flow, &mut progress))?;
     gallery::output::warn(&run.warnings());
     Ok(Flow { outlet, rate: flow.rate()?, shot })

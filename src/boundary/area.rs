@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::{Overlap, Probe, Region};
+use super::Region;
 
 /// Error of the area of a piece, relative to the area of the region, below which the piece is not halved
 /// further.
@@ -17,11 +17,9 @@ const TOLERANCE: f64 = 1e-12;
 /// Largest number of times that a piece is halved. A jump at an unknown height is then lost in rounding.
 const MOST_HALVINGS: u32 = 44;
 
-/// Numbers of parts in which a line between two crossings is examined if some curves may be unknown:
-/// everywhere, and where a wall is near. Narrower features are lost, at most 1e-7 of the area that they
-/// belong to.
+/// Number of parts in which a line between two crossings is examined if some curves may be unknown. Narrower
+/// features are lost.
 const LOOKS: u32 = 16;
-const CLOSE_LOOKS: u32 = 16 * LOOKS;
 
 /// Distance of the first and the last examined point from the ends of their interval, relative to its length.
 const NEAR_END: f64 = 1e-8;
@@ -116,22 +114,13 @@ pub(super) fn meet(one: &Region, other: &Region) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
-/// Curves on which the center of a disk touches a wall: those of a boundary that knows all of them. No custom
-/// boundary can make them.
-#[derive(Debug)]
-pub struct Curves(pub(super) Vec<Curve>);
-
-/// A lower bound of the distance from a position to the nearest unknown curve. Distances above the second
-/// argument need not be known.
-pub(super) type Gap<'a> = &'a dyn Fn(DVec2, f64) -> f64;
-
 /// A region, with a test of whether a center in it is free.
 pub(super) struct Field<'a> {
     pub(super) region: Region,
     /// The curves that may separate free positions from occupied ones.
     pub(super) curves: Vec<Curve>,
-    /// `None` if all curves are known.
-    pub(super) unknown: Option<Gap<'a>>,
+    /// True if no other curves separate them.
+    pub(super) are_known: bool,
     pub(super) is_free: &'a dyn Fn(DVec2) -> bool,
 }
 
@@ -144,7 +133,7 @@ impl Field<'_> {
         }
         let region = self.region;
         self.curves.retain(|curve| meet(&curve.bounds(), &region));
-        if self.curves.is_empty() && self.unknown.is_none() {
+        if self.curves.is_empty() && self.are_known {
             // A region without an upper end has no middle.
             let middle = region.min + 0.5 * size.min(DVec2::splat(1e300));
             return if (self.is_free)(middle) { region.area() } else { 0.0 };
@@ -234,8 +223,7 @@ impl Field<'_> {
             return 0.0;
         }
         let is_free = |place: f64| (self.is_free)(DVec2::new(place, height));
-        let mut places = Vec::new();
-        self.look_between(low, high, height, &mut places);
+        let places = self.look_between(low, high);
         let (mut start, mut last, mut length) = (low, places[0], 0.0);
         let mut was_free = is_free(last);
         for &place in &places[1..] {
@@ -253,30 +241,17 @@ impl Field<'_> {
         length + if was_free { high - start } else { 0.0 }
     }
 
-    /// Lists places of a line between two crossings, the closer together the nearer an unknown curve is.
-    fn look_between(&self, low: f64, high: f64, height: f64, places: &mut Vec<f64>) {
-        let Some(gap) = self.unknown else { return places.push(low + 0.5 * (high - low)) };
+    /// Lists the places of a line between two crossings at which a center is examined: the middle, or several
+    /// if there may be unknown curves.
+    fn look_between(&self, low: f64, high: f64) -> Vec<f64> {
+        if self.are_known {
+            return vec![low + 0.5 * (high - low)];
+        }
+        let part = (high - low) / f64::from(LOOKS);
+        let looks = (0..LOOKS).map(|look| low + (f64::from(look) + 0.5) * part);
         // An unknown curve that crosses a known one cuts off the end of an interval, so both ends are
         // examined.
-        places.push(low + NEAR_END * (high - low));
-        let part = (high - low) / f64::from(LOOKS);
-        let narrow = 0.5 * (high - low) / f64::from(CLOSE_LOOKS);
-        let mut parts: Vec<(f64, f64)> =
-            (0..LOOKS).rev().map(|look| (low + (f64::from(look) + 0.5) * part, 0.5 * part)).collect();
-        while let Some((middle, half)) = parts.pop() {
-            if half <= narrow || gap(DVec2::new(middle, height), half) >= half {
-                places.push(middle);
-            } else {
-                parts.extend([(middle + 0.5 * half, 0.5 * half), (middle - 0.5 * half, 0.5 * half)]);
-            }
-        }
-        places.push(high - NEAR_END * (high - low));
+        let first = low + NEAR_END * (high - low);
+        std::iter::once(first).chain(looks).chain([high - NEAR_END * (high - low)]).collect()
     }
-}
-
-/// Returns the distance of a probe from the nearest position at which it would be free instead of overlapping
-/// a wall, or the other way around, up to `reach`.
-pub(super) fn gap(overlap: impl Fn(&Probe) -> Option<Overlap>, probe: &Probe, reach: f64) -> f64 {
-    let depth = overlap(&probe.with_radius(probe.radius() + reach)).map_or(0.0, |found| found.depth);
-    (reach - depth).abs()
 }

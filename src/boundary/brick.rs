@@ -1,4 +1,4 @@
-//! Bricks: the shapes of which vessels are built, and the first touch of a disk with a brick.
+//! Bricks: the shapes of which parts are built, and the first touch of a disk with a brick.
 
 mod arc;
 mod constructors;
@@ -25,7 +25,7 @@ const MARGIN: f64 = 1e-12;
 
 /// Direction from the center of a circle to the point that shows its position. The outermost points are
 /// less suitable: circles of other sizes often have one of them in common.
-pub(super) const ASLANT: DVec2 = DVec2::new(0.6, 0.8);
+const ASLANT: DVec2 = DVec2::new(0.6, 0.8);
 
 /// A piece of a wall: a segment, an arc, a circle or a point.
 ///
@@ -50,7 +50,7 @@ pub(super) const ASLANT: DVec2 = DVec2::new(0.6, 0.8);
 /// assert_eq!(floor.reversed().signed_distance(DVec2::new(1.0, 2.0)), -2.0);
 /// let peg = Brick::circle(DVec2::ZERO, 1.0)?.reversed();
 /// assert_eq!(peg.signed_distance(DVec2::new(3.0, 0.0)), 2.0);
-/// # Ok::<(), granular_edmd::boundary::VesselError>(())
+/// # Ok::<(), granular_edmd::boundary::WallError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -198,6 +198,11 @@ impl Brick {
         }
     }
 
+    /// Returns whether the brick is a straight line across a direction, to rounding.
+    pub(super) fn is_across(&self, direction: DVec2) -> bool {
+        matches!(self.shape, Shape::Segment(segment) if segment.direction.dot(direction).abs() <= MARGIN)
+    }
+
     /// Returns the points that fix the position of the brick.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {
@@ -224,7 +229,7 @@ impl Brick {
     }
 
     /// Returns a rectangle around the brick.
-    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
+    pub(super) fn bounds(&self) -> Region {
         match self.shape {
             Shape::Segment(segment) => segment.bounds(),
             Shape::Arc(arc) => arc.bounds(),

@@ -1,25 +1,32 @@
 //! The rectangular container.
 
 mod answers;
+mod parts;
 mod room;
 mod shaken;
 
 use glam::DVec2;
 
 use super::conduct::Conduct;
+use super::parts::Parts;
 use super::plane::Plane;
 use super::vector::finite_point;
-use super::{Thermal, Wall, WallError};
+use super::{Part, Thermal, Wall, WallError};
 use crate::collision::CollisionRule;
 use crate::quantity::{accept, positive};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
 
-/// A rectangular container, such as the paper's box. Its lower left corner is at the origin unless it is
-/// [shifted](Self::shifted).
+/// A rectangular container, such as the paper's box, with [parts](Part) of any shape in it. Its lower left
+/// corner is at the origin unless it is [shifted](Self::shifted).
 ///
 /// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
-/// normal (which points inward), its own rule, a temperature, or a kind.
+/// normal (which points inward), its own rule, a temperature, or a kind. Parts are added, replaced and
+/// removed by name, even between runs
+/// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
+///
+/// Initial states keep clear of all parts at their positions at time 0. To pack disks densely among parts
+/// that move, pack them with the same parts at rest.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
@@ -35,8 +42,8 @@ use crate::{Kind, ParameterError};
 ///     .with_rule(Wall::Left, Smooth::from_inelasticity(0.0)?)?
 ///     .with_rule(Wall::Right, Smooth::from_inelasticity(0.0)?)?;
 /// assert!(smooth_sides.with_motion(Wall::Lid, BiParabolic::new(0.1, 10.0)?).is_err(), "there is no lid");
-/// assert_eq!((vibrated.wall_count(), vibrated.wall_name(3)), (4, "lid".into()));
-/// assert_eq!((periodic.wall_count(), periodic.wall_name(1)), (2, "lid".into()));
+/// assert_eq!((vibrated.wall_count(), vibrated.wall(3, 0.0).name.as_ref()), (4, "lid"));
+/// assert_eq!((periodic.wall_count(), periodic.wall(1, 0.0).name.as_ref()), (2, "lid"));
 /// assert_eq!(heated.domain().top, f64::INFINITY);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -52,6 +59,12 @@ pub struct Container {
     /// The existing walls.
     #[cfg_attr(feature = "serde", serde(rename = "walls"))]
     planes: Vec<Plane>,
+    /// The parts, if there are any.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "parts::named"))]
+    parts: Option<Box<Parts>>,
+    /// The time origin, from which the phases of parts follow.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    origin: f64,
 }
 
 impl Container {
@@ -76,7 +89,8 @@ impl Container {
         let left = Plane::new(Wall::Left, DVec2::X, 0.0);
         let right = Plane::new(Wall::Right, DVec2::NEG_X, -width);
         let planes = vec![floor, left, right];
-        Ok(Self { corner: DVec2::ZERO, width, height: f64::INFINITY, planes })
+        let (corner, height, origin) = (DVec2::ZERO, f64::INFINITY, 0.0);
+        Ok(Self { corner, width, height, planes, parts: None, origin })
     }
 
     /// Creates a container without walls, which is periodic in both directions.
@@ -134,9 +148,9 @@ impl Container {
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
         let plane = self.plane_mut(wall)?;
-        plane.set_motion(Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?)?;
+        plane.set_motion(Motion::new(motion).map_err(|violation| WallError::Motion { violation })?)?;
         self.check_stops()?;
-        Ok(self)
+        self.changed()
     }
 
     /// Returns the same container with a wall that has a mass, and that the disks push along its normal.
@@ -153,10 +167,10 @@ impl Container {
     /// opposite wall.
     pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
         let motion = Motion::new(Stroke::from(piston));
-        let motion = motion.map_err(|violation| WallError::Motion { wall, violation })?;
+        let motion = motion.map_err(|violation| WallError::Motion { violation })?;
         self.plane_mut(wall)?.set_motion(motion)?;
         self.check_stops()?;
-        Ok(self)
+        self.changed()
     }
 
     /// Returns the same container with a wall at which disks collide by this rule instead of their own.
@@ -202,7 +216,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with its lower left corner moved by this vector.
+    /// Returns the same container with its lower left corner and all parts moved by this vector.
     ///
     /// # Errors
     /// If a coordinate would not be finite.
@@ -213,15 +227,17 @@ impl Container {
     /// let container = Container::closed(4.0, 3.0)?.shifted(DVec2::new(-2.0, 1.0))?;
     /// let domain = container.domain();
     /// assert_eq!((domain.left, domain.right, domain.bottom, domain.top), (-2.0, 2.0, 1.0, 4.0));
-    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
-    pub fn shifted(mut self, by: DVec2) -> Result<Self, ParameterError> {
+    pub fn shifted(mut self, by: DVec2) -> Result<Self, WallError> {
         self.corner += by;
         finite_point(self.corner)?;
         for plane in &mut self.planes {
             plane.shift(by);
         }
-        Ok(self)
+        let parts = self.take_parts().into_iter().map(|placed| Ok((placed.name, placed.part.shifted(by)?)));
+        let parts: Vec<_> = parts.collect::<Result<_, WallError>>()?;
+        self.with_parts(parts)
     }
 
     /// Returns the width.
@@ -247,7 +263,7 @@ impl Container {
                 return Err(WallError::Lost { wall });
             }
         }
-        Ok(self)
+        self.changed()
     }
 
     /// Checks that no piston can pass through the opposite wall.
@@ -267,7 +283,9 @@ impl Container {
 }
 
 crate::gate::from_file! {
-    Container { corner: DVec2, width: f64, height: Option<f64>, walls: Vec<Plane> } => {
+    Container {
+        corner: DVec2, width: f64, height: Option<f64>, walls: Vec<Plane>, parts: Vec<(String, Part)>
+    } => {
         let has = |wall: Wall| walls.iter().any(|plane| plane.wall == wall);
         let mut container = match height {
             Some(height) => Self::closed(width, height)?,
@@ -291,6 +309,6 @@ crate::gate::from_file! {
             (plane.conduct, plane.kind, plane.slide) = (read.conduct, read.kind, read.slide);
         }
         container.check_stops()?;
-        Ok(container.shifted(corner)?)
+        Ok(container.shifted(corner)?.with_parts(parts)?)
     }, Box<dyn std::error::Error>
 }

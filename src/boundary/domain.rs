@@ -9,6 +9,9 @@ use crate::error::Readable;
 
 /// The rectangle that holds the centers of all disks.
 ///
+/// A [`Region`] is any rectangle; only the domain has periods, on which distances between positions and
+/// periodic images depend.
+///
 /// Its left and right sides may be periodic, and so may its lower and upper ends: a disk that leaves at one
 /// of them enters at the opposite one.
 ///
@@ -91,10 +94,10 @@ impl Domain {
     ///
     /// A disk inside the domain reaches beyond it by at most a radius. A radius is less than a quarter of a
     /// period, since the engine requires periods of more than four diameters.
-    pub(crate) fn images_of(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = DVec2> + use<> {
+    pub(crate) fn images_of(&self, &Region { min, max }: &Region) -> impl Iterator<Item = DVec2> + use<> {
         let periods = self.periods();
-        let columns = numbers(periods.x, self.left - high.x, self.right - low.x);
-        let rows = numbers(periods.y, self.bottom - high.y, self.top - low.y);
+        let columns = numbers(periods.x, self.left - max.x, self.right - min.x);
+        let rows = numbers(periods.y, self.bottom - max.y, self.top - min.y);
         columns.flat_map(move |x| rows.clone().map(move |y| DVec2::new(x, y) * periods))
     }
 
@@ -210,7 +213,7 @@ mod open_top {
     }
 }
 
-/// A rectangle inside the domain, whose edges may be infinite.
+/// A rectangle, whose edges may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -226,6 +229,27 @@ impl Region {
     #[inline]
     pub const fn new(min: DVec2, max: DVec2) -> Self {
         Self { min, max }
+    }
+
+    /// Returns the square of this half side about a point.
+    pub(crate) fn around(place: DVec2, reach: f64) -> Self {
+        Self { min: place - reach, max: place + reach }
+    }
+
+    /// Returns the smallest rectangle around all of these, with its corners exchanged if there are none.
+    pub(crate) fn enclosing(regions: impl Iterator<Item = Self>) -> Self {
+        let none = Self { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
+        regions.fold(none, |all, one| Self { min: all.min.min(one.min), max: all.max.max(one.max) })
+    }
+
+    /// Returns the rectangle, shifted by a vector.
+    pub(crate) fn shifted(&self, by: DVec2) -> Self {
+        Self { min: self.min + by, max: self.max + by }
+    }
+
+    /// Returns the rectangle with its edges moved outward by this distance.
+    pub(crate) fn enlarged(&self, by: f64) -> Self {
+        Self { min: self.min - by, max: self.max + by }
     }
 
     /// Returns whether a point is in the rectangle. The right and the upper edges belong to the neighbors of

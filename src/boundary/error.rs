@@ -1,21 +1,26 @@
-//! Errors of vessels.
+//! Errors of walls and parts.
 
 use thiserror::Error;
 
+use super::Wall;
 use crate::error::Rounded;
 use crate::{ParameterError, Violation};
 
-/// The error of a vessel that cannot be built or changed.
+/// The error of a wall or a part that cannot be built or changed.
 ///
 /// ```
-/// use granular_edmd::boundary::{Container, Vessel};
-/// let error = Vessel::new(Container::open(20.0)?).remove("gate").unwrap_err();
-/// assert_eq!(error.to_string(), "the vessel has no part \"gate\"; it has none");
+/// use granular_edmd::boundary::{Container, Wall};
+/// use granular_edmd::wall::Fixed;
+/// let mut container = Container::open(20.0)?;
+/// let error = container.remove_part("gate").unwrap_err();
+/// assert_eq!(error.to_string(), "the container has no part \"gate\"; it has none");
+/// let error = container.with_motion(Wall::Lid, Fixed).unwrap_err();
+/// assert_eq!(error.to_string(), "the container has no wall \"lid\"");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum VesselError {
+pub enum WallError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
@@ -41,30 +46,42 @@ pub enum VesselError {
         /// Number of another side.
         second: usize,
     },
+    /// The container has no such wall, because it is open above or periodic there.
+    #[error("the container has no wall \"{wall}\"")]
+    Missing {
+        /// The requested wall.
+        wall: Wall,
+    },
+    /// The settings of the wall would be lost, because the wall would be removed or would move differently.
+    #[error("the wall \"{wall}\" has settings that would be lost: leave out the earlier setting or this one")]
+    Lost {
+        /// The wall with the settings.
+        wall: Wall,
+    },
     /// The motion gives numbers that would break every run.
-    #[error("the motion of the part cannot be used: {violation}")]
+    #[error("the motion of the wall cannot be used: {violation}")]
     Motion {
         /// The violation of the contract of motions.
         violation: Violation,
     },
-    /// The motion jumps back, and disks can be behind the part.
-    #[error("the motion jumps back at times, and would jump into disks behind the part")]
+    /// The motion jumps back, and disks can be where it jumps.
+    #[error("the motion jumps back at times, and would jump into disks")]
     Jump,
-    /// The vessel has no part of this name.
-    #[error("the vessel has no part \"{name}\"; {}", listed(.parts))]
+    /// The container has no part of this name.
+    #[error("the container has no part \"{name}\"; {}", listed(.parts))]
     Unknown {
         /// The name.
         name: String,
-        /// The names of the vessel's parts.
+        /// The names of the container's parts.
         parts: Vec<String>,
     },
-    /// The vessel has a part or a wall of this name already.
-    #[error("the name \"{name}\" already belongs to a part of the vessel or to a wall of its container")]
+    /// The container has a part or a wall of this name already.
+    #[error("the name \"{name}\" already belongs to a part or a wall of the container")]
     Duplicate {
         /// The name.
         name: String,
     },
-    /// A part extends over more periods of the container than a vessel can handle.
+    /// A part extends over too many periods of the container.
     #[error(
         "the part \"{name}\" extends over {} periods of the container, but at most {most} are possible: \
          let it end earlier",
@@ -92,12 +109,21 @@ pub enum VesselError {
         /// Smallest distance.
         least: f64,
     },
+    /// Disks could push a part with a mass by friction along the direction in which it slides.
+    #[error(
+        "disks would rub the part \"{name}\", which has a mass, along its direction: give it a rule without friction, or \
+         only straight sides across its direction that end at the edge of the domain or beyond"
+    )]
+    Guide {
+        /// The name.
+        name: String,
+    },
 }
 
 /// Largest number of names of parts that an error lists.
 const LISTED: usize = 8;
 
-/// Returns a sentence that lists the parts of a vessel.
+/// Returns a sentence that lists the parts of a container.
 fn listed(parts: &[String]) -> String {
     let names: Vec<String> = parts.iter().take(LISTED).map(|name| format!("\"{name}\"")).collect();
     match parts.len() {

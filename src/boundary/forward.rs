@@ -1,11 +1,10 @@
 //! Forwarding: a boxed or borrowed boundary is a boundary, too.
 
-use std::borrow::Cow;
-
 use glam::DVec2;
 
-use super::area::Curves;
-use super::{Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch};
+use super::{
+    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch, WallView,
+};
 use crate::forward::forward;
 use crate::{Fingerprint, Flight, ParameterError};
 
@@ -13,18 +12,13 @@ forward! { Boundary for [&mut T, Box<T>] {
     fn domain(&self) -> Domain;
     fn interior(&self) -> Domain;
     fn wall_count(&self) -> usize;
-    fn wall_name(&self, wall: usize) -> Cow<'_, str>;
+    fn wall(&self, wall: usize, time: f64) -> WallView<'_>;
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
-    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2>;
-    fn edges(&self, time: f64) -> Domain;
-    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)>;
     fn overlap(&self, probe: &Probe) -> Option<Overlap>;
     fn tight_fit(&self, radius: f64) -> Option<usize>;
-    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>>;
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64>;
-    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves>;
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool;
     fn state(&self) -> Vec<f64>;
     fn fingerprint(&self) -> Option<Fingerprint>;

@@ -1,15 +1,16 @@
 //! Checks of a boundary's contract, for custom boundaries.
 //!
-//! [`check`] sends disks on random flights between the walls, and checks every result of the boundary.
+//! [`check`] sends disks on random flights between the walls. It takes the gap between a disk and the nearest
+//! wall from [`overlap`](Boundary::overlap), and compares all other results with this gap: a touch is its
+//! first root along the flight, the normal its gradient, and the free area the area in which it is positive.
 //! [`check_fingerprints`] compares two boundaries.
 
 mod area;
-mod body;
 mod flight;
-mod meetings;
+mod gap;
 mod pair;
 mod reaction;
-mod seen;
+mod regions;
 mod surface;
 mod trial;
 
@@ -19,7 +20,7 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{Boundary, Domain};
+use super::{Boundary, Domain, Region};
 use crate::random::uniform;
 use crate::violation::require;
 use crate::{Flight, Kind, Violation};
@@ -57,30 +58,27 @@ const SMALLEST: f64 = 0.3;
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again immediately if it
 ///   did not turn. A search that ends just after the touch finds it, too, and a second search finds the same.
-///   Overlaps name the wall of the touch, or another wall with the same surface there: the check does not
-///   tell such walls apart. A smaller disk touches the wall at the same point.
+///   A smaller disk touches the wall at the same point. Walls with the same surface at a place are not told
+///   apart.
 /// - The normal is a unit vector and the gradient of the gap. The velocity of the surface along the normal is
 ///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
-///   angular velocity of a guided wall agrees with the velocities of the points beside the touch.
+///   angular velocity agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
 ///   to infinity at the edges of the domain. After a blow, `may_meet` of the wall that is hit also holds
 ///   where other disks touch walls that the blow moves.
 /// - With another time origin, the same flight touches the same wall at the same absolute time, and finds the
 ///   same surface with the same response.
 /// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and does not
-///   jump. `state` and `set_state` restore all walls. An impact on a wall whose normal and tangential masses
-///   are infinite changes neither the motion of its surface nor a gap, now or later. Other walls may move
-///   with the one that is hit, as parts of one body do; a blow on them then moves this one as much. A stop
-///   that takes the impulse of a wall, as a [`Piston`](crate::wall::Piston) has it, is refused.
+///   jump. `state` and `set_state` restore all walls. An impact on a wall whose mass is infinite changes
+///   neither the motion of its surface nor a gap, now or later. A stop that takes the impulse of a wall, as a
+///   [`Piston`](crate::wall::Piston) has it, is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
-///   a periodic seam, a disk is equally deep in a wall, and a wall that it meets on both sides has the same
-///   velocity there.
+///   a periodic seam, a disk is equally deep in a wall.
 ///
 /// If the boundary knows its free `area`, the check computes the same area from the gaps to the walls, which
 /// it measures by the overlaps of larger disks. Both areas must agree to 2e-5 of the region, for centers of
 /// disks and for matter (radius 0). Along thin walls, which leave no gap behind them, the area of matter may
-/// be too large by about 1e-3 of the region. While no wall's point moves, the area stays the same, and where
-/// the points come back after a period, so does the area.
+/// be too large by about 1e-3 of the region.
 ///
 /// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check leaves the boundary with the time origin 0, in its initial state.
@@ -106,7 +104,7 @@ pub fn check<B: Boundary + ?Sized>(
     check_rectangles(&domain, &boundary.interior())?;
     // Messages contain names, even of walls that do not exist. Asking for a name must not panic.
     for wall in [0, boundary.wall_count(), usize::MAX] {
-        drop(boundary.wall_name(wall));
+        drop(boundary.wall(wall, 0.0));
     }
     let mut boundary = boundary;
     let mut trial = Trial::new(&mut boundary, domain, radius, speed);
@@ -164,7 +162,7 @@ impl Random {
     /// Returns a time origin, and a flight that begins at a free position soon after this time, if there is
     /// room.
     fn flight(&mut self, trial: &mut Trial<'_>) -> Result<Option<(f64, Flight)>, Violation> {
-        let crossing = trial.length() / trial.speed;
+        let crossing = trial.crossing();
         let late = self.between(-21.0, 3.0).max(0.0);
         let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let latest = if trial.is_struck { SOON * crossing } else { crossing };
@@ -197,9 +195,9 @@ impl Random {
 
     /// Returns a position in the domain at which a disk overlaps no wall.
     fn place(&mut self, trial: &Trial<'_>, time: f64) -> Option<DVec2> {
-        let (low, high) = trial.rectangle();
+        let Region { min, max } = trial.rectangle();
         (0..PLACES)
-            .map(|_| DVec2::new(self.between(low.x, high.x), self.between(low.y, high.y)))
-            .find(|&place| trial.depth(place, 0.0, time).is_none())
+            .map(|_| DVec2::new(self.between(min.x, max.x), self.between(min.y, max.y)))
+            .find(|&place| !trial.gap().is_below(0.0, place, time))
     }
 }

@@ -7,19 +7,19 @@ mod polygon;
 mod travel;
 
 use travel::Along;
-pub(super) use travel::{Phase, Travel, Turning};
+pub(super) use travel::{Phase, Pose, Travel, Turning};
 
 use glam::DVec2;
 
 use super::brick::{Brick, Nearest};
 use super::conduct::Conduct;
-use super::{Surface, Thermal, VesselError};
+use super::{Region, Surface, Thermal, WallError};
 use crate::collision::CollisionRule;
 use crate::quantity::finite;
 use crate::{Fingerprint, Kind};
 
-/// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
-/// their own motion.
+/// A part of a [`Container`](super::Container): bricks that share a rule, a kind, the motion of their surface
+/// and their own motion.
 ///
 /// A new part is at rest, follows the rule of the disks, and has the default kind of walls. It has one
 /// response: a rule, a temperature and an absorbing part replace each other. Corners are added automatically
@@ -33,15 +33,15 @@ use crate::{Fingerprint, Kind};
 /// | [`new`](Self::new) | on the free sides of the bricks |
 ///
 /// ```
-/// use granular_edmd::boundary::{Part, Vessel};
+/// use granular_edmd::boundary::{Container, Part};
 /// use granular_edmd::glam::DVec2;
 ///
 /// // An hourglass. Its points may go counterclockwise or clockwise.
 /// let right = [(8.0, 0.0), (8.0, 6.0), (5.0, 10.0), (8.0, 14.0), (8.0, 20.0)];
 /// let left = right.iter().rev().map(|&(x, y)| (8.0 - x, y));
 /// let glass = Part::polygon(right.into_iter().chain(left).map(DVec2::from))?;
-/// let vessel = Vessel::around([("glass", glass)])?;
-/// # Ok::<(), granular_edmd::boundary::VesselError>(())
+/// let container = Container::around([("glass", glass)])?;
+/// # Ok::<(), granular_edmd::boundary::WallError>(())
 /// ```
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -103,10 +103,10 @@ impl Part {
     ///
     /// // Grains that fall out of an open silo leave the run at the height 1.
     /// let line = Part::polyline([(-1.0, 1.0), (5.0, 1.0)].map(DVec2::from))?;
-    /// let vessel = Vessel::new(Container::open(4.0)?).with("exit", line.absorbing_centers())?;
+    /// let silo = Container::open(4.0)?.with_part("exit", line.absorbing_centers())?;
     /// let disk = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5);
     /// let disks = [disk(1.25)?, disk(9.0)?];
-    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).gravity(1.0).build()?;
+    /// let mut run = Simulation::builder(Elastic, silo).disks(disks).gravity(1.0).build()?;
     /// run.run_until(0.7, &mut ())?;
     /// assert_eq!(run.len(), 2);
     /// // The first center falls by 0.25 in the square root of 1/2.
@@ -126,10 +126,10 @@ impl Part {
     }
 
     /// Returns the same part for disks of these kinds only: all others pass through it, as through a sieve or
-    /// a membrane. A part for no kinds at all would stop no disk, and a vessel refuses it.
+    /// a membrane. A part for no kinds at all would stop no disk, and a container refuses it.
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
-    /// same for all kinds. Its vessel then does not know the [`area`](super::Boundary::area), and stresses,
+    /// same for all kinds. Its container then does not know the [`area`](super::Boundary::area), and stresses,
     /// densities and profiles are refused unless they are restricted to a region that no wall reaches. A line
     /// of two-sided bricks, such as a [`polyline`](Self::polyline), encloses no area, so this restriction
     /// does not apply to it.
@@ -139,10 +139,10 @@ impl Part {
     ///
     /// const SMALL: Kind = Kind::new(1);
     /// let membrane = Part::polyline([(5.0, 0.0), (5.0, 4.0)].map(DVec2::from))?;
-    /// let vessel = Vessel::new(Container::closed(10.0, 4.0)?).with("membrane", membrane.only_for([SMALL]))?;
+    /// let cell = Container::closed(10.0, 4.0)?.with_part("membrane", membrane.only_for([SMALL]))?;
     /// let disk = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5)?.with_velocity(DVec2::X);
     /// let disks = [disk(1.0)?, disk(3.0)?.with_kind(SMALL)];
-    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+    /// let mut run = Simulation::builder(Elastic, cell).disks(disks).build()?;
     /// run.run_until(4.0, &mut ())?;
     /// assert_eq!(run.disks()[0].position().x, 6.0);
     /// assert_eq!(run.disks()[1].position().x, 3.0);
@@ -165,7 +165,7 @@ impl Part {
     ///
     /// # Errors
     /// If the speed is not finite.
-    pub fn with_surface_speed(self, speed: f64) -> Result<Self, VesselError> {
+    pub fn with_surface_speed(self, speed: f64) -> Result<Self, WallError> {
         Ok(Self { surface_speed: finite("surface speed", speed)?, ..self })
     }
 
@@ -246,13 +246,13 @@ impl Part {
     }
 
     /// Returns a rectangle around the part in its original position.
-    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
-        enclosing(self.all_bricks().map(Brick::bounds))
+    pub(super) fn bounds(&self) -> Region {
+        Region::enclosing(self.all_bricks().map(Brick::bounds))
     }
 
     /// Returns a rectangle that holds the part at all times.
-    pub(super) fn swept_bounds(&self) -> (DVec2, DVec2) {
-        enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
+    pub(super) fn swept_bounds(&self) -> Region {
+        Region::enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
     }
 
     /// Returns the number of the nearest brick and the distance from it, negative behind the brick.
@@ -271,6 +271,7 @@ impl Part {
             .with_response(self.conduct.response())
             .with_kind(self.kind)
             .with_angular_velocity(self.travel.angular_velocity() - self.surface_speed / radius)
+            .with_mass(self.travel.mass(normal))
     }
 
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
@@ -284,12 +285,6 @@ impl Part {
             .fold(part, |part, kind| part.text("only for").number(kind.number().into()));
         Some(self.all_bricks().fold(kinds, |part, brick| part.part(brick.fingerprint())))
     }
-}
-
-/// Returns the smallest rectangle around all of these rectangles.
-pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
-    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    rectangles.fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
 }
 
 /// A brick as seen from a position.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::conduct::Conduct;
 use super::surface::Surface;
-use super::{Region, Wall, WallError};
+use super::{Region, Wall, WallError, WallView};
 use crate::wall::{Approach, FirstTouch, Motion, Stroke, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
@@ -18,7 +18,7 @@ pub(super) struct Plane {
     pub(super) wall: Wall,
     /// Unit vector from the wall to the disks.
     #[cfg_attr(feature = "serde", serde(skip))]
-    normal: DVec2,
+    pub(super) normal: DVec2,
     /// Position of the wall at rest, along its normal.
     #[cfg_attr(feature = "serde", serde(skip))]
     place: f64,
@@ -142,7 +142,7 @@ impl Plane {
     /// Returns whether a disk with its center in `region` may touch the wall up to this time, unless another
     /// disk hits the wall.
     pub(super) fn may_meet(&self, region: &Region, radius: f64, until: f64) -> bool {
-        let highest = self.motion.stroke().map_or(self.highest, |stroke| stroke.highest_until(until));
+        let highest = self.motion.stroke().map_or(self.highest, |stroke| stroke.range_until(until).1);
         region.least_along(self.normal) - self.place - radius <= highest
     }
 
@@ -187,15 +187,21 @@ impl Plane {
         self.normal * (self.place + self.motion.state(time + self.phase).displacement)
     }
 
-    /// Returns displacement and phase at a time, if the wall moves along its normal.
-    pub(super) fn moved(&self, time: f64) -> Option<(DVec2, f64)> {
-        let (low, high) = self.motion.reach();
-        let displacement = self.motion.state(time + self.phase).displacement;
+    /// Returns the view of the wall at a time.
+    pub(super) fn view(&self, time: f64) -> WallView<'_> {
+        let view = WallView::new(self.wall.name()).with_side(self.wall).with_point(self.place(time));
+        let ((low, high), piston) = (self.motion.reach(), self.motion.stroke());
+        let view = match piston {
+            Some(piston) => view.with_energy(piston.energy(time)),
+            None => view,
+        };
+        if low == high {
+            return view;
+        }
         // The phase of a piston depends on the time origin, and has no meaning.
-        let is_piston = self.motion.stroke().is_some();
-        let phase = if is_piston { 0.0 } else { self.motion.phase(time + self.phase) };
+        let phase = if piston.is_some() { 0.0 } else { self.motion.phase(time + self.phase) };
         // Adding zeros turns negative zeros into positive ones.
-        (low < high).then(|| (displacement * self.normal + DVec2::ZERO, phase))
+        view.with_motion(self.motion.state(time + self.phase).displacement * self.normal + DVec2::ZERO, phase)
     }
 
     /// Returns whether a disk is near enough to overlap the wall at some phase of the motion.

@@ -8,7 +8,7 @@ use glam::DVec2;
 /// use granular_edmd::boundary::Impact;
 /// use granular_edmd::glam::DVec2;
 /// let impact = Impact::new(3, DVec2::new(0.0, 2.0), DVec2::new(4.0, 9.0), 0.5);
-/// assert_eq!((impact.wall, impact.impulse.y, impact.couple), (3, 2.0, 0.0));
+/// assert_eq!((impact.wall, impact.impulse.y, impact.point.x), (3, 2.0, 4.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -17,8 +17,6 @@ pub struct Impact {
     pub wall: usize,
     /// Impulse on the wall.
     pub impulse: DVec2,
-    /// Couple on the wall, counterclockwise.
-    pub couple: f64,
     /// Point at which the disk touches the wall.
     pub point: DVec2,
     /// Time, as an offset from the boundary's origin.
@@ -29,14 +27,7 @@ impl Impact {
     /// Creates an impact that gives this impulse to a wall at a point, at this offset from the time origin.
     #[inline]
     pub const fn new(wall: usize, impulse: DVec2, point: DVec2, time: f64) -> Self {
-        Self { wall, impulse, couple: 0.0, point, time }
-    }
-
-    /// Returns the same impact with a couple (an angular impulse in addition to the impulse at its point).
-    #[must_use]
-    #[inline]
-    pub const fn with_couple(self, couple: f64) -> Self {
-        Self { couple, ..self }
+        Self { wall, impulse, point, time }
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec2;
 
 use crate::collision::CollisionRule;
+use crate::collision::laws::hostile_contacts;
 use crate::quantity::positive;
 use crate::{Fingerprint, Kind, ParameterError};
 
@@ -35,11 +36,7 @@ pub struct Surface<'a> {
     pub radius: f64,
     /// Mass that resists along the normal; infinite unless the wall [reacts](super::Boundary::react).
     pub mass: f64,
-    /// Mass that resists along the surface: infinite for a wall that is guided, $`I/R^2`$ for a drum of
-    /// radius R with the moment of inertia I.
-    pub tangential_mass: f64,
-    /// Angular velocity of the surface, counterclockwise. It is ignored for a curved wall with a tangential
-    /// mass, whose angular velocity follows from its velocity.
+    /// Angular velocity of the surface, counterclockwise.
     pub angular_velocity: f64,
 }
 
@@ -55,7 +52,6 @@ impl<'a> Surface<'a> {
             kind: Kind::WALL,
             radius: f64::INFINITY,
             mass: f64::INFINITY,
-            tangential_mass: f64::INFINITY,
             angular_velocity: 0.0,
         }
     }
@@ -92,22 +88,11 @@ impl<'a> Surface<'a> {
     /// Returns the same surface for a wall of this mass, which is guided along its normal.
     ///
     /// The rule then sees a reduced mass that is smaller than the mass of the disk, and the boundary receives
-    /// the opposite impulse in [`react`](super::Boundary::react). A peg that floats also moves along its
-    /// surface: unless that is smooth, it needs a [tangential mass](Self::with_tangential_mass), too.
+    /// the opposite impulse in [`react`](super::Boundary::react). Along its surface, the wall is held.
     #[must_use]
     #[inline]
     pub const fn with_mass(self, mass: f64) -> Self {
         Self { mass, ..self }
-    }
-
-    /// Returns the same surface with this mass against forces along the surface.
-    ///
-    /// A curved wall with the tangential mass m turns about the center of its surface: its moment of inertia
-    /// is $`mR^2`$, and its angular velocity follows from the velocity of the surface.
-    #[must_use]
-    #[inline]
-    pub const fn with_tangential_mass(self, tangential_mass: f64) -> Self {
-        Self { tangential_mass, ..self }
     }
 
     /// Returns the same surface for a wall that turns at this angular velocity, counterclockwise.
@@ -132,9 +117,9 @@ impl<'a> Surface<'a> {
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Response<'a> {
-    /// The wall follows the collision rule of the disks, as a partner with the masses of the surface.
+    /// The wall follows the collision rule of the disks, as a partner with the mass of the surface.
     Shared,
-    /// The wall follows its own rule, as a partner with the masses of the surface.
+    /// The wall follows its own rule, as a partner with the mass of the surface.
     Rule(&'a dyn CollisionRule),
     /// The wall re-emits the disk thermally.
     Thermal(Thermal),
@@ -142,8 +127,21 @@ pub enum Response<'a> {
     ///
     /// Observers see a last collision, after which the disk has no spin, and moves with the wall: a wall
     /// without a mass takes all of the relative momentum, and a wall with a mass as much as gives both the
-    /// same velocity. The spin is lost, also at a wall that turns freely.
+    /// same velocity. The spin is lost.
     Absorbing,
+}
+
+impl Response<'_> {
+    /// Returns whether disks may push the wall along its surface. The rule of the disks is not known.
+    pub(super) fn has_friction(&self) -> bool {
+        match self {
+            Self::Thermal(thermal) => !thermal.slip(),
+            Self::Rule(rule) => hostile_contacts()
+                .map(|contact| rule.impulse(&contact))
+                .any(|impulse| impulse.tangential() != 0.0 || impulse.couple() != 0.0),
+            Self::Shared | Self::Absorbing => true,
+        }
+    }
 }
 
 impl fmt::Debug for Response<'_> {
@@ -165,8 +163,8 @@ impl fmt::Debug for Response<'_> {
 /// the normal speed, as the base of Ramírez, Risso and Cordero, PRL 85, 1230 (2000), does.
 ///
 /// A wall of mass $`M`$ recoils: the speed relative to it has this density for the reduced mass
-/// $`m M/(m + M)`$, and the momentum along the normal is conserved. Along its surface, a thermal wall must be
-/// guided. If the wall turns, the gas behind it turns with it, and so do the disks that the wall emits.
+/// $`m M/(m + M)`$, and the momentum along the normal is conserved. If the wall turns, the gas behind it turns
+/// with it, and so do the disks that the wall emits.
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;

@@ -33,7 +33,7 @@ impl FirstTouch<Touch> {
     /// Returns the earlier of two results for the same flight.
     ///
     /// If both touches happen at the same time, the wall with the smaller index counts. A boundary that adds
-    /// walls to another boundary, as [`Obstacles`](super::Obstacles) does, combines the results in this way.
+    /// walls to another boundary combines the results in this way.
     #[inline]
     pub fn or(self, other: Self) -> Self {
         let is_first = match (&self, &other) {

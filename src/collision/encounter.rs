@@ -22,15 +22,18 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Returns the properties of a wall with these masses against impulses along its normal and along its
-    /// surface. Infinite masses keep the motion of the wall unchanged. A curved wall with a mass along its
-    /// surface turns about the center of the surface.
-    pub(crate) fn of_wall(kind: Kind, radius: f64, [normal, tangential]: [f64; 2]) -> Self {
-        let (inverse_mass, tangential_compliance) = (1.0 / normal, 1.0 / tangential);
-        // In this order, an infinite radius gives zeros and never infinity times zero.
-        let spin_response = tangential_compliance / radius;
-        let inverse_inertia = spin_response / radius;
-        Self { arm: 0.0, radius, inverse_mass, tangential_compliance, spin_response, inverse_inertia, kind }
+    /// Returns the properties of a wall with this mass against impulses along its normal. An infinite mass
+    /// keeps the motion of the wall unchanged.
+    pub(crate) fn of_wall(kind: Kind, radius: f64, mass: f64) -> Self {
+        Self {
+            arm: 0.0,
+            radius,
+            inverse_mass: 1.0 / mass,
+            tangential_compliance: 0.0,
+            spin_response: 0.0,
+            inverse_inertia: 0.0,
+            kind,
+        }
     }
 
     pub(crate) fn of(disk: &Disk) -> Self {
@@ -244,7 +247,7 @@ pub fn collide_with_wall<R: CollisionRule + ?Sized>(
         normal,
         f64::INFINITY,
         arriving,
-        (&wall, &Material::of_wall(Kind::WALL, f64::INFINITY, [f64::INFINITY; 2])),
+        (&wall, &Material::of_wall(Kind::WALL, f64::INFINITY, f64::INFINITY)),
     );
     WallEncounter { disk: moved(disk, outcome.first), contact: outcome.contact, impulse: outcome.impulse }
 }

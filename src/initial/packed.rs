@@ -34,7 +34,8 @@ const APART: f64 = 1e-9;
 ///
 /// The disks are packed in the interior of the boundary, in which walls must not move. If a container has a
 /// piston that falls fast, add the piston after the disks are packed. To pack disks around a disk that is
-/// already placed, put that disk into the boundary as [`Obstacles`](crate::boundary::Obstacles).
+/// already placed, put that disk into the container as a
+/// [peg](crate::boundary::Container::with_pegs).
 ///
 /// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
 /// all disks grow at the same rate all the time.
@@ -47,7 +48,7 @@ const APART: f64 = 1e-9;
 ///
 /// ```
 /// use std::f64::consts::PI;
-/// use granular_edmd::boundary::{Container, Obstacles};
+/// use granular_edmd::boundary::Container;
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::initial::{self, Radii};
 /// use granular_edmd::Disk;
@@ -58,7 +59,7 @@ const APART: f64 = 1e-9;
 /// let disks = initial::disks_from_radii(Radii::two_sizes(0.5, 0.7, 0.5)?.draw(300, 1), 1.0)?;
 /// let area: f64 = disks.iter().chain([&intruder]).map(|disk| PI * disk.radius() * disk.radius()).sum();
 /// let height = area / (0.8 * container.width());
-/// let around = Obstacles::new(container, [intruder]);
+/// let around = container.with_pegs([intruder])?;
 /// let packed = initial::packed_mix(&around, disks, height, 1)?;
 /// assert!(packed.iter().all(|disk| disk.position().y + disk.radius() <= height));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

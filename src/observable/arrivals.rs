@@ -1,8 +1,8 @@
 //! The arrivals of disks at walls.
 
+use super::by_wall::ByWall;
 use super::stretch::Stretch;
 use super::table::Table;
-use super::wall_names::{WallNames, check_walls};
 use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Estimate, block_average};
@@ -18,12 +18,12 @@ use crate::statistics::{Estimate, block_average};
 /// use granular_edmd::observable::Arrivals;
 ///
 /// let exit = Part::polyline([(-1.0, 1.0), (5.0, 1.0)].map(DVec2::from))?.absorbing_centers();
-/// let vessel = Vessel::new(Container::open(4.0)?).with("exit", exit)?;
+/// let silo = Container::open(4.0)?.with_part("exit", exit)?;
 /// // The centers come to the line every 1/4.
 /// let grain = |k: f64| Disk::new(DVec2::new(2.0, 1.5 + k), 0.4)?.with_velocity(DVec2::new(0.0, -4.0));
 /// let grains = (0..40).map(|k| grain(f64::from(k))).collect::<Result<Vec<_>, _>>()?;
-/// let mut flow = Arrivals::at(vessel.walls("exit").unwrap(), SampleTimes::every(1.0)?);
-/// Simulation::builder(Elastic, vessel).disks(grains).build()?.run_until(10.0, &mut flow)?;
+/// let mut flow = Arrivals::at(["exit"], SampleTimes::every(1.0)?);
+/// Simulation::builder(Elastic, silo).disks(grains).build()?.run_until(10.0, &mut flow)?;
 /// assert_eq!(flow.counts(), [4; 10]);
 /// assert_eq!(flow.rate()?.mean(), 4.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -31,23 +31,22 @@ use crate::statistics::{Estimate, block_average};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Arrivals {
-    walls: Vec<usize>,
+    walls: ByWall<()>,
     stretch: Stretch,
     present: u64,
     times: Vec<f64>,
     counts: Vec<u64>,
-    names: WallNames,
 }
 
 impl Arrivals {
-    /// Creates an observer of arrivals at these walls, counted over the intervals between these times.
+    /// Creates an observer of arrivals at the walls and parts of these names, counted over the intervals
+    /// between these times.
     ///
-    /// A run ends with an error if its boundary lacks one of these walls, or if an index now belongs to
-    /// another wall, as after [`set_boundary`](crate::Simulation::set_boundary).
-    pub fn at(walls: impl IntoIterator<Item = usize>, times: SampleTimes) -> Self {
-        let (walls, stretch) = (walls.into_iter().collect(), Stretch::new(times));
-        let (times, counts, names) = (Vec::new(), Vec::new(), WallNames::default());
-        Self { walls, stretch, present: 0, times, counts, names }
+    /// A run ends with an error if its boundary has no wall and no part of one of these names.
+    pub fn at<N: Into<String>>(names: impl IntoIterator<Item = N>, times: SampleTimes) -> Self {
+        let (mut walls, stretch) = (ByWall::NONE, Stretch::new(times));
+        names.into_iter().for_each(|name| walls.insert(name.into(), ()));
+        Self { walls, stretch, present: 0, times: Vec::new(), counts: Vec::new() }
     }
 
     /// Returns the ends of the intervals.
@@ -73,7 +72,7 @@ impl Arrivals {
         self.stretch.forget();
         self.times.clear();
         self.counts.clear();
-        (self.present, self.names) = (0, WallNames::default());
+        self.present = 0;
     }
 
     fn rates(&self) -> impl Iterator<Item = f64> {
@@ -83,8 +82,7 @@ impl Arrivals {
 
 impl Observer for Arrivals {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        check_walls(start, &self.walls)?;
-        self.names.check(start, |wall| self.walls.contains(&wall))?;
+        self.walls.find(start)?;
         if self.stretch.begin(start) {
             self.present = 0;
         }
@@ -94,7 +92,7 @@ impl Observer for Arrivals {
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         let Partner::Wall(wall) = collision.partner else { return };
-        self.present += u64::from(self.walls.contains(&wall));
+        self.present += u64::from(self.walls.at(wall).is_some());
     }
 
     fn next_sample(&self) -> f64 {

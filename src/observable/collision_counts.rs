@@ -1,35 +1,29 @@
 //! Counts and rates of collisions.
 
-use std::collections::BTreeMap;
-
+use super::by_wall::ByWall;
 use super::table::Table;
-use super::wall_names::WallNames;
 use super::{Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::collision::Regime;
 
 /// An observer that counts collisions by partner and regime, and gives their rates.
 ///
-/// A run ends with an error if the index of a wall that was hit now belongs to another wall: clear the
-/// observer before such a run, or use another one.
-///
 /// ```
 /// use granular_edmd::observable::CollisionCounts;
 /// let counts = CollisionCounts::default();
 /// assert_eq!(counts.disk_collisions() + counts.wall_collisions(), 0);
-/// assert_eq!(counts.collisions_with_wall(3), 0);
+/// assert_eq!(counts.collisions_with_wall("lid"), 0);
 /// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CollisionCounts {
     disks: u64,
-    walls: BTreeMap<usize, u64>,
+    walls: ByWall<u64>,
     sticking: u64,
     sliding: u64,
     contact_duration: u64,
     elastic_below: u64,
     least_rebound: u64,
-    names: WallNames,
 }
 
 impl CollisionCounts {
@@ -43,9 +37,14 @@ impl CollisionCounts {
         self.walls.values().sum()
     }
 
-    /// Returns the number of collisions with the wall of this index; 0 for a wall that was never touched.
-    pub fn collisions_with_wall(&self, wall: usize) -> u64 {
-        self.walls.get(&wall).copied().unwrap_or(0)
+    /// Returns the walls that were touched, numbered in the order of the first run's boundary.
+    fn touched(&self) -> impl Iterator<Item = (usize, u64)> {
+        self.walls.values().copied().enumerate().filter(|&(_, count)| count > 0)
+    }
+
+    /// Returns the number of collisions with the wall or part of this name; 0 if it was never touched.
+    pub fn collisions_with_wall(&self, name: &str) -> u64 {
+        self.walls.get(name).copied().unwrap_or(0)
     }
 
     /// Returns the number of collisions in this regime, with disks and walls.
@@ -82,13 +81,14 @@ impl CollisionCounts {
 
 impl Observer for CollisionCounts {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        Ok(self.names.check(start, |wall| self.walls.contains_key(&wall))?)
+        self.walls.find_all(start);
+        Ok(())
     }
 
     fn on_collision(&mut self, collision: &Collision) {
         match collision.partner {
             Partner::Disk(_) => self.disks += 1,
-            Partner::Wall(wall) => *self.walls.entry(wall).or_default() += 1,
+            Partner::Wall(wall) => self.walls.at(wall).into_iter().for_each(|count| *count += 1),
         }
         match collision.impulse.regime() {
             Regime::Sticking => self.sticking += 1,
@@ -106,7 +106,7 @@ impl Table for CollisionCounts {
         let partners = ["disk_collisions", "wall_collisions"].map(str::to_owned).into_iter();
         let regimes = ["sticking", "sliding", "contact_duration", "elastic_below", "least_rebound"];
         let regimes = regimes.map(str::to_owned);
-        let walls = self.walls.keys().map(|wall| format!("wall_{wall}"));
+        let walls = self.touched().map(|(number, _)| format!("wall_{number}"));
         partners.chain(regimes).chain(walls).map(|name| Heading::new(name, "1")).collect()
     }
 
@@ -114,7 +114,7 @@ impl Table for CollisionCounts {
         let partners = [self.disks, self.wall_collisions()].into_iter();
         let remedies = [self.contact_duration, self.elastic_below, self.least_rebound];
         let regimes = [self.sticking, self.sliding].into_iter().chain(remedies);
-        let counts = partners.chain(regimes).chain(self.walls.values().copied());
+        let counts = partners.chain(regimes).chain(self.touched().map(|(_, count)| count));
         let row = counts.map(|count| count as f64).collect();
         Box::new(std::iter::once(row))
     }
@@ -122,8 +122,8 @@ impl Table for CollisionCounts {
 
 crate::gate::from_file! {
     CollisionCounts {
-        disks: u64, walls: BTreeMap<usize, u64>, sticking: u64, sliding: u64, contact_duration: u64,
-        elastic_below: u64, least_rebound: u64, names: WallNames
+        disks: u64, walls: ByWall<u64>, sticking: u64, sliding: u64, contact_duration: u64,
+        elastic_below: u64, least_rebound: u64
      } => {
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
@@ -131,6 +131,6 @@ crate::gate::from_file! {
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least the sum over all regimes", all as f64)?;
-        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound, names })
+        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound })
     }
 }

@@ -1,7 +1,7 @@
 //! Histograms over collisions: angles, speeds and impulses.
 
+use super::by_wall::ByWall;
 use super::table::{Table, histogram_headings, histogram_rows};
-use super::wall_names::{WallNames, check_walls};
 use super::{Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Histogram;
@@ -35,11 +35,10 @@ use crate::statistics::Histogram;
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct CollisionHistograms {
-    wall: Option<usize>,
+    walls: ByWall<()>,
     obliqueness: Histogram,
     closing_speed: Histogram,
     impulse: Histogram,
-    names: WallNames,
 }
 
 impl CollisionHistograms {
@@ -50,19 +49,20 @@ impl CollisionHistograms {
     /// If the speed or the impulse is not finite and positive, or the number of bins is not in `1..=2^20`.
     pub fn new(speed: f64, impulse: f64, bins: usize) -> Result<Self, ParameterError> {
         Ok(Self {
-            wall: None,
+            walls: ByWall::NONE,
             obliqueness: Histogram::new(-1.0, 1.0, bins)?,
             closing_speed: Histogram::new(0.0, speed, bins)?,
             impulse: Histogram::new(0.0, impulse, bins)?,
-            names: WallNames::default(),
         })
     }
 
-    /// Returns the same histograms for the collisions with the wall of this index.
+    /// Returns the same histograms for the collisions with the wall or part of this name.
     ///
-    /// A run ends with an error if there is no such wall, or if its index belonged to another wall before.
-    pub fn with_wall(self, wall: usize) -> Self {
-        Self { wall: Some(wall), ..self }
+    /// A run ends with an error if there is no such wall.
+    #[must_use]
+    pub fn with_wall(mut self, name: impl Into<String>) -> Self {
+        self.walls.insert(name.into(), ());
+        self
     }
 
     /// Returns the histogram of the obliqueness.
@@ -85,20 +85,18 @@ impl CollisionHistograms {
         for histogram in [&mut self.obliqueness, &mut self.closing_speed, &mut self.impulse] {
             histogram.clear();
         }
-        self.names = WallNames::default();
     }
 }
 
 impl Observer for CollisionHistograms {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        check_walls(start, &self.wall)?;
-        Ok(self.names.check(start, |wall| self.wall == Some(wall))?)
+        Ok(self.walls.find(start)?)
     }
 
     fn on_collision(&mut self, collision: &Collision) {
         let counts = match collision.partner {
-            Partner::Disk(_) => self.wall.is_none(),
-            Partner::Wall(wall) => self.wall == Some(wall),
+            Partner::Disk(_) => self.walls.is_empty(),
+            Partner::Wall(wall) => self.walls.at(wall).is_some(),
         };
         if !counts {
             return;

@@ -30,6 +30,8 @@ impl EnergyPerDisk {
 
 /// The translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
+/// Walls with a mass have energies of their own: [`FreeWall`](super::FreeWall).
+///
 /// ```
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;

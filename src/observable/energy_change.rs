@@ -1,10 +1,8 @@
 //! The energy change per collision, the paper's central quantity, as measured in a run.
 
-use std::collections::BTreeMap;
-
+use super::by_wall::ByWall;
 use super::system::System;
 use super::table::{ENERGY, Table, headings, row};
-use super::wall_names::WallNames;
 use super::{Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::statistics::BlockedMean;
 
@@ -15,32 +13,30 @@ use crate::statistics::BlockedMean;
 /// mean whose error accounts for these correlations. At a moving or thermal wall, the energy change is the
 /// change of the disk's energy, including the work of the wall.
 ///
-/// A run ends with an error if it belongs to another system than the previous run, if it goes back in time,
-/// or if the index of a wall that was hit now belongs to another wall. Clear the observer before such a run,
-/// or use another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) gives the mean
+/// A run ends with an error if it belongs to another system than the previous run, or if it goes back in
+/// time. Clear the observer before such a run, or use another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) gives the mean
 /// over several systems.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;
 /// let energy_change = EnergyChange::default();
 /// assert_eq!(energy_change.disks().count(), 0);
-/// assert_eq!(energy_change.wall(0).count(), 0);
+/// assert_eq!(energy_change.wall("floor").count(), 0);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyChange {
     disks: BlockedMean,
-    walls: BTreeMap<usize, BlockedMean>,
+    walls: ByWall<BlockedMean>,
     /// The system that is measured, and the end of its latest run.
     #[cfg_attr(feature = "serde", serde(default))]
     system: System,
-    names: WallNames,
 }
 
 impl Default for EnergyChange {
     fn default() -> Self {
         let (disks, system) = (BlockedMean::with_room(), System::default());
-        Self { disks, walls: BTreeMap::new(), system, names: WallNames::default() }
+        Self { disks, walls: ByWall::NONE, system }
     }
 }
 
@@ -53,9 +49,9 @@ impl EnergyChange {
         &self.disks
     }
 
-    /// Returns the mean over collisions with the wall of this index; empty for a wall that was never touched.
-    pub fn wall(&self, wall: usize) -> &BlockedMean {
-        self.walls.get(&wall).unwrap_or(&NEVER_TOUCHED)
+    /// Returns the mean over collisions with the wall or part of this name; empty if it was never touched.
+    pub fn wall(&self, name: &str) -> &BlockedMean {
+        self.walls.get(name).unwrap_or(&NEVER_TOUCHED)
     }
 
     /// Forgets all collisions so far.
@@ -67,16 +63,19 @@ impl EnergyChange {
 impl Observer for EnergyChange {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.system.begin(start)?;
-        Ok(self.names.check(start, |wall| self.walls.contains_key(&wall))?)
+        self.walls.find_all(start);
+        Ok(())
     }
 
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         let mean = match collision.partner {
-            Partner::Disk(_) => &mut self.disks,
-            Partner::Wall(wall) => self.walls.entry(wall).or_insert_with(BlockedMean::with_room),
+            Partner::Disk(_) => Some(&mut self.disks),
+            Partner::Wall(wall) => self.walls.at(wall),
         };
-        mean.push(collision.energy_change);
+        if let Some(mean) = mean {
+            mean.push(collision.energy_change);
+        }
     }
 
     fn on_end(&mut self, end: &Snapshot<'_>) {
@@ -84,13 +83,14 @@ impl Observer for EnergyChange {
     }
 }
 
+/// The walls are numbered in the order of the first run's boundary.
 impl Table for EnergyChange {
     fn headings(&self) -> Vec<Heading> {
         headings(&[("wall", "1"), ("collisions", "1")], &[("energy_change", ENERGY)])
     }
 
     fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let walls = self.walls.iter().map(|(&wall, mean)| (wall as f64, mean));
+        let walls = (0..).map(f64::from).zip(self.walls.values()).filter(|(_, mean)| mean.count() > 0);
         let partners = std::iter::once((f64::NAN, &self.disks)).chain(walls);
         Box::new(partners.map(|(wall, mean)| row(&[wall, mean.count() as f64], &[mean.estimate()])))
     }

@@ -6,7 +6,7 @@ use std::fmt;
 use glam::DVec2;
 
 use super::marks::Mark;
-use crate::boundary::{Boundary, Domain, Probe, Region};
+use crate::boundary::{Boundary, Domain, Probe, Region, Wall, WallView};
 use crate::{Disk, Gravity};
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
@@ -131,12 +131,30 @@ impl<'a> Snapshot<'a> {
         self.wall_count
     }
 
-    /// Returns the names of all walls; none for a snapshot without walls.
-    pub(super) fn wall_names(&self) -> Vec<String> {
-        let name = |Walls { boundary, .. }: Walls<'_>| {
-            (0..self.wall_count).map(|wall| boundary.wall_name(wall).into_owned()).collect()
-        };
-        self.walls.map_or_else(Vec::new, name)
+    /// Returns the view of a wall. Without a boundary, nothing is known about it.
+    pub fn wall(&self, wall: usize) -> WallView<'_> {
+        let unknown = || WallView::new(format!("wall {wall}"));
+        self.walls.map_or_else(unknown, |walls| walls.boundary.wall(wall, walls.time))
+    }
+
+    /// Iterates over the views of all walls, in the order of their indices.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    ///
+    /// let gate = Part::polyline([DVec2::new(1.0, 4.0), DVec2::new(7.0, 4.0)])?;
+    /// let container = Container::open(8.0)?.with_part("gate", gate)?;
+    /// let grain = Disk::new(DVec2::new(4.0, 6.0), 0.5)?;
+    /// let run = Simulation::builder(Elastic, container).disks([grain]).build()?;
+    /// let snapshot = run.snapshot();
+    /// // The gate has a brick and two corners.
+    /// let gate = snapshot.walls().position(|wall| wall.name == "gate").ok_or("a gate")?;
+    /// assert_eq!((gate, snapshot.wall_count()), (3, 6));
+    /// assert_eq!(snapshot.wall(gate).line().len(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn walls(&self) -> impl Iterator<Item = WallView<'_>> {
+        (0..self.wall_count).map(|wall| self.wall(wall))
     }
 
     /// Returns a point of a wall, which moves with the wall, or `None` if the boundary knows no such point. A
@@ -145,7 +163,7 @@ impl<'a> Snapshot<'a> {
     /// For a wall of a [`Container`](crate::boundary::Container), the component along the normal is the
     /// position of the wall.
     pub fn wall_point(&self, wall: usize) -> Option<DVec2> {
-        self.walls.and_then(|walls| walls.boundary.wall_point(wall, walls.time))
+        self.wall(wall).point
     }
 
     /// Returns the velocity of a wall's surface at its [point](Self::wall_point), or `None` if the point is
@@ -159,7 +177,16 @@ impl<'a> Snapshot<'a> {
     ///
     /// The [`domain`](Self::domain) leaves room for walls that move.
     pub fn edges(&self) -> Domain {
-        self.walls.map_or(self.domain, |walls| walls.boundary.edges(walls.time))
+        let mut edges = self.domain;
+        for (side, point) in self.walls().filter_map(|wall| wall.side.zip(wall.point)) {
+            match side {
+                Wall::Left => edges.left = point.x,
+                Wall::Right => edges.right = point.x,
+                Wall::Floor => edges.bottom = point.y,
+                Wall::Lid => edges.top = point.y,
+            }
+        }
+        edges
     }
 
     /// Returns the walls that move: the index of each, its displacement from its position at rest, and the
@@ -183,12 +210,8 @@ impl<'a> Snapshot<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn moving_walls(&self) -> Vec<(usize, DVec2, f64)> {
-        let Some(Walls { boundary, time }) = self.walls else { return Vec::new() };
-        let moved = |wall| {
-            let (displacement, phase) = boundary.wall_motion(wall, time)?;
-            Some((wall, displacement, phase))
-        };
-        (0..self.wall_count).filter_map(moved).collect()
+        let moved = |(wall, view): (usize, WallView<'_>)| view.motion.map(|(by, phase)| (wall, by, phase));
+        self.walls().enumerate().filter_map(moved).collect()
     }
 
     /// Returns the area of the part of `region` in which the center of a disk of this radius is free, or
@@ -257,27 +280,10 @@ impl<'a> Snapshot<'a> {
         self.gravity
     }
 
-    /// Returns the walls as polylines, without the edges of the domain, for pictures.
-    ///
-    /// They come from the [`wall_lines`](Boundary::wall_lines) of the run's boundary at this time. A snapshot
-    /// without a boundary has no walls.
-    ///
-    /// ```
-    /// use granular_edmd::prelude::*;
-    ///
-    /// let gate = Part::polyline([DVec2::new(1.0, 4.0), DVec2::new(7.0, 4.0)])?;
-    /// let mut vessel = Vessel::new(Container::closed(8.0, 8.0)?).with("gate", gate)?;
-    /// let grain = Disk::new(DVec2::new(4.0, 6.0), 0.5)?;
-    /// let mut run = Simulation::builder(Elastic, vessel.clone()).disks([grain]).build()?;
-    /// assert_eq!(run.snapshot().wall_lines().len(), 1);
-    ///
-    /// vessel.remove("gate")?;
-    /// run.set_boundary(vessel)?;
-    /// assert!(run.snapshot().wall_lines().is_empty());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Returns the walls as polylines, without the edges of the domain, for pictures: the
+    /// [lines](WallView::line) of all walls.
     pub fn wall_lines(&self) -> Vec<Vec<DVec2>> {
-        self.walls.map_or_else(Vec::new, |walls| walls.boundary.wall_lines(walls.time))
+        self.walls().map(|wall| wall.line()).filter(|line| !line.is_empty()).collect()
     }
 
     /// Returns a snapshot of other disks, for example of a part of the present disks, in the same domain at

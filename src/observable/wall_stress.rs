@@ -1,10 +1,8 @@
 //! The stress on walls.
 
-use std::collections::BTreeMap;
-
+use super::by_wall::ByWall;
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
-use super::wall_names::{WallNames, check_walls};
 use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::quantity::positive;
@@ -24,11 +22,11 @@ use crate::statistics::{BlockedMean, Estimate};
 /// cannot hit it again immediately, so the values of short intervals are anticorrelated, and their errors are
 /// up to three times too large. Choose intervals with many collisions.
 ///
-/// A run ends with an error if an index names no wall, or a wall with another
-/// [name](crate::boundary::Boundary::wall_name) than before.
+/// One brick of a part has a name like "funnel, brick 2". A run ends with an error if its boundary has no wall
+/// and no part of one of the names.
 ///
 /// ```
-/// use granular_edmd::boundary::{Container, Wall};
+/// use granular_edmd::boundary::Container;
 /// use granular_edmd::collision::Elastic;
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::observable::{SampleTimes, WallStress};
@@ -37,24 +35,22 @@ use crate::statistics::{BlockedMean, Estimate};
 /// // A ball of speed 3 bounces between floor and lid; its center moves 2 up and 2 down. Every 4/3, it
 /// // gives the floor the impulse 3 + 3.
 /// let container = Container::closed(5.0, 3.0)?;
-/// let floor = container.index(Wall::Floor).unwrap();
 /// let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.0, 3.0))?;
-/// let mut stress = WallStress::new(SampleTimes::every(4.0)?).with_wall(floor, 5.0)?;
+/// let mut stress = WallStress::new(SampleTimes::every(4.0)?).with_wall("floor", 5.0)?;
 /// Simulation::builder(Elastic, container).disks(vec![ball]).build()?.run_until(40.0, &mut stress)?;
-/// assert!((stress.pressure(floor).unwrap().mean() - 4.5 / 5.0).abs() < 1e-12);
-/// assert_eq!(stress.shear(floor).unwrap().mean(), 0.0);
+/// assert!((stress.pressure("floor").unwrap().mean() - 4.5 / 5.0).abs() < 1e-12);
+/// assert_eq!(stress.shear("floor").unwrap().mean(), 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct WallStress {
     stretch: Stretch,
-    walls: BTreeMap<usize, Received>,
-    names: WallNames,
+    walls: ByWall<Received>,
 }
 
 /// The impulse that a wall received.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 struct Received {
     length: f64,
@@ -66,34 +62,33 @@ struct Received {
 impl WallStress {
     /// Creates an observer that watches no wall yet and gives a value for each interval of the sample times.
     pub const fn new(times: SampleTimes) -> Self {
-        Self { stretch: Stretch::new(times), walls: BTreeMap::new(), names: WallNames::NONE }
+        Self { stretch: Stretch::new(times), walls: ByWall::NONE }
     }
 
-    /// Returns the same observer, which also watches the wall of this index and length.
+    /// Returns the same observer, which also watches the wall or part of this name and length.
     ///
     /// # Errors
     /// If the length is not finite and positive.
-    pub fn with_wall(mut self, wall: usize, length: f64) -> Result<Self, ParameterError> {
+    pub fn with_wall(mut self, name: impl Into<String>, length: f64) -> Result<Self, ParameterError> {
         let length = positive("length of a wall", length)?;
         let received = Received { length, impulse: [0.0; 2], means: Default::default() };
-        self.walls.insert(wall, received);
+        self.walls.insert(name.into(), received);
         Ok(self)
     }
 
-    /// Returns the pressure on a wall, or `None` if the wall is not watched.
-    pub fn pressure(&self, wall: usize) -> Option<Estimate> {
-        self.walls.get(&wall).map(|wall| wall.means[0].estimate())
+    /// Returns the pressure on the wall of this name, or `None` if it is not watched.
+    pub fn pressure(&self, name: &str) -> Option<Estimate> {
+        self.walls.get(name).map(|wall| wall.means[0].estimate())
     }
 
-    /// Returns the shear stress on a wall, or `None` if the wall is not watched.
-    pub fn shear(&self, wall: usize) -> Option<Estimate> {
-        self.walls.get(&wall).map(|wall| wall.means[1].estimate())
+    /// Returns the shear stress on the wall of this name, or `None` if it is not watched.
+    pub fn shear(&self, name: &str) -> Option<Estimate> {
+        self.walls.get(name).map(|wall| wall.means[1].estimate())
     }
 
     /// Forgets all measurements so far.
     pub fn clear(&mut self) {
         self.stretch.forget();
-        self.names = WallNames::default();
         for received in self.walls.values_mut() {
             (received.impulse, received.means) = ([0.0; 2], Default::default());
         }
@@ -102,8 +97,7 @@ impl WallStress {
 
 impl Observer for WallStress {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        check_walls(start, self.walls.keys())?;
-        self.names.check(start, |wall| self.walls.contains_key(&wall))?;
+        self.walls.find(start)?;
         if self.stretch.begin(start) {
             self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
         }
@@ -112,7 +106,7 @@ impl Observer for WallStress {
 
     fn on_collision(&mut self, collision: &Collision) {
         let Partner::Wall(wall) = collision.partner else { return };
-        if let Some(received) = self.walls.get_mut(&wall) {
+        if let Some(received) = self.walls.at(wall) {
             received.impulse[0] += collision.impulse.normal();
             received.impulse[1] -= collision.impulse.tangential();
         }
@@ -138,6 +132,7 @@ impl Observer for WallStress {
     }
 }
 
+/// The walls are numbered in the order in which they were named.
 impl Table for WallStress {
     fn headings(&self) -> Vec<Heading> {
         headings(&[("wall", "1")], &[("pressure", STRESS), ("shear", STRESS)])
@@ -145,7 +140,8 @@ impl Table for WallStress {
 
     fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
         let estimates = |received: &Received| received.means.each_ref().map(BlockedMean::estimate);
-        Box::new(self.walls.iter().map(move |(&wall, received)| row(&[wall as f64], &estimates(received))))
+        let numbered = (0..).map(f64::from).zip(self.walls.values());
+        Box::new(numbered.map(move |(number, received)| row(&[number], &estimates(received))))
     }
 }
 

@@ -235,11 +235,11 @@ fn check_inside(boundary: &dyn Boundary, disks: &[Disk], offset: f64) -> Result<
         if let Some(Overlap { with: wall, depth }) = boundary.overlap(&Probe::of(state, offset))
             && (depth.is_nan() || depth > TOUCHING * radius)
         {
-            let wall = boundary.wall_name(wall).into_owned();
+            let wall = boundary.wall(wall, offset).to_string();
             return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });
         }
         if let Some(wall) = boundary.tight_fit(radius) {
-            let wall = boundary.wall_name(wall).into_owned();
+            let wall = boundary.wall(wall, offset).to_string();
             return Err(BuildError::TightFit { disk, radius, wall });
         }
     }

@@ -88,12 +88,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 && found.abs() <= expected.abs()
                 && !self.parts.boundary.state().is_empty()
         };
-        let across = normal.perp();
         // A guide at a slant moves a wall along its surface, too. No disk feels it if there is no friction.
         let is_smooth = impulse.tangential() == 0.0 && impulse.couple() == 0.0;
-        // A wall that takes the impulse along its normal is not held.
-        let is_right_across =
-            is_smooth || is_at(expected, across) || is_at(before, normal) && is_held(across);
+        let is_right_across = is_smooth || is_at(expected, normal.perp());
         let is_told = reaction == Reaction::Moved || found.distance(before) <= slack;
         if is_told && is_right_across && (is_at(expected, normal) || is_held(normal)) {
             return Ok(());
@@ -238,7 +235,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the name of the partner if it is a wall.
     pub(super) fn name_of(&self, partner: Partner) -> Option<String> {
         let Partner::Wall(wall) = partner else { return None };
-        Some(self.parts.boundary.wall_name(wall).into_owned())
+        Some(self.parts.boundary.wall(wall, self.engine.clock.now).to_string())
     }
 
     /// Repeats the search that returned an impossible touch, in order to report the touch.

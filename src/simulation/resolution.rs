@@ -102,8 +102,7 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
 #[inline]
 fn captured(arriving: &Body, surface: &Surface<'_>, mass: f64) -> Body {
     let (against, normal) = (arriving.velocity - surface.velocity, surface.normal);
-    let [along, across] = [surface.mass, surface.tangential_mass].map(|wall| mass / (mass + wall));
-    let gained = along * against.dot(normal) * normal + across * against.dot(normal.perp()) * normal.perp();
+    let gained = mass / (mass + surface.mass) * against.dot(normal) * normal;
     Body { velocity: surface.velocity + gained, angular_velocity: 0.0 }
 }
 
@@ -123,9 +122,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let (mass, inertia) = (1.0 / material.inverse_mass, bodies.moment_of_inertia(disk));
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
     let since = offset - bodies.spins[disk].last_collision;
-    let partner = &Body { velocity: surface.velocity, angular_velocity: spin_of(surface) };
-    let masses = [surface.mass, surface.tangential_mass];
-    let wall = &Material::of_wall(surface.kind, surface.radius, masses);
+    let partner = &Body { velocity: surface.velocity, angular_velocity: surface.angular_velocity };
+    let wall = &Material::of_wall(surface.kind, surface.radius, surface.mass);
     let contact = contact_of(surface.normal, since, (&arriving, &material), (partner, wall));
     let kicked_by = |impulse: Impulse| (after(&arriving, &material, surface.normal, &impulse), impulse);
     // Thermal walls and sinks decide the motion, and the impulse follows from it.
@@ -162,32 +160,19 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     (collision, kick)
 }
 
-/// Returns the angular velocity of a wall. A curved wall with a mass along its surface turns about the center
-/// of the surface.
-fn spin_of(surface: &Surface<'_>) -> f64 {
-    let turns_freely = surface.tangential_mass.is_finite() && surface.radius.is_finite();
-    if turns_freely {
-        surface.velocity.dot(surface.normal.perp()) / surface.radius
-    } else {
-        surface.angular_velocity
-    }
-}
-
 /// Returns whether an impulse changes the velocity of a surface.
 #[inline]
 pub(super) fn has_mass(surface: &Surface<'_>) -> bool {
-    surface.mass != f64::INFINITY || surface.tangential_mass != f64::INFINITY
+    surface.mass != f64::INFINITY
 }
 
 /// Returns the velocity of a wall's surface after an impulse, which changes only a wall with a mass.
 fn velocity_after(surface: &Surface<'_>, impulse: &Impulse) -> DVec2 {
-    if !has_mass(surface) {
-        return surface.velocity;
+    if has_mass(surface) {
+        surface.velocity - surface.normal * (impulse.normal() / surface.mass)
+    } else {
+        surface.velocity
     }
-    // A couple on a wall of this radius acts like an impulse along the surface.
-    let along = impulse.tangential() - impulse.couple() / surface.radius;
-    let along = surface.normal.perp() * (along / surface.tangential_mass);
-    surface.velocity - surface.normal * (impulse.normal() / surface.mass) - along
 }
 
 /// Returns whether two disks part so fast after a collision that rounding cannot make them approach. Nearly
@@ -199,19 +184,16 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
 }
 
 /// Returns whether a surface's normal is a unit vector, its velocities are possible for a disk, its radius is
-/// neither zero nor NaN, and its masses are positive. A thermal wall must be guided along its surface.
+/// neither zero nor NaN, and its mass is positive.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;
-    let is_guided = surface.tangential_mass == f64::INFINITY;
-    let has_mass = surface.mass > 0.0
-        && (is_guided || surface.tangential_mass > 0.0 && !matches!(surface.response, Response::Thermal(_)));
     let turns = surface.angular_velocity.abs() <= LARGEST;
     (surface.normal.length() - 1.0).abs() <= UNIT
         && velocity.x <= LARGEST
         && velocity.y <= LARGEST
         && is_curved
-        && has_mass
+        && surface.mass > 0.0
         && turns
 }
 
@@ -227,7 +209,6 @@ pub(super) fn failed(collision: &Collision, wall: Option<String>) -> RunError {
 pub(super) fn impact_of(collision: &Collision, wall: usize, offset: f64) -> Impact {
     let impulse = collision.impulse;
     Impact::new(wall, -momentum(collision.normal, &impulse), collision.partner_position(), offset)
-        .with_couple(impulse.couple())
 }
 
 /// Returns the random numbers for a disk's present collision, which do not depend on the order of events.

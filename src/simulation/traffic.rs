@@ -205,7 +205,7 @@ pub(super) fn check_inlets(boundary: &dyn Boundary, inlets: &[Inlet]) -> Result<
         }
         for (disk, model) in inlet.models().iter().enumerate() {
             if let Some(wall) = boundary.tight_fit(model.radius()) {
-                let wall = boundary.wall_name(wall).into_owned();
+                let wall = boundary.wall(wall, 0.0).to_string();
                 return Err(BuildError::TightFit { disk, radius: model.radius(), wall });
             }
         }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::boundary::{VesselError, WallError};
+use granular_edmd::boundary::WallError;
 use granular_edmd::initial::PlacementError;
 use granular_edmd::observable::ObserverError;
 use granular_edmd::simulation::{BuildError, CheckpointError, RunError};
@@ -54,7 +54,7 @@ macro_rules! from_causes {
 }
 
 from_causes! {
-    &str, String, io::Error, ParameterError, WallError, VesselError, PlacementError, BuildError, RunError,
+    &str, String, io::Error, ParameterError, WallError, PlacementError, BuildError, RunError,
     CheckpointError, Violation, ObserverError, PlanError, StudyError
 }
 

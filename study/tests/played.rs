@@ -42,7 +42,7 @@ impl Observer for Left {
 
 impl Experiment for Gas {
     type Rule = Smooth;
-    type Boundary = Vessel;
+    type Boundary = Container;
     type Observer = Left;
     type Sample = f64;
 
@@ -52,9 +52,9 @@ impl Experiment for Gas {
     fn rule(&self) -> Result<Smooth, ExperimentError> {
         Ok(Smooth::from_restitution(self.restitution)?)
     }
-    fn boundary(&self) -> Result<Vessel, ExperimentError> {
+    fn boundary(&self) -> Result<Container, ExperimentError> {
         let plate = Part::polyline([DVec2::new(2.0, 10.0), DVec2::new(10.0, 10.0)])?;
-        Ok(Vessel::new(Container::closed(12.0, 14.0)?).with("plate", plate)?)
+        Ok(Container::closed(12.0, 14.0)?.with_part("plate", plate)?)
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
         let disks = initial::lattice(&Container::closed(12.0, 8.0)?, 30, 0.5)?;

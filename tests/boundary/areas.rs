@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Obstacles, Part, Probe, Region, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Region, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Sinusoidal;
 use granular_edmd::{Disk, Kind, ParameterError};
@@ -74,7 +74,7 @@ fn a_container_is_a_rectangle_with_its_walls_where_they_are() -> Result<(), Fail
 
 #[test]
 fn a_drum_and_parts_of_it() -> Result<(), Failure> {
-    let drum = Vessel::around([("drum", Part::drum(DVec2::new(1.0, -2.0), 10.0)?)])?;
+    let drum = Container::around([("drum", Part::drum(DVec2::new(1.0, -2.0), 10.0)?)])?;
     whole(&drum, PI * 100.0, PI * 9.5 * 9.5);
     // A square inside is all free, with the same bits; one outside is not.
     let inside = square(DVec2::new(2.0, -3.0), 1.3);
@@ -95,14 +95,14 @@ fn a_drum_and_parts_of_it() -> Result<(), Failure> {
 fn polygons_blocks_and_pegs() -> Result<(), Failure> {
     let right = [(0.0, 0.0), (12.0, 0.0), (0.0, 5.0)];
     // Inset by 0.5, a right triangle of sides 5, 12, 13 with an incircle of radius 2 shrinks by 3/4.
-    let triangle = Vessel::around([("triangle", Part::polygon(points(right))?)])?;
+    let triangle = Container::around([("triangle", Part::polygon(points(right))?)])?;
     whole(&triangle, 30.0, 30.0 * 0.75 * 0.75);
     // A block of 2 by 3 in the open has rounded corners for centers.
     let block = Part::block(points([(4.0, 4.0), (6.0, 4.0), (6.0, 7.0), (4.0, 7.0)]))?;
-    let boxed = Vessel::new(Container::closed(10.0, 10.0)?).with("block", block)?;
+    let boxed = Container::closed(10.0, 10.0)?.with_part("block", block)?;
     whole(&boxed, 94.0, 81.0 - 6.0 - 0.5 * 10.0 - PI * 0.25);
     // A quarter of a peg in a corner; the centers lose a quarter of a ring that the walls cut off.
-    let peg = Vessel::new(Container::closed(10.0, 10.0)?).with("peg", Part::peg(DVec2::ZERO, 2.0)?)?;
+    let peg = Container::closed(10.0, 10.0)?.with_part("peg", Part::peg(DVec2::ZERO, 2.0)?)?;
     let cut = |r: f64, d: f64| {
         // Area of a quarter circle beyond the distance d from both axes.
         let angle = FRAC_PI_2 - 2.0 * (d / r).asin();
@@ -111,11 +111,11 @@ fn polygons_blocks_and_pegs() -> Result<(), Failure> {
     whole(&peg, 100.0 - PI, 81.0 - cut(2.5, 0.5));
     // A thin wall takes no area from matter, and a stadium from centers.
     let wall = Part::polyline(points([(3.0, 3.0), (6.0, 7.0)]))?;
-    let walled = Vessel::new(Container::closed(10.0, 10.0)?).with("wall", wall)?;
+    let walled = Container::closed(10.0, 10.0)?.with_part("wall", wall)?;
     whole(&walled, 100.0, 81.0 - 5.0 - PI * 0.25);
     // A line that takes centers out is in nobody's way.
     let sink = Part::polyline(points([(3.0, 3.0), (6.0, 7.0)]))?.absorbing_centers();
-    whole(&Vessel::new(Container::closed(10.0, 10.0)?).with("sink", sink)?, 100.0, 81.0);
+    whole(&Container::closed(10.0, 10.0)?.with_part("sink", sink)?, 100.0, 81.0);
     Ok(())
 }
 
@@ -125,15 +125,14 @@ fn parts_that_overlap_count_once() -> Result<(), Failure> {
     let lens = |r: f64, d: f64| 2.0 * r * r * (0.5 * d / r).acos() - 0.5 * d * (4.0 * r * r - d * d).sqrt();
     let both = |r: f64| 2.0 * PI * r * r - lens(r, 2.0);
     let other = Part::peg(DVec2::new(6.0, 5.0), 1.5)?;
-    let two = Vessel::new(Container::closed(10.0, 10.0)?).with("one", one.clone())?.with("other", other)?;
+    let two = Container::closed(10.0, 10.0)?.with_part("one", one.clone())?.with_part("other", other)?;
     whole(&two, 100.0 - both(1.5), 81.0 - both(2.0));
     // The same part twice.
-    let twice = Vessel::new(Container::closed(10.0, 10.0)?).with("one", one.clone())?.with("two", one)?;
+    let twice = Container::closed(10.0, 10.0)?.with_part("one", one.clone())?.with_part("two", one)?;
     whole(&twice, 100.0 - PI * 2.25, 81.0 - PI * 4.0);
     // Two blocks side by side are one block.
     let block = |x: f64| Part::block(points([(x, 3.0), (x + 2.0, 3.0), (x + 2.0, 6.0), (x, 6.0)]));
-    let blocks =
-        Vessel::new(Container::closed(10.0, 10.0)?).with("a", block(2.0)?)?.with("b", block(4.0)?)?;
+    let blocks = Container::closed(10.0, 10.0)?.with_part("a", block(2.0)?)?.with_part("b", block(4.0)?)?;
     whole(&blocks, 88.0, 81.0 - 12.0 - 7.0 - PI * 0.25);
     Ok(())
 }
@@ -142,9 +141,9 @@ fn parts_that_overlap_count_once() -> Result<(), Failure> {
 fn across_periodic_sides() -> Result<(), Failure> {
     let periodic = Container::periodic(10.0, 12.0)?;
     let peg = Part::peg(DVec2::new(9.5, 0.5), 1.5)?;
-    whole(&Vessel::new(periodic.clone()).with("peg", peg)?, 120.0 - PI * 2.25, 120.0 - PI * 4.0);
+    whole(&periodic.clone().with_part("peg", peg)?, 120.0 - PI * 2.25, 120.0 - PI * 4.0);
     let disk = Disk::new(DVec2::new(9.5, 0.5), 1.5)?;
-    whole(&Obstacles::new(periodic, [disk]), 120.0 - PI * 2.25, 120.0 - PI * 4.0);
+    whole(&periodic.with_pegs([disk])?, 120.0 - PI * 2.25, 120.0 - PI * 4.0);
     Ok(())
 }
 
@@ -152,22 +151,22 @@ fn across_periodic_sides() -> Result<(), Failure> {
 fn obstacles_alone_and_in_walls() -> Result<(), Failure> {
     let disk = |x: f64, y: f64, r: f64| -> Result<Disk, ParameterError> { Disk::new(DVec2::new(x, y), r) };
     let container = Container::closed(10.0, 10.0)?;
-    whole(&Obstacles::new(container.clone(), []), 100.0, 81.0);
-    let board = Obstacles::new(container.clone(), [disk(4.0, 5.0, 1.0)?, disk(7.0, 5.0, 0.5)?]);
+    whole(&container.clone().with_pegs([])?, 100.0, 81.0);
+    let board = container.clone().with_pegs([disk(4.0, 5.0, 1.0)?, disk(7.0, 5.0, 0.5)?])?;
     whole(&board, 100.0 - 1.25 * PI, 81.0 - PI * (2.25 + 1.0));
     // Half of one lies in the floor, and another in the rim of a drum.
-    whole(&Obstacles::new(container, [disk(5.0, 0.0, 1.0)?]), 100.0 - 0.5 * PI, {
+    whole(&container.with_pegs([disk(5.0, 0.0, 1.0)?])?, 100.0 - 0.5 * PI, {
         let segment = 2.25 * (0.5_f64 / 1.5).acos() - 0.5 * 2.0_f64.sqrt();
         81.0 - segment
     });
-    let drum = Vessel::around([("drum", Part::drum(DVec2::ZERO, 5.0)?)])?;
+    let drum = Container::around([("drum", Part::drum(DVec2::ZERO, 5.0)?)])?;
     let shared = |r: f64, s: f64| {
         // The lens of a circle of radius r about the origin and one of radius s about (5, 0).
         let (d, cosine) = (5.0, |a: f64, b: f64| (25.0 + a * a - b * b) / (10.0 * a));
         let (one, two) = (cosine(r, s).acos(), cosine(s, r).acos());
         r * r * one + s * s * two - d * r * one.sin()
     };
-    let in_rim = Obstacles::new(drum, [disk(5.0, 0.0, 1.0)?]);
+    let in_rim = drum.with_pegs([disk(5.0, 0.0, 1.0)?])?;
     whole(&in_rim, 25.0 * PI - shared(5.0, 1.0), PI * 20.25 - shared(4.5, 1.5));
     Ok(())
 }
@@ -179,9 +178,9 @@ fn a_thin_block_inside_an_obstacle_counts_once() -> Result<(), Failure> {
     for width in [0.001, 0.03, 1.0] {
         let [low, high] = [9.3 - 0.5 * width, 9.3 + 0.5 * width];
         let block = Part::block(points([(low, 5.0), (high, 5.0), (high, 15.0), (low, 15.0)]))?;
-        let vessel = Vessel::new(Container::closed(20.0, 20.0)?)
-            .with("block", block.rotated(DVec2::splat(10.0), 0.3)?)?;
-        let one = Obstacles::new(vessel, [obstacle]);
+        let vessel =
+            Container::closed(20.0, 20.0)?.with_part("block", block.rotated(DVec2::splat(10.0), 0.3)?)?;
+        let one = vessel.with_pegs([obstacle])?;
         is(&one, &everywhere(&one), 0.0, 0.0, 400.0 - 36.0 * PI);
     }
     Ok(())
@@ -194,9 +193,10 @@ fn obstacles_beside_narrow_features_of_parts() -> Result<(), Failure> {
     for away in [0.72, 0.9, 1.1, 1.3, 1.42] {
         for turn in [0.1, 1.3, 2.9, 4.4] {
             let place = obstacle.position() + away * DVec2::from_angle(turn);
-            let vessel = Vessel::new(Container::closed(13.0, 13.0)?).with("peg", Part::peg(place, 0.05)?)?;
-            let both = vessel.clone().with("obstacle", Part::peg(obstacle.position(), obstacle.radius())?)?;
-            let one = Obstacles::new(vessel, [obstacle]);
+            let vessel = Container::closed(13.0, 13.0)?.with_part("peg", Part::peg(place, 0.05)?)?;
+            let both =
+                vessel.clone().with_part("obstacle", Part::peg(obstacle.position(), obstacle.radius())?)?;
+            let one = vessel.with_pegs([obstacle])?;
             for radius in [0.0, 0.05, 0.15, 0.5] {
                 for region in [everywhere(&both), square(DVec2::new(6.2, 6.4), 1.1)] {
                     let [one, two] = [one.area(&region, radius, 0.0), both.area(&region, radius, 0.0)];
@@ -214,7 +214,7 @@ fn moving_parts_take_their_area_along() -> Result<(), Failure> {
     let paddle = Part::block(points([(3.0, 4.5), (7.0, 4.5), (7.0, 5.5), (3.0, 5.5)]))?;
     let paddle = paddle.with_rotation(DVec2::splat(5.0), 1.0)?;
     let drum = Part::drum(DVec2::splat(5.0), 5.0)?;
-    let stirred = Vessel::around([("drum", drum), ("paddle", paddle)])?;
+    let stirred = Container::around([("drum", drum), ("paddle", paddle)])?;
     for time in [0.0, 0.3, 1.1, 4.0] {
         is(&stirred, &everywhere(&stirred), 0.0, time, 25.0 * PI - 4.0);
         is(&stirred, &everywhere(&stirred), 0.5, time, 20.25 * PI - 4.0 - 5.0 - PI * 0.25);
@@ -228,10 +228,10 @@ fn moving_parts_take_their_area_along() -> Result<(), Failure> {
 fn open_lines_are_as_the_engine_sees_them() -> Result<(), Failure> {
     // A bowl, and a ramp in a corner: disks are free on one side of each.
     let bowl = Part::new([Brick::arc(DVec2::new(5.0, 5.0), 5.0, PI, 2.0 * PI)?])?;
-    let bowl = Vessel::new(Container::closed(10.0, 10.0)?).with("bowl", bowl)?;
+    let bowl = Container::closed(10.0, 10.0)?.with_part("bowl", bowl)?;
     whole(&bowl, 50.0 + 12.5 * PI, 9.0 * 4.5 + 0.5 * PI * 4.5 * 4.5);
     let ramp = Part::new([Brick::segment(DVec2::new(0.0, 3.0), DVec2::new(4.0, 0.0))?])?;
-    let ramp = Vessel::new(Container::closed(10.0, 10.0)?).with("ramp", ramp)?;
+    let ramp = Container::closed(10.0, 10.0)?.with_part("ramp", ramp)?;
     is(&ramp, &everywhere(&ramp), 0.0, 0.0, 94.0);
     by_chance(&ramp, &everywhere(&ramp), 0.5, 0.0);
     Ok(())
@@ -245,7 +245,7 @@ fn heaps_of_parts_by_chance() -> Result<(), Failure> {
     for case in 0..12 {
         let container = Container::closed(10.0, 10.0)?;
         let container = if case % 3 == 0 { container.with_periodic_sides()? } else { container };
-        let mut vessel = Vessel::new(container);
+        let mut vessel = container;
         for number in 0..5 {
             let center = DVec2::new(uniform(0.0, 10.0), uniform(0.0, 10.0));
             let (size, angle) = (uniform(0.2, 1.8), uniform(0.0, 6.0));
@@ -256,7 +256,7 @@ fn heaps_of_parts_by_chance() -> Result<(), Failure> {
                 _ => Part::polyline((0..3).map(corner))?,
             };
             let part = if number == 1 { part.with_rotation(center + size, 0.7)? } else { part };
-            vessel.put(format!("part {number}"), part)?;
+            vessel.add_part(format!("part {number}"), part)?;
         }
         for radius in [0.0, 0.3] {
             by_chance(&vessel, &everywhere(&vessel), radius, 0.4);
@@ -274,8 +274,8 @@ fn heaps_of_parts_by_chance() -> Result<(), Failure> {
 #[test]
 fn an_inside_for_some_kinds_has_no_area_for_all() -> Result<(), Failure> {
     let corners = || points([(3.0, 2.0), (9.0, 2.0), (9.0, 7.0), (3.0, 7.0)]);
-    let boxed = |part: Part| Vessel::new(Container::closed(12.0, 9.0)?).with("part", part);
-    let area = |vessel: &Vessel, radius| vessel.area(&everywhere(vessel), radius, 0.0);
+    let boxed = |part: Part| Container::closed(12.0, 9.0)?.with_part("part", part);
+    let area = |vessel: &Container, radius| vessel.area(&everywhere(vessel), radius, 0.0);
     let middle = DVec2::new(6.0, 4.0);
     let back = Part::new([Brick::segment(middle, DVec2::new(9.0, 4.0))?])?;
     for part in [Part::block(corners())?, Part::polygon(corners())?, Part::peg(middle, 1.0)?, back] {
@@ -283,7 +283,7 @@ fn an_inside_for_some_kinds_has_no_area_for_all() -> Result<(), Failure> {
             let vessel = boxed(part.clone().only_for([kind]))?;
             assert_eq!((area(&vessel, 0.0), area(&vessel, 0.5)), (None, None), "{part:?}");
             assert_eq!(
-                Obstacles::new(vessel, [Disk::new(DVec2::ONE, 0.2)?]).area(&square(middle, 9.0), 0.0, 0.0),
+                vessel.with_pegs([Disk::new(DVec2::ONE, 0.2)?])?.area(&square(middle, 9.0), 0.0, 0.0),
                 None
             );
         }

@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 
 use granular_edmd::boundary::laws::check;
 use granular_edmd::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Vessel,
-    Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Wall,
 };
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Piston;
@@ -111,7 +110,7 @@ fn a_radius_of_curvature_may_change_in_time() {
 }
 
 /// A vessel whose area of matter is wrong by a share, and its areas of centers are not.
-struct Wrong(Vessel, f64);
+struct Wrong(Container, f64);
 
 impl Boundary for Wrong {
     fn domain(&self) -> Domain {
@@ -158,7 +157,7 @@ fn the_area_of_matter_is_checked() -> Outcome {
         Part::new([Brick::arc(middle, 2.0, 0.0, 3.0)?.two_sided()])?,
     ];
     for part in parts {
-        let vessel = Vessel::new(Container::closed(12.0, 9.0)?).with("part", part)?;
+        let vessel = Container::closed(12.0, 9.0)?.with_part("part", part)?;
         assert_eq!(check(&mut Wrong(vessel.clone(), 0.0), 0.5, 1.0, 1), Ok(()), "{vessel:?}");
         for error in [-0.01, 1e-3, 0.1] {
             let found = check(&mut Wrong(vessel.clone(), error), 0.5, 1.0, 1);

@@ -28,7 +28,7 @@ fn region(min: (f64, f64), max: (f64, f64)) -> Region {
 }
 
 fn names(boundary: &impl Boundary) -> Vec<String> {
-    (0..boundary.wall_count()).map(|wall| boundary.wall_name(wall).into_owned()).collect()
+    (0..boundary.wall_count()).map(|wall| boundary.wall(wall, 0.0).to_string()).collect()
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn walls_have_names_numbers_and_sizes() {
     assert_eq!(names(&open), ["floor", "left", "right"]);
     assert_eq!(names(&periodic), ["floor", "lid"]);
     assert_eq!(
-        [4, usize::MAX].map(|wall| closed().wall_name(wall).into_owned()),
+        [4, usize::MAX].map(|wall| closed().wall(wall, 0.0).to_string()),
         ["wall 4".to_owned(), format!("wall {}", usize::MAX)]
     );
     let all = [Wall::Floor, Wall::Left, Wall::Right, Wall::Lid];

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use granular_edmd::boundary::{Boundary, Container, Part, Probe, Vessel};
+use granular_edmd::boundary::{Boundary, Container, Part, Probe};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Event, Limits, RunEnd, RunError};
@@ -25,9 +25,8 @@ fn arm(angular_velocity: f64) -> Part {
     arm.with_rotation(point(5.0, 5.0), angular_velocity).unwrap()
 }
 
-fn beside_an_arm(angular_velocity: f64, disk: Disk) -> Simulation<Elastic, Vessel> {
-    let room =
-        Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("arm", arm(angular_velocity)).unwrap();
+fn beside_an_arm(angular_velocity: f64, disk: Disk) -> Simulation<Elastic> {
+    let room = Container::closed(20.0, 20.0).unwrap().with_part("arm", arm(angular_velocity)).unwrap();
     Simulation::builder(Elastic, room).disks([disk]).build().unwrap()
 }
 
@@ -87,16 +86,16 @@ fn disk(k: i32) -> Disk {
 }
 
 /// A rhombus with its middle at the origin, and nine disks in it.
-fn rhombus(direction: DVec2, motion: impl WallMotion + Send + Sync + 'static) -> Simulation<Elastic, Vessel> {
+fn rhombus(direction: DVec2, motion: impl WallMotion + Send + Sync + 'static) -> Simulation<Elastic> {
     let corners = [point(10.0, 0.0), point(0.0, 10.0), point(-10.0, 0.0), point(0.0, -10.0)];
     let rhombus = Part::polygon(corners).unwrap().with_motion(direction, motion).unwrap();
-    let vessel = Vessel::around([("rhombus", rhombus)]).unwrap();
+    let vessel = Container::around([("rhombus", rhombus)]).unwrap();
     Simulation::builder(Elastic, vessel).disks((0..9).map(disk)).build().unwrap()
 }
 
 /// Runs, and checks every flight by brute force, with samples `dense` apart wherever a disk is near the
 /// walls. Returns the number of wall collisions.
-fn checked_run(mut run: Simulation<Elastic, Vessel>, end: f64, amplitude: f64, dense: f64) -> u64 {
+fn checked_run(mut run: Simulation<Elastic>, end: f64, amplitude: f64, dense: f64) -> u64 {
     let mut vessel = run.boundary().clone();
     vessel.set_time_origin(0.0);
     let depth = |disk: &Disk, time: f64, more: f64| {
@@ -212,7 +211,7 @@ fn parts_that_turn_and_travel_have_the_collisions_of_brute_force() {
             let moves = |part: Part| {
                 let part = part.with_motion(point(1.0, 0.3), motion()).unwrap();
                 let part = part.with_rotation(point(0.4, -0.2), angular_velocity).unwrap();
-                Vessel::around([("part", part.starting_at(start).unwrap())]).unwrap()
+                Container::around([("part", part.starting_at(start).unwrap())]).unwrap()
             };
             let corners = [point(10.0, 0.0), point(0.0, 10.0), point(-10.0, 0.0), point(0.0, -10.0)];
             let rhombus = moves(Part::polygon(corners).unwrap());
@@ -231,7 +230,7 @@ fn a_part_that_turns_travels_to_a_waiting_disk() {
     let travel = Tabulated::from_to(0.0, 12.0, 20.0).unwrap();
     let peg = Part::peg(point(3.0, 10.0), 0.5).unwrap().with_rotation(point(3.0, 11.0), 1e-9).unwrap();
     let peg = peg.with_motion(DVec2::X, travel.clone()).unwrap();
-    let room = Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("peg", peg).unwrap();
+    let room = Container::closed(20.0, 20.0).unwrap().with_part("peg", peg).unwrap();
     let disk = Disk::new(point(12.0, 10.0), 0.5).unwrap();
     let flight = Flight::new(0.0, disk.position(), DVec2::ZERO, DVec2::ZERO, disk.radius());
     let touch = room.first_touch(&flight, 1e3).touch().unwrap().time;
@@ -292,8 +291,8 @@ impl WallMotion for Lazy {
 #[test]
 fn searches_count_as_events() {
     let floor = Part::block([point(2.0, 2.0), point(8.0, 2.0), point(8.0, 3.0), point(2.0, 3.0)]).unwrap();
-    let room = Vessel::new(Container::closed(10.0, 10.0).unwrap());
-    let room = room.with("slab", floor.with_motion(DVec2::Y, Lazy).unwrap()).unwrap();
+    let room = Container::closed(10.0, 10.0).unwrap();
+    let room = room.with_part("slab", floor.with_motion(DVec2::Y, Lazy).unwrap()).unwrap();
     let disk = Disk::new(point(5.0, 4.0), 0.5).unwrap();
     let mut run = Simulation::builder(Elastic, room).disks([disk]).build().unwrap();
     let start = Instant::now();
@@ -353,8 +352,7 @@ fn a_stroke_below_rounding_is_refused() {
     let part = |amplitude: f64| {
         let peg = Part::peg(point(5.0, 5.0), 1.0).unwrap();
         let motion = BiParabolic::new(amplitude, 1.0 / amplitude).unwrap();
-        Vessel::new(Container::closed(10.0, 10.0).unwrap())
-            .with("peg", peg.with_motion(DVec2::X, motion).unwrap())
+        Container::closed(10.0, 10.0).unwrap().with_part("peg", peg.with_motion(DVec2::X, motion).unwrap())
     };
     assert!(part(1e-9).is_ok());
     let error = part(1e-15).unwrap_err().to_string();

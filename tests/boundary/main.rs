@@ -1,5 +1,4 @@
-//! Boundaries: the container in exact numbers; the contract, which each planted fault breaks; names and
-//! fingerprints.
+//! Boundaries: the container in exact numbers; the contract of containers and parts; areas, files and fingerprints.
 
 mod areas;
 mod checks;
@@ -8,10 +7,8 @@ mod contract;
 mod fast_parts;
 mod files;
 mod fingerprints;
-mod names;
 mod obstacles;
 mod patches;
 mod periodic_parts;
-mod planted;
 mod touches;
 mod vessels;

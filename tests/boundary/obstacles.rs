@@ -1,6 +1,6 @@
-//! Round obstacles inside another boundary.
+//! Round obstacles in a container.
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Overlap, Probe, Wall, laws};
+use granular_edmd::boundary::{Boundary, Container, Overlap, Probe, Wall, laws};
 use granular_edmd::collision::{Contact, Elastic, Impulse, from_fn};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::BiParabolic;
@@ -27,7 +27,7 @@ fn obstacles_keep_the_contract() {
     for (container, seed) in
         few(containers.iter().flat_map(|container| (0..4).map(move |seed| (container, seed))), 5)
     {
-        let mut board = Obstacles::new(container.clone(), pegs());
+        let mut board = container.clone().with_pegs(pegs()).unwrap();
         assert_eq!(laws::check(&mut board, 0.5, 1.0, seed), Ok(()));
     }
 }
@@ -35,7 +35,7 @@ fn obstacles_keep_the_contract() {
 /// A gas between pegs keeps its energy, and no disk comes into a peg, also through periodic sides and ends.
 #[test]
 fn a_gas_flows_around_obstacles() {
-    let board = || Obstacles::new(Container::periodic(12.0, 12.0).unwrap(), pegs());
+    let board = || Container::periodic(12.0, 12.0).unwrap().with_pegs(pegs()).unwrap();
     let disks = initial::scattered(&board(), 40, 0.4, 12.0, 1).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
     let energy = |disks: &[Disk]| disks.iter().map(Disk::translational_energy).sum::<f64>();
@@ -61,7 +61,7 @@ fn a_rule_knows_the_radius_of_a_peg() {
         seen.lock().unwrap().insert(format!("{:?}", contact.radii()));
         Impulse::new(contact.normal_impulse(1.0), 0.0)
     });
-    let board = Obstacles::new(Container::open(10.0).unwrap(), [peg(5.0, 2.0, 1.5)]);
+    let board = Container::open(10.0).unwrap().with_pegs([peg(5.0, 2.0, 1.5)]).unwrap();
     let mut run = Simulation::builder(&rule, board).disks([peg(5.1, 5.5, 0.5)]).gravity(1.0).build().unwrap();
     run.run_until(30.0, &mut ()).unwrap();
     let seen: Vec<String> = seen.lock().unwrap().iter().cloned().collect();
@@ -71,7 +71,7 @@ fn a_rule_knows_the_radius_of_a_peg() {
 /// A disk that falls centrally on a peg bounces on it as on a floor: from height h it takes sqrt(2h/g).
 #[test]
 fn a_disk_bounces_on_a_peg() {
-    let board = Obstacles::new(Container::open(10.0).unwrap(), [peg(5.0, 2.0, 1.0)]);
+    let board = Container::open(10.0).unwrap().with_pegs([peg(5.0, 2.0, 1.0)]).unwrap();
     let disk = peg(5.0, 5.5, 0.5);
     let mut run = Simulation::builder(Elastic, board).disks([disk]).gravity(1.0).build().unwrap();
     run.run_until(4.0, &mut ()).unwrap();
@@ -82,13 +82,11 @@ fn a_disk_bounces_on_a_peg() {
 #[test]
 fn obstacles_have_names_kinds_and_a_fingerprint() {
     let container = || Container::open(10.0).unwrap();
-    let board = Obstacles::new(container(), [peg(5.0, 2.0, 1.0).with_kind(Kind::new(7))]);
-    assert_eq!((board.wall_count(), board.wall_name(3)), (4, "obstacle 0".into()));
-    assert_eq!((board.wall_name(0), board.wall_name(9)), ("floor".into(), "wall 9".into()));
+    let board = container().with_pegs([peg(5.0, 2.0, 1.0).with_kind(Kind::new(7))]).unwrap();
+    assert_eq!((board.wall_count(), board.wall(3, 0.0).to_string()), (4, "peg 0".to_owned()));
     assert_eq!(board.surface(3, DVec2::new(5.0, 4.0), 0.0).kind, Kind::new(7));
     assert_eq!(board.overlap(&Probe::new(DVec2::new(5.0, 3.0), 0.5, 0.0)), Some(Overlap::new(3, 0.5)));
-    assert_eq!((board.boundary().width(), board.obstacles().len()), (10.0, 1));
-    let other = Obstacles::new(container(), [peg(5.0, 2.0, 1.5)]);
+    let other = container().with_pegs([peg(5.0, 2.0, 1.5)]).unwrap();
     assert_ne!(board.fingerprint(), other.fingerprint());
 }
 
@@ -97,8 +95,8 @@ fn obstacles_have_names_kinds_and_a_fingerprint() {
 fn obstacles_are_taken_back_into_a_periodic_domain() {
     for x in [25.0, -15.0, 5.0] {
         let peg = Disk::new(DVec2::new(x, 45.0), 1.0).unwrap();
-        let mut board = Obstacles::new(Container::periodic(10.0, 10.0).unwrap(), [peg]);
-        assert_eq!(board.obstacles()[0].position(), DVec2::new(5.0, 5.0));
+        let mut board = Container::periodic(10.0, 10.0).unwrap().with_pegs([peg]).unwrap();
+        assert_eq!(board.overlap(&Probe::new(DVec2::new(5.0, 5.0), 0.5, 0.0)), Some(Overlap::new(0, 1.5)));
         assert_eq!(laws::check(&mut board, 0.5, 1.0, 3), Ok(()));
     }
 }

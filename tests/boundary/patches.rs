@@ -1,6 +1,6 @@
 //! Parts that lie in a wall replace its stretch, and parts for some kinds let the others pass.
 
-use granular_edmd::boundary::{Container, Part, Thermal, Vessel, Wall};
+use granular_edmd::boundary::{Container, Part, Thermal, Wall};
 use granular_edmd::collision::{Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Arrivals, SampleTimes};
@@ -18,8 +18,8 @@ fn disk(y: f64) -> Outcome<Disk> {
 
 #[test]
 fn a_door_in_a_wall_of_a_container_takes_disks_out() -> Outcome {
-    let vessel = Vessel::new(Container::closed(10.0, 10.0)?).with("door", door()?.absorbing())?;
-    let mut flow = Arrivals::at(vessel.walls("door").ok_or("a door")?, SampleTimes::every(20.0)?);
+    let vessel = Container::closed(10.0, 10.0)?.with_part("door", door()?.absorbing())?;
+    let mut flow = Arrivals::at(["door"], SampleTimes::every(20.0)?);
     let mut run = Simulation::builder(Elastic, vessel).disks([disk(5.0)?, disk(8.0)?]).build()?;
     run.run_until(20.0, &mut flow)?;
     assert_eq!((run.len(), flow.counts()), (1, &[1][..]));
@@ -37,7 +37,7 @@ fn a_door_in_a_polygon_takes_disks_out_in_either_order() -> Outcome {
         let door = Part::polyline([(10.0, 4.0), (10.0, 6.0)].map(|end| turn.rotate(DVec2::from(end))))?;
         let parts = [("room", room), ("door", door.absorbing())];
         for order in [[0, 1], [1, 0]] {
-            let vessel = Vessel::around(order.map(|part| parts[part].clone()))?;
+            let vessel = Container::around(order.map(|part| parts[part].clone()))?;
             let flying = Disk::new(turn.rotate(DVec2::new(2.0, 5.0)), 0.5)?.with_velocity(turn)?;
             let mut run = Simulation::builder(Elastic, vessel).disks([flying]).build()?;
             run.run_until(20.0, &mut ())?;
@@ -54,7 +54,7 @@ fn a_patch_in_the_floor_acts_there() -> Outcome {
     let falling = |x: f64| Disk::new(DVec2::new(x, 3.0), 0.5)?.with_velocity(DVec2::NEG_Y);
     let after = |part: Part| -> Outcome<Vec<Disk>> {
         let floor = Container::closed(10.0, 10.0)?.with_rule(Wall::Floor, Elastic)?;
-        let vessel = Vessel::new(floor).with("patch", part)?;
+        let vessel = floor.with_part("patch", part)?;
         let rule = granular_edmd::collision::Rough::from_restitution(1.0, 0.0)?;
         let mut run =
             Simulation::builder(rule, vessel).disks([falling(1.0)?, falling(5.0)?]).seed(3).build()?;
@@ -78,7 +78,7 @@ fn a_patch_in_the_floor_acts_there() -> Outcome {
 fn a_sieve_stops_some_kinds_only() -> Outcome {
     const LARGE: Kind = Kind::new(7);
     let sieve = Part::polyline([DVec2::new(0.0, 5.0), DVec2::new(20.0, 5.0)])?.only_for([LARGE]);
-    let vessel = Vessel::new(Container::closed(20.0, 20.0)?).with("sieve", sieve)?;
+    let vessel = Container::closed(20.0, 20.0)?.with_part("sieve", sieve)?;
     let lying = Disk::new(DVec2::new(3.0, 5.0), 0.4)?;
     assert!(Simulation::builder(Elastic, vessel.clone()).disks([lying]).build().is_ok());
     assert!(Simulation::builder(Elastic, vessel.clone()).disks([lying.with_kind(LARGE)]).build().is_err());

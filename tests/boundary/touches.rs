@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use granular_edmd::Flight;
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion};
 use rand::{RngExt, SeedableRng};
@@ -23,14 +23,14 @@ const ALLOWED: f64 = 1e-9;
 struct Specimen {
     name: String,
     part: Part,
-    vessel: Vessel,
+    vessel: Container,
     pose: Box<dyn Fn(f64) -> (f64, DVec2)>,
 }
 
 impl Specimen {
     fn new(name: &str, part: Part, moving: Part, pose: impl Fn(f64) -> (f64, DVec2) + 'static) -> Self {
         let room = Container::closed(200.0, 200.0).unwrap().shifted(DVec2::splat(-100.0)).unwrap();
-        let vessel = Vessel::new(room).with("part", moving).unwrap();
+        let vessel = room.with_part("part", moving).unwrap();
         Self { name: name.to_owned(), part, vessel, pose: Box::new(pose) }
     }
 

@@ -140,7 +140,7 @@ fn watching() -> Vec<Case> {
         ),
         ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1)), resolved),
         ("range of the correlation", |value| told(PairCorrelation::new(value, 1)), resolved),
-        ("length of a wall", |value| told(WallStress::new(times()).with_wall(0, value)), positive),
+        ("length of a wall", |value| told(WallStress::new(times()).with_wall("floor", value)), positive),
         ("upper end of the bins", |value| told(Histogram::new(0.0, value, 1)), resolved),
         ("edge of the region", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
         ("translational temperature", |value| told(Maxwellian::new(value)), scale),

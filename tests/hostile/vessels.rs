@@ -1,7 +1,7 @@
 //! Random vessels: polygons that are anything but regular, and arcs, pegs and thin walls, at rest and in all
 //! motions. They keep the contract, and nothing gets out.
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Vessel, VesselError, laws};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, WallError, laws};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, stop_when};
@@ -54,7 +54,7 @@ impl Plan {
         self.corners.iter().enumerate().map(corner).collect()
     }
 
-    fn inner(&self) -> Result<Part, VesselError> {
+    fn inner(&self) -> Result<Part, WallError> {
         let (kind, size) = self.inner;
         let at = |x: f64, y: f64| MIDDLE + size * DVec2::new(x, y);
         match kind {
@@ -66,7 +66,7 @@ impl Plan {
         }
     }
 
-    fn moving(&self, part: Part, motion: Motion) -> Result<Part, VesselError> {
+    fn moving(&self, part: Part, motion: Motion) -> Result<Part, WallError> {
         let (along, amplitude, frequency) = (unit(self.direction), self.amplitude, self.frequency);
         match motion {
             Motion::None => Ok(part),
@@ -77,7 +77,7 @@ impl Plan {
         }
     }
 
-    pub(crate) fn vessel(&self) -> Result<Vessel, VesselError> {
+    pub(crate) fn vessel(&self) -> Result<Container, WallError> {
         let inner = self.moving(self.inner()?, self.inner_motion)?;
         if self.periodic {
             // The polygon is a block that lies across the sides. There is room for a disk all around it, so
@@ -86,10 +86,10 @@ impl Plan {
             let block = self.moving(Part::block(self.polygon(2.0))?, self.motion)?;
             let (block, other) =
                 (block.shifted(DVec2::new(-5.0, 7.0))?, inner.shifted(DVec2::new(3.0, 10.0))?);
-            return Vessel::new(container).with("block", block)?.with("inner", other);
+            return container.with_part("block", block)?.with_part("inner", other);
         }
         let outer = self.moving(Part::polygon(self.polygon(6.0))?, self.motion)?;
-        Vessel::around([("outer", outer), ("inner", inner)])
+        Container::around([("outer", outer), ("inner", inner)])
     }
 }
 
@@ -124,7 +124,7 @@ pub(crate) fn plan() -> impl Strategy<Value = Plan> {
 /// sides cross, proves nothing.
 fn keeps_the_contract(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCaseError> {
     let mut vessel = match plan.vessel() {
-        Err(VesselError::Crossing { .. }) => return Err(TestCaseError::reject("sides cross")),
+        Err(WallError::Crossing { .. }) => return Err(TestCaseError::reject("sides cross")),
         vessel => vessel.map_err(|error| TestCaseError::fail(error.to_string()))?,
     };
     match laws::check(&mut vessel, radius, 1.0, seed) {

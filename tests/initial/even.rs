@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::boundary::{Container, Part, Vessel};
+use granular_edmd::boundary::{Container, Part};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial;
 
@@ -33,7 +33,7 @@ fn a_periodic_box_is_filled_evenly_at_any_area_fraction() {
 
 #[test]
 fn walls_inside_are_left_free_and_what_cannot_be_is_named() {
-    let vessel = Vessel::around([("drum", Part::drum(DVec2::ZERO, 12.0).unwrap())]).unwrap();
+    let vessel = Container::around([("drum", Part::drum(DVec2::ZERO, 12.0).unwrap())]).unwrap();
     let disks = initial::even_lattice(&vessel, 200, 0.5).unwrap();
     assert_eq!(disks.len(), 200);
     assert_apart(vessel, &disks);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall};
+use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError, Radii};
 use granular_edmd::wall::{BiParabolic, Piston};
@@ -89,7 +89,7 @@ fn an_intruder_stays_where_it_is() {
     let container = Container::closed(20.0, 20.0).unwrap();
     let intruder = Disk::new(DVec2::new(7.0, 4.0), 4.0).unwrap();
     let count = (0.8 * (400.0 - area(&[intruder])) / area(&disks([0.5]))) as usize;
-    let around = Obstacles::new(container.clone(), [intruder]);
+    let around = container.clone().with_pegs([intruder]).unwrap();
     let mut packed = initial::packed_mix(&around, disks(vec![0.5; count]), 20.0, 1).unwrap();
     packed.push(intruder);
     assert_apart(container, &packed);

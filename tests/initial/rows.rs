@@ -1,6 +1,6 @@
 //! Disks of any sizes in rows.
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Part, Probe, Vessel};
+use granular_edmd::boundary::{Boundary, Container, Part, Probe};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError, Radii};
 use granular_edmd::{Disk, Kind};
@@ -66,7 +66,7 @@ fn obstacles_are_left_out() {
     let container = Container::closed(60.0, 150.0).unwrap();
     let intruder = Disk::new(DVec2::new(30.0, 20.0), 20.0).unwrap();
     let peg = Disk::new(DVec2::new(5.0, 50.0), 2.0).unwrap();
-    let around = Obstacles::new(container.clone(), [intruder, peg]);
+    let around = container.clone().with_pegs([intruder, peg]).unwrap();
     let mix = disks(Radii::uniform(0.3, 0.7).unwrap().draw(1000, 2));
     for mut placed in [
         initial::lattice(&around, 1000, 0.5).unwrap(),
@@ -97,7 +97,7 @@ fn disks_stand_and_are_packed_where_their_kind_may_be() {
     let kind = Kind::new(1);
     let corners = [(3.0, 2.0), (9.0, 2.0), (9.0, 7.0), (3.0, 7.0)].map(DVec2::from);
     let block = Part::block(corners).unwrap().only_for([kind]);
-    let vessel = Vessel::new(Container::closed(12.0, 14.0).unwrap()).with("block", block).unwrap();
+    let vessel = Container::closed(12.0, 14.0).unwrap().with_part("block", block).unwrap();
     let disks: Vec<Disk> = disks(vec![0.5; 40]).into_iter().map(|disk| disk.with_kind(kind)).collect();
     let placed = [
         initial::placed_in_rows(&vessel, disks.clone()).unwrap(),
@@ -113,7 +113,7 @@ fn disks_stand_and_are_packed_where_their_kind_may_be() {
 #[test]
 fn a_packing_names_a_sink_among_the_disks() {
     let exit = Part::polyline([(0.0, 3.0), (10.0, 3.0)].map(DVec2::from)).unwrap().absorbing_centers();
-    let silo = Vessel::new(Container::closed(10.0, 20.0).unwrap()).with("exit", exit).unwrap();
+    let silo = Container::closed(10.0, 20.0).unwrap().with_part("exit", exit).unwrap();
     let refused = initial::packed_mix(&silo, disks(vec![0.5; 100]), 20.0, 1).unwrap_err();
     assert!(refused.to_string().contains("sink \"exit\""), "{refused}");
 }

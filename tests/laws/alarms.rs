@@ -1,8 +1,6 @@
 //! No check refuses a part of the library, whatever the seed.
 
-use granular_edmd::boundary::{
-    Boundary, Container, Obstacles, Part, Thermal, Vessel, Wall, laws as boundary_laws,
-};
+use granular_edmd::boundary::{Boundary, Container, Part, Thermal, Wall, laws as boundary_laws};
 use granular_edmd::collision::laws::{self as collision_laws, Promises};
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, LeastRebound,
@@ -71,7 +69,7 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
     let (middle, number) = (DVec2::new(4.5, 3.5), seed as usize);
     let container = || Container::closed(9.0, 7.0);
     let vessel = |part: Part| -> Result<Box<dyn Boundary>, Failed> {
-        Ok(Box::new(Vessel::new(container()?).with("part", part)?))
+        Ok(Box::new(container()?.with_part("part", part)?))
     };
     let bar = Part::polyline([middle - DVec2::X, middle + DVec2::X])?;
     let triangle = [DVec2::new(3.0, 2.5), DVec2::new(6.0, 2.5), DVec2::new(4.5, 4.5)];
@@ -90,7 +88,7 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
         ("thermal", Box::new(container()?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?)),
         ("piston", Box::new(container()?.with_piston(Wall::Lid, piston)?)),
         ("pistons", Box::new(container()?.with_piston(Wall::Lid, piston)?.with_piston(Wall::Left, piston)?)),
-        ("pegs", Box::new(Obstacles::new(container()?, [Disk::new(middle, 1.1)?]))),
+        ("pegs", Box::new(container()?.with_pegs([Disk::new(middle, 1.1)?])?)),
         ("peg", vessel(Part::peg(middle, 0.8)?)?),
         ("block", vessel(Part::block(triangle)?)?),
         ("bar", vessel(bar.clone())?),
@@ -103,8 +101,11 @@ fn boundaries(seed: u64) -> Result<Boundaries, Failed> {
         ("turning exit", vessel(bar.clone().absorbing_centers().with_rotation(middle, 0.8)?)?),
         ("turning bar", vessel(bar.with_rotation(middle, 0.8)?)?),
         ("moving block", vessel(Part::block(triangle)?.with_motion(DVec2::new(0.6, 0.8), sine)?)?),
-        ("drum", Box::new(Vessel::around([("drum", Part::drum(middle, 4.0)?.with_rotation(middle, 0.5)?)])?)),
-        ("polygon", Box::new(Vessel::around([("outer", Part::polygon(outer)?)])?)),
+        (
+            "drum",
+            Box::new(Container::around([("drum", Part::drum(middle, 4.0)?.with_rotation(middle, 0.5)?)])?),
+        ),
+        ("polygon", Box::new(Container::around([("outer", Part::polygon(outer)?)])?)),
     ])
 }
 

@@ -89,13 +89,13 @@ fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
         let mut run = under_a_lid([DISKS, WIDTH, MASS, pressure], 0.0, 1)?;
         run.run_until(1000.0, &mut ())?;
         let mut series = Series::new(measured_by(look), SampleTimes::every(0.5)?);
-        let mut push = WallStress::new(SampleTimes::every(100.0)?).with_wall(LID, WIDTH)?;
+        let mut push = WallStress::new(SampleTimes::every(100.0)?).with_wall("lid", WIDTH)?;
         let duration = 6000.0;
         run.run_until(1000.0 + duration, &mut (&mut series, &mut push))?;
         let temperature = mean_of(series.values(), |value| value[0]);
         let density = mean_of(series.values(), |value| value[3]).mean();
         // The impulse of the disks is that of the load, up to the momentum of the lid.
-        let mean_force = push.pressure(LID).ok_or("the lid is watched")?.mean() * WIDTH;
+        let mean_force = push.pressure("lid").ok_or("the lid is watched")?.mean() * WIDTH;
         assert!((mean_force / force - 1.0).abs() < 4.0 * (MASS.sqrt() + 1.0) / (force * duration));
         // Equipartition: the lid has half a temperature.
         let lid = mean_of(series.values(), |value| MASS * value[2] * value[2]);

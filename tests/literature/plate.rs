@@ -97,7 +97,7 @@ fn shaken(restitution: f64, amplitude: f64, duration: f64) -> Result<Shaken, Box
         temperature_error: temperature.standard_error(),
         height: height.mean(),
         height_error: height.standard_error(),
-        power: energy.wall(0).sum() / (duration - start),
+        power: energy.wall("floor").sum() / (duration - start),
     })
 }
 

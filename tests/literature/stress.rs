@@ -57,16 +57,15 @@ fn the_stress_in_the_bulk_is_the_pressure_on_the_walls() -> Outcome {
     run_for(&mut run, 50.0, &mut ())?;
     let times = SampleTimes::every(1.0)?;
     let bulk = Region::new(DVec2::new(3.0, 4.0), DVec2::new(gas.width - 5.0, gas.height - 4.0));
-    let [floor, lid] = [Wall::Floor, Wall::Lid].map(|wall| run.boundary().index(wall).unwrap());
-    let walls = WallStress::new(times).with_wall(floor, gas.width)?.with_wall(lid, gas.width)?;
+    let walls = WallStress::new(times).with_wall("floor", gas.width)?.with_wall("lid", gas.width)?;
     let mut watched = (Stress::new(times), Stress::new(times).within(bulk)?, walls);
     run.run_until(1000.0, &mut watched)?;
     let (whole, bulk, walls) = watched;
-    let wall = |index| walls.pressure(index).ok_or("a wall that is not watched");
+    let wall = |name| walls.pressure(name).ok_or("a wall that is not watched");
     // The vertical momentum that enters at the floor leaves at the lid.
-    assert!(agree("floor and lid", wall(floor)?, wall(lid)?));
-    assert!(agree("floor and whole box", wall(floor)?, whole.tensor().yy));
-    assert!(agree("floor and bulk", wall(floor)?, bulk.tensor().yy));
+    assert!(agree("floor and lid", wall("floor")?, wall("lid")?));
+    assert!(agree("floor and whole box", wall("floor")?, whole.tensor().yy));
+    assert!(agree("floor and bulk", wall("floor")?, bulk.tensor().yy));
     assert!(agree("bulk, both directions", bulk.tensor().xx, bulk.tensor().yy));
     assert!(bulk.tensor().yy.standard_error() < 0.01 * bulk.tensor().yy.mean());
     Ok(())
@@ -80,7 +79,6 @@ fn a_sheared_gas_drags_its_walls_as_it_is_sheared() -> Outcome {
     let container = container
         .with_temperature(Wall::Floor, Thermal::new(1.0)?)?
         .with_temperature(Wall::Lid, Thermal::new(1.0)?)?;
-    let [floor, lid] = [Wall::Floor, Wall::Lid].map(|wall| container.index(wall).unwrap());
     let disks = initial::scattered(&container, 120, 0.5, 15.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
     let mut run = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.3)?, container)
@@ -88,14 +86,14 @@ fn a_sheared_gas_drags_its_walls_as_it_is_sheared() -> Outcome {
         .build()?;
     run.run_until(200.0, &mut ())?;
     let times = SampleTimes::every(5.0)?;
-    let walls = WallStress::new(times).with_wall(floor, 30.0)?.with_wall(lid, 30.0)?;
+    let walls = WallStress::new(times).with_wall("floor", 30.0)?.with_wall("lid", 30.0)?;
     let bulk = Region::new(DVec2::new(0.0, 3.0), DVec2::new(30.0, 12.0));
     let mut watched = (Stress::new(times).within(bulk)?, walls);
     run.run_until(2500.0, &mut watched)?;
     let (bulk, walls) = watched;
-    let shear = |index| walls.shear(index).ok_or("a wall that is not watched");
-    assert!(agree("shear of floor and lid", shear(floor)?, shear(lid)?));
-    assert!(agree("shear of floor and bulk", shear(floor)?, bulk.tensor().xy));
+    let shear = |name| walls.shear(name).ok_or("a wall that is not watched");
+    assert!(agree("shear of floor and lid", shear("floor")?, shear("lid")?));
+    assert!(agree("shear of floor and bulk", shear("floor")?, bulk.tensor().xy));
     // The tensor is not symmetric at each collision, but is on average where spins are steady.
     assert!(agree("P_xy and P_yx", bulk.tensor().xy, bulk.tensor().yx));
     let xy = bulk.tensor().xy;

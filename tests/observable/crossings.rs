@@ -1,6 +1,6 @@
 //! Crossings of lines: exact balances of the disks on both sides.
 
-use granular_edmd::boundary::{Container, Part, Vessel};
+use granular_edmd::boundary::{Container, Part};
 use granular_edmd::collision::{Elastic, Frictional, LeastRebound};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{BetweenKinds, Crossings, OfKind, SampleTimes};
@@ -127,7 +127,7 @@ fn crossings_of_a_seam_are_those_of_the_images() -> Outcome {
 #[test]
 fn a_shower_crosses_a_line_on_its_way_to_a_sink() -> Outcome {
     let exit = Part::polyline([(-1.0, 1.0), (9.0, 1.0)].map(DVec2::from))?.absorbing_centers();
-    let vessel = Vessel::new(Container::open(8.0)?).with("exit", exit)?;
+    let vessel = Container::open(8.0)?.with_part("exit", exit)?;
     let mut run =
         Simulation::builder(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, vessel).gravity(1.0).build()?;
     let model = Disk::new(DVec2::ZERO, 0.3)?;

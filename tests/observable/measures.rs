@@ -93,9 +93,11 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
     assert!(said.contains("edge of the region must be inside the domain, but is -1"), "{said}");
     let said = reason(Container::closed(20.0, 12.0)?, &mut Stress::new(times()?).within(large)?);
     assert!(said.contains("edge of the region must be inside the domain, but is -1"), "{said}");
-    let mut walls = WallStress::new(times()?).with_wall(3, 5.0)?.with_wall(77, 5.0)?;
+    let mut walls = WallStress::new(times()?).with_wall("lid", 5.0)?.with_wall("ceiling", 5.0)?;
     let said = reason(Container::closed(20.0, 12.0)?, &mut walls);
-    assert!(said.contains("index of a wall must be less than the number of walls, but is 77"), "{said}");
+    assert!(said.contains(
+            "number of walls named \"ceiling\" must be at least 1 (the boundary has \"floor\", \"left\", \"right\", \"lid\"), but is 0"
+        ), "{said}");
     let said = reason(Container::open(20.0)?, &mut Stress::new(times()?));
     assert!(said.contains("area of the domain must be finite: choose a region, but is inf"), "{said}");
     Ok(())
@@ -196,7 +198,7 @@ fn parameters_that_measure_nothing_are_refused() -> Outcome {
     assert!(PairCorrelation::new(1.0, 0).is_err());
     assert!(PairCorrelation::new(1.0, 1)?.within(nowhere).is_err());
     assert!(Stress::new(times).within(nowhere).is_err());
-    assert!(WallStress::new(times).with_wall(0, 0.0).is_err());
+    assert!(WallStress::new(times).with_wall("floor", 0.0).is_err());
     for lags in [0, usize::MAX] {
         assert!(MeanSquaredDisplacement::new(lags, times).is_err());
         assert!(TimeCorrelation::new(Velocities, lags, times).is_err());

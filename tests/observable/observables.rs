@@ -127,10 +127,10 @@ fn counts_and_energy_changes_are_those_of_the_list() -> Outcome {
     };
     assert_eq!(*changes.disks(), mean(&|partner| matches!(partner, Partner::Disk(_))));
     assert_eq!(counts.disk_collisions(), changes.disks().count());
-    for wall in 0..5 {
-        assert_eq!(*changes.wall(wall), mean(&|partner| partner == Partner::Wall(wall)));
-        assert_eq!(counts.collisions_with_wall(wall), changes.wall(wall).count());
-        assert_eq!(counts.collisions_with_wall(wall) > 10, wall < 4, "wall {wall}");
+    for (wall, name) in ["floor", "left", "right", "lid", "gate"].into_iter().enumerate() {
+        assert_eq!(*changes.wall(name), mean(&|partner| partner == Partner::Wall(wall)));
+        assert_eq!(counts.collisions_with_wall(name), changes.wall(name).count());
+        assert_eq!(counts.collisions_with_wall(name) > 10, wall < 4, "wall {wall}");
     }
     assert_eq!(counts.disk_collisions() + counts.wall_collisions(), list.len() as u64);
     assert_eq!(

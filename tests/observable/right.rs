@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Obstacles, Part, Probe, Region, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Probe, Region, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
@@ -55,16 +55,16 @@ fn pressure_of<B: Boundary + Clone>(boundary: &B, height: f64, area: f64) -> Res
 
 #[test]
 fn the_pressure_in_any_vessel_is_that_of_its_own_area() -> Result<(), Failure> {
-    let drum = Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
+    let drum = Container::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
     let triangle = Part::polygon(corners([(0.0, 0.0), (20.0, 0.0), (0.0, 15.0)]))?;
-    let triangle = Vessel::around([("triangle", triangle)])?;
+    let triangle = Container::around([("triangle", triangle)])?;
     let block = Part::block(corners([(4.0, 4.0), (10.0, 4.0), (10.0, 10.0), (4.0, 10.0)]))?;
-    let block = Vessel::new(Container::closed(12.0, 12.0)?).with("block", block)?;
+    let block = Container::closed(12.0, 12.0)?.with_part("block", block)?;
     for (vessel, height, area) in [(drum, 10.0, 100.0 * PI), (triangle, 15.0, 150.0), (block, 12.0, 108.0)] {
         let ratio = pressure_of(&vessel, height, area)?;
         assert!((ratio - 1.0).abs() < 0.015, "{ratio}");
     }
-    let pegs = Obstacles::new(Container::closed(12.0, 12.0)?, [Disk::new(DVec2::splat(6.0), 4.0)?]);
+    let pegs = Container::closed(12.0, 12.0)?.with_pegs([Disk::new(DVec2::splat(6.0), 4.0)?])?;
     let ratio = pressure_of(&pegs, 12.0, 144.0 - 16.0 * PI)?;
     assert!((ratio - 1.0).abs() < 0.015, "{ratio}");
     Ok(())
@@ -73,24 +73,24 @@ fn the_pressure_in_any_vessel_is_that_of_its_own_area() -> Result<(), Failure> {
 /// In a dense gas, the pressure inside is the pressure on the walls, whatever their shape.
 #[test]
 fn the_pressure_of_a_dense_gas_is_that_on_the_walls() -> Result<(), Failure> {
-    let drum = Vessel::around([("wall", Part::drum(DVec2::ZERO, 6.0)?)])?;
+    let drum = Container::around([("wall", Part::drum(DVec2::ZERO, 6.0)?)])?;
     let triangle = Part::polygon(corners([(0.0, 0.0), (16.0, 0.0), (0.0, 12.0)]))?;
-    let triangle = Vessel::around([("wall", triangle)])?;
+    let triangle = Container::around([("wall", triangle)])?;
     for (vessel, length) in [(drum, vec![12.0 * PI]), (triangle, vec![16.0, 20.0, 12.0])] {
         let disks = initial::scattered(&vessel, 40, 0.5, 12.0, 1)?;
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
-        let walls = vessel.walls("wall").ok_or("the part")?;
-        let mut pushed = walls
-            .clone()
-            .zip(&length)
-            .try_fold(WallStress::new(SampleTimes::every(20.0)?), |stress, (wall, &length)| {
-                stress.with_wall(wall, length)
+        let name =
+            |brick: usize| if length.len() == 1 { "wall".into() } else { format!("wall, brick {brick}") };
+        let numbered = || length.iter().enumerate();
+        let mut pushed = numbered()
+            .try_fold(WallStress::new(SampleTimes::every(20.0)?), |stress, (brick, &length)| {
+                stress.with_wall(name(brick), length)
             })?;
         let mut stress = Stress::new(SampleTimes::every(20.0)?);
         let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
         run.run_until(8000.0, &mut (&mut stress, &mut pushed))?;
         let force =
-            walls.zip(&length).filter_map(|(wall, length)| Some(pushed.pressure(wall)?.mean() * length));
+            numbered().filter_map(|(brick, length)| Some(pushed.pressure(&name(brick))?.mean() * length));
         let (on_walls, inside) = (force.sum::<f64>() / length.iter().sum::<f64>(), stress.tensor().pressure);
         let ratio = inside.mean() / on_walls;
         assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
@@ -101,7 +101,7 @@ fn the_pressure_of_a_dense_gas_is_that_on_the_walls() -> Result<(), Failure> {
 #[test]
 fn a_profile_of_a_triangle_is_flat() -> Result<(), Failure> {
     let triangle = Part::polygon(corners([(0.0, 0.0), (20.0, 0.0), (0.0, 15.0)]))?;
-    let vessel = Vessel::around([("triangle", triangle)])?;
+    let vessel = Container::around([("triangle", triangle)])?;
     let mut run = gas(&vessel, 15.0)?;
     let mut profile = Sampled::new(HeightProfile::new(-2.0, 17.0, 19)?, times()?);
     let grid = Grid::new(Region::new(DVec2::ZERO, DVec2::new(20.0, 15.0)), 2, 3)?;
@@ -142,14 +142,14 @@ fn the_layer_that_a_floor_sweeps_has_the_area_that_is_left() -> Result<(), Failu
 /// A boundary that knows its area only in some regions, at some times.
 #[derive(Clone)]
 struct Silent {
-    vessel: Vessel,
+    vessel: Container,
     origin: f64,
     knows: fn(&Region, f64) -> bool,
 }
 
 impl Silent {
     fn drum(knows: fn(&Region, f64) -> bool) -> Result<Self, Failure> {
-        let vessel = Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
+        let vessel = Container::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
         Ok(Self { vessel, origin: 0.0, knows })
     }
 }
@@ -228,7 +228,7 @@ fn measures_that_reach_beyond_a_seam_are_cut_there() -> Result<(), Failure> {
         let Region { min, max, .. } = *region;
         min.cmpge(DVec2::ZERO).all() && max.cmple(DVec2::new(9.0, 6.0)).all()
     };
-    let torus = Silent { vessel: Vessel::new(plain.clone()), origin: 0.0, knows: inside };
+    let torus = Silent { vessel: plain.clone(), origin: 0.0, knows: inside };
     let wide = Region::new(DVec2::new(-3.0, -2.0), DVec2::new(12.0, 8.0));
     let start = disk(2.0, 3.0)?.with_velocity(DVec2::new(0.3, 0.77))?;
     let profile = Sampled::new(HeightProfile::new(-1.0, 8.0, 3)?, times()?);
@@ -345,7 +345,7 @@ fn disks_on_a_seam_are_counted_once() -> Result<(), Failure> {
 
 #[test]
 fn pairs_near_walls_are_refused() -> Result<(), Failure> {
-    let drum = Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
+    let drum = Container::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
     let correlation = || PairCorrelation::new(3.0, 10);
     let at_wall = correlation()?.within(Region::new(DVec2::ZERO, DVec2::splat(6.0)))?;
     for correlation in [correlation()?, at_wall] {
@@ -434,7 +434,7 @@ fn a_disk_that_comes_back_elsewhere_has_not_moved_there() -> Result<(), Failure>
 
 #[test]
 fn two_systems_in_one_observer_are_refused_by_name() -> Result<(), Failure> {
-    let drum = Vessel::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
+    let drum = Container::around([("drum", Part::drum(DVec2::ZERO, 10.0)?)])?;
     let (mut one, mut other) = (gas(&drum, 10.0)?, gas(&drum, 10.0)?);
     let (mut change, mut series) = (EnergyChange::default(), Series::new(Temperatures, times()?));
     one.run_until(3.0, &mut (&mut change, &mut series))?;
@@ -506,7 +506,7 @@ fn a_replay_names_the_disks_that_an_inlet_let_in() -> Result<(), Failure> {
 #[test]
 fn an_open_line_has_an_area_too() -> Result<(), Failure> {
     let bowl = Part::new([Brick::arc(DVec2::new(5.0, 5.0), 5.0, PI, 2.0 * PI)?])?;
-    let vessel = Vessel::new(Container::closed(10.0, 10.0)?).with("bowl", bowl)?;
+    let vessel = Container::closed(10.0, 10.0)?.with_part("bowl", bowl)?;
     let ratio = pressure_of(&vessel, 10.0, 50.0 + 12.5 * PI)?;
     assert!((ratio - 1.0).abs() < 0.015, "{ratio}");
     Ok(())

@@ -54,8 +54,8 @@ fn measures() -> Vec<Measure> {
 
 /// The cells that refuse: measure, setting, and words of the error. All others are right.
 const REFUSED: [(&str, &str, &str); 2] = [
-    ("`WallStress`", "periodic both ways", "index of a wall must be less than the number of walls"),
-    ("`Arrivals`", "periodic both ways", "index of a wall must be less than the number of walls"),
+    ("`WallStress`", "periodic both ways", "number of walls named \"floor\" must be at least 1"),
+    ("`Arrivals`", "periodic both ways", "number of walls named \"floor\" must be at least 1"),
 ];
 
 /// Returns the largest relative difference of two lists of numbers; infinite if they cannot be compared.

@@ -1,6 +1,6 @@
 //! Stress, histograms, and velocities about a flow, of known states and of chance.
 
-use granular_edmd::boundary::{Boundary, Container, Region, Wall};
+use granular_edmd::boundary::{Boundary, Container, Region};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
@@ -49,7 +49,7 @@ fn a_region_gets_its_share_of_a_collision() -> Outcome {
 #[test]
 fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
     let container = Container::closed(5.0, 3.0)?;
-    let floor = container.index(Wall::Floor).unwrap();
+    let floor = "floor";
     let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.3, 3.0))?;
     let measured = |ends: &[f64]| -> Result<_, Box<dyn std::error::Error>> {
         let mut run = Simulation::builder(Elastic, container.clone()).disks(vec![ball]).build()?;
@@ -67,7 +67,7 @@ fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
     assert_eq!(whole.1.tensor(), pieces.1.tensor());
     // The run began within an interval, whose rest does not count.
     assert_eq!(whole.1.samples(), 9);
-    assert_eq!(whole.0.pressure(floor + 1), None);
+    assert_eq!(whole.0.pressure("lid"), None);
     Ok(())
 }
 
@@ -75,7 +75,7 @@ fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
 #[test]
 fn an_interval_that_is_cleared_in_its_middle_does_not_count() -> Outcome {
     let container = Container::closed(5.0, 3.0)?;
-    let floor = container.index(Wall::Floor).unwrap();
+    let floor = "floor";
     let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.0, 8.0))?;
     let mut run = Simulation::builder(Elastic, container).disks([ball]).build()?;
     let walls = WallStress::new(times()?).with_wall(floor, 5.0)?;
@@ -251,7 +251,8 @@ fn errors_of_a_histogram_hold_for_correlated_numbers() -> Outcome {
 
 #[test]
 fn a_wall_has_histograms_of_its_own() -> Outcome {
-    let mut histograms = CollisionHistograms::new(4.0, 4.0, 4)?.with_wall(1);
+    let mut histograms = CollisionHistograms::new(4.0, 4.0, 4)?.with_wall("wall 1");
+    histograms.on_start(&Snapshot::new(0.0, &[], BOX, 0.0).with_wall_count(2))?;
     let contact = Contact::new(1.5, -1.5, 1.0, 1.0 / 3.0);
     for partner in [Partner::Disk(1), Partner::Wall(0), Partner::Wall(1)] {
         histograms.on_collision(&Collision::new(0.5, 0, partner, contact, Impulse::new(3.0, 0.0)));

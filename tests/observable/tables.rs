@@ -139,7 +139,7 @@ fn every_measure_is_a_table() {
         MeanSquaredDisplacement::new(9, times()).unwrap(),
         TimeCorrelation::new(Velocities, 10, times()).unwrap(),
         Stress::new(times()),
-        WallStress::new(times()).with_wall(0, 10.0).unwrap().with_wall(2, 10.0).unwrap(),
+        WallStress::new(times()).with_wall("floor", 10.0).unwrap().with_wall("right", 10.0).unwrap(),
     );
     let mut heard = (
         EnergyChange::default(),

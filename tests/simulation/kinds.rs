@@ -1,6 +1,6 @@
 //! Kinds in a run: rules and observers see them, and files keep them.
 
-use granular_edmd::boundary::{Boundary, Container, Part, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Container, Part, Wall};
 use granular_edmd::collision::{Contact, Elastic, Frictional, RulesByKind};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
@@ -40,7 +40,7 @@ fn every_contact_of_a_run_knows_its_partners() -> Outcome {
             let disk = &disks[collision.disk];
             let (kind, radius) = match collision.partner {
                 Partner::Disk(partner) => (disks[partner].kind(), disks[partner].radius()),
-                Partner::Wall(wall) if container.wall_name(wall) == "floor" => (FELT, f64::INFINITY),
+                Partner::Wall(wall) if container.wall(wall, 0.0).name == "floor" => (FELT, f64::INFINITY),
                 Partner::Wall(_) => (Kind::WALL, f64::INFINITY),
             };
             assert_eq!(collision.contact.kinds(), [disk.kind(), kind]);
@@ -97,8 +97,8 @@ fn observers_by_kind_share_out_the_whole() -> Outcome {
     assert_eq!(counts.iter().sum::<u64>(), all.1.disks().count());
     let of_kind = |counts: &OfKind<CollisionCounts>| counts.inner().disk_collisions();
     assert_eq!((of_kind(&small.1), of_kind(&large.1)), (counts[0] + counts[1], counts[1] + counts[2]));
-    let floor_hits = large.1.inner().collisions_with_wall(0);
-    assert_eq!(floor.inner().wall(0).count(), floor_hits);
+    let floor_hits = large.1.inner().collisions_with_wall("floor");
+    assert_eq!(floor.inner().wall("floor").count(), floor_hits);
     assert!(floor_hits > 0);
     Ok(())
 }
@@ -159,7 +159,7 @@ fn a_wall_of_a_kind_is_no_disk_of_it() -> Outcome {
 fn a_kind_that_does_not_fit_is_refused() -> Outcome {
     let corners = [(2.0, 2.0), (9.0, 2.0), (9.0, 6.0), (2.0, 6.0)].map(DVec2::from);
     let block = Part::block(corners)?.only_for([LARGE]);
-    let vessel = Vessel::new(Container::closed(12.0, 12.0)?).with("block", block)?;
+    let vessel = Container::closed(12.0, 12.0)?.with_part("block", block)?;
     let disk = Disk::new(DVec2::new(5.0, 4.0), 0.5)?.with_kind(SMALL);
     let mut run = Simulation::builder(Elastic, vessel).disks([disk]).build()?;
     let refused = run.map_disks(|_, disk| Ok(disk.with_kind(LARGE))).unwrap_err();

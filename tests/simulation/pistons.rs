@@ -57,10 +57,10 @@ fn energy_is_kept_over_a_million_blows() -> Outcome {
     let mut run = Simulation::builder(Elastic, container).disks([disk]).gravity(0.1).build()?;
     let before = energy(&run.snapshot(), &piston, height);
     let mut counts = CollisionCounts::default();
-    while counts.collisions_with_wall(LID) < 1_000_000 {
+    while counts.collisions_with_wall("lid") < 1_000_000 {
         run.run(&Limits::collisions(1_000_000), &mut counts)?;
     }
-    let blows = counts.collisions_with_wall(LID);
+    let blows = counts.collisions_with_wall("lid");
     let change = energy(&run.snapshot(), &piston, height) / before - 1.0;
     println!("{blows} blows, change of the energy {change:e}");
     assert!(change.abs() < 1e-12, "{change:e}");

@@ -167,18 +167,6 @@ fn a_wall_at_rest_needs_a_state() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The impulse along the normal is taken, and the one along the surface is not.
-#[test]
-fn half_of_an_impulse_is_not_enough() -> Result<(), Box<dyn std::error::Error>> {
-    for (velocity, has_state) in [(0.3, true), (0.0, true), (0.0, false)] {
-        let look: Look = |own| own.with_tangential_mass(5.0);
-        let mut run = run_of(Deaf { look, has_state, ..Deaf::new(velocity, Container::react) })?;
-        let error = run.run_until(50.0, &mut ()).err().ok_or(format!("{velocity} {has_state}: Ok"))?;
-        assert!(matches!(error, RunError::Boundary { fault: BoundaryFault::Reaction { .. }, .. }), "{error}");
-    }
-    Ok(())
-}
-
 #[test]
 fn a_jump_at_an_impulse_is_named() -> Result<(), Box<dyn std::error::Error>> {
     fn jump(by: f64, honest: &mut Container, impact: &Impact) -> Reaction {

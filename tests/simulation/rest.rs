@@ -1,7 +1,7 @@
 //! Matter at rest: without a remedy, the run ends within some 1e5 events with an error that names one; with a
 //! remedy, it goes on.
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Part, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Container, Part, Wall};
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, ElasticBelow, Frictional, LeastRebound, Smooth, SpeedDependent,
 };
@@ -106,11 +106,11 @@ fn two_disks_squeezed_between_floor_and_lid() {
 #[test]
 fn a_disk_in_a_notch_between_two_obstacles() {
     let pegs = [disk(1.4, 0.6), disk(2.7, 0.5)];
-    let walls = Obstacles::new(Container::open(4.0).unwrap(), pegs);
+    let walls = Container::open(4.0).unwrap().with_pegs(pegs).unwrap();
     let balls = [disk(2.0, 3.0)];
     let found = stall(Frictional::from_inelasticity(0.2, 0.2, 0.4).unwrap(), walls.clone(), &balls);
     assert!(matches!(found.partner, Some(Partner::Wall(1..))), "{}", found.text);
-    assert!(found.text.contains("obstacle"), "{}", found.text);
+    assert!(found.text.contains("peg"), "{}", found.text);
     goes_on(Frictional::from_inelasticity(0.2, 0.2, 0.4).unwrap(), walls, &balls);
 }
 
@@ -243,10 +243,11 @@ fn emptied(slope: f64) -> (usize, f64, f64) {
             .unwrap()
     };
     let gate = [(0.0, 0.0), (WIDTH, 0.0), (WIDTH, FLOOR - 0.5), (0.0, FLOOR - 0.5)].map(DVec2::from);
-    let mut vessel = Vessel::new(Container::open(WIDTH).unwrap())
-        .with("left half", half(-1.0))
-        .and_then(|vessel| vessel.with("right half", half(1.0)))
-        .and_then(|vessel| vessel.with("gate", Part::block(gate)?))
+    let mut vessel = Container::open(WIDTH)
+        .unwrap()
+        .with_part("left half", half(-1.0))
+        .and_then(|vessel| vessel.with_part("right half", half(1.0)))
+        .and_then(|vessel| vessel.with_part("gate", Part::block(gate)?))
         .unwrap();
     let grains = initial::scattered(&vessel, 1000, 0.5, 80.0, 1).unwrap();
     let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.4).unwrap(), 0.1).unwrap();
@@ -254,7 +255,7 @@ fn emptied(slope: f64) -> (usize, f64, f64) {
     let mut run = builder.gravity(1.0).build().unwrap();
     let started = std::time::Instant::now();
     run.run_until(40.0, &mut ()).unwrap();
-    vessel.remove("gate").unwrap();
+    vessel.remove_part("gate").unwrap();
     run.set_boundary(vessel).unwrap();
     let (mut last, mut time) = (40.0, 40.0);
     while time < last + 40.0 && run.disk(0).is_some() {

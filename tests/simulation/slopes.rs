@@ -1,6 +1,6 @@
 //! Gravity that is not vertical: boxes that are tilted, and a chute.
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Part, Vessel};
+use granular_edmd::boundary::{Boundary, Container, Part};
 use granular_edmd::collision::{Frictional, LeastRebound};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Observer, Partner};
@@ -19,7 +19,7 @@ fn a_tilted_box_is_one_that_is_turned() -> Outcome {
     let disks = initial::scattered(&container, 30, 0.5, 10.0, 5)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 5)?;
     let corners = [(0.0, 0.0), (12.0, 0.0), (12.0, 10.0), (0.0, 10.0)].map(DVec2::from).map(turned);
-    let vessel = Vessel::new(Container::closed(20.0, 20.0)?).with("box", Part::polygon(corners)?)?;
+    let vessel = Container::closed(20.0, 20.0)?.with_part("box", Part::polygon(corners)?)?;
     let turn = |disk: &Disk| {
         let velocity = turned(disk.velocity()) - turned(DVec2::ZERO);
         disk.with_position(turned(disk.position()))?.with_velocity(velocity)
@@ -56,7 +56,7 @@ impl Observer for Push {
     }
 }
 
-type Run = Simulation<LeastRebound<Frictional>, Obstacles<Container>>;
+type Run = Simulation<LeastRebound<Frictional>, Container>;
 
 const WIDTH: f64 = 18.0;
 const GRAINS: usize = 60;
@@ -65,7 +65,7 @@ const GRAINS: usize = 60;
 fn chute(angle: f64) -> Outcome<Run> {
     let bump = |k: u32| Disk::new(DVec2::new(1.5 * f64::from(k), 0.0), 0.5);
     let bumps = (0..12).map(bump).collect::<Result<Vec<_>, _>>()?;
-    let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps);
+    let ground = Container::open(WIDTH)?.with_periodic_sides()?.with_pegs(bumps)?;
     let disks = initial::scattered(&ground, GRAINS, 0.5, 8.0, 3)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.6, 0.0, 0.5)?, 0.05)?;
     Ok(Simulation::builder(rule, ground)

@@ -1,7 +1,7 @@
 //! Thermal walls: disks that leave them have the moments of the flux from a gas behind them.
 
 use granular_edmd::Simulation;
-use granular_edmd::boundary::{Boundary, Container, Part, Probe, Thermal, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Container, Part, Probe, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision};
@@ -140,7 +140,7 @@ fn a_gas_turns_with_a_hot_drum() {
     let turning = 0.3;
     let drum = Part::drum(DVec2::ZERO, 3.0).unwrap().with_temperature(Thermal::new(1.0).unwrap());
     let drum = drum.with_rotation(DVec2::ZERO, turning).unwrap();
-    let vessel = Vessel::around([("drum", drum)]).unwrap();
+    let vessel = Container::around([("drum", drum)]).unwrap();
     let disks = initial::scattered(&vessel, 8, 0.5, 10.0, 1).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2).unwrap();
     let mut run = Simulation::builder(Elastic, vessel).disks(disks).seed(5).build().unwrap();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::boundary::{Container, Part, Vessel, Wall, laws};
+use granular_edmd::boundary::{Container, Part, Wall, laws};
 use granular_edmd::collision::{Elastic, Frictional, LeastRebound};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial;
@@ -17,7 +17,7 @@ use granular_edmd::{Disk, Kind, Simulation};
 
 use support::schedulers::{SCHEDULERS, Scheduler};
 
-type Silo = Simulation<LeastRebound<Frictional>, Vessel, Scheduler>;
+type Silo = Simulation<LeastRebound<Frictional>, Container, Scheduler>;
 
 fn line(y: f64, width: f64) -> Part {
     Part::polyline([DVec2::new(-1.0, y), DVec2::new(width + 1.0, y)]).unwrap()
@@ -28,15 +28,16 @@ fn rule() -> LeastRebound<Frictional> {
 }
 
 /// Returns a silo with an outlet and a sink below it.
-fn vessel(width: f64, outlet: f64) -> Vessel {
+fn vessel(width: f64, outlet: f64) -> Container {
     let half = |side: f64| {
         let x = |away: f64| 0.5 * width + side * away;
         Part::polyline([DVec2::new(x(0.5 * outlet), 4.0), DVec2::new(x(0.5 * width + 1.0), 4.0)])
     };
-    Vessel::new(Container::open(width).unwrap())
-        .with("left half", half(-1.0).unwrap())
-        .and_then(|vessel| vessel.with("right half", half(1.0)?))
-        .and_then(|vessel| vessel.with("exit", line(1.0, width).absorbing_centers()))
+    Container::open(width)
+        .unwrap()
+        .with_part("left half", half(-1.0).unwrap())
+        .and_then(|vessel| vessel.with_part("right half", half(1.0)?))
+        .and_then(|vessel| vessel.with_part("exit", line(1.0, width).absorbing_centers()))
         .unwrap()
 }
 
@@ -194,8 +195,7 @@ fn an_absorbing_wall_takes_the_flux_of_kinetic_theory() {
     let disks = initial::scattered(&container, COUNT, 1e-3, 100.0, 2).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
     let mut run = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
-    let right = run.boundary().index(Wall::Right);
-    let mut flow = Arrivals::at(right, SampleTimes::every(5.0).unwrap());
+    let mut flow = Arrivals::at(["right"], SampleTimes::every(5.0).unwrap());
     run.run_until(10.0, &mut flow).unwrap();
     let lost = COUNT - run.len();
     assert_eq!(flow.counts().iter().sum::<u64>(), lost as u64);
@@ -207,8 +207,8 @@ fn an_absorbing_wall_takes_the_flux_of_kinetic_theory() {
 #[test]
 fn kinds_are_counted_apart_and_a_sink_receives_all_of_the_momentum() {
     let mut silo = silo(12.0, 4.0, 8, SCHEDULERS[0]());
-    let walls = silo.boundary().walls("exit").unwrap();
-    let count = |kind| OfKind::new(kind, Arrivals::at(walls.clone(), SampleTimes::every(1.0).unwrap()));
+    let walls = silo.boundary().walls_of("exit").unwrap();
+    let count = |kind| OfKind::new(kind, Arrivals::at(["exit"], SampleTimes::every(1.0).unwrap()));
     let mut flows = (count(Kind::new(0)), count(Kind::new(1)));
     let mut received = DVec2::ZERO;
     let mut sum =
@@ -234,7 +234,7 @@ fn a_sink_takes_disks_at_the_touch_or_by_their_centers() {
     let at_touch = (line(3.0, 8.0).absorbing(), [2, 1, 1, 0, 0, 0]);
     let by_centers = (line(3.0, 8.0).absorbing_centers(), [2, 2, 2, 2, 2, 0]);
     for (part, left) in [at_touch, by_centers] {
-        let mut vessel = Vessel::new(Container::closed(8.0, 20.0).unwrap()).with("sink", part).unwrap();
+        let mut vessel = Container::closed(8.0, 20.0).unwrap().with_part("sink", part).unwrap();
         laws::check(&mut vessel, 0.25, 1.0, 3).unwrap();
         let disk = |x: f64, radius: f64| Disk::new(DVec2::new(x, 6.0), radius).unwrap();
         let disks = [disk(2.0, 0.5), disk(5.0, 0.25)].map(|disk| disk.with_velocity(DVec2::NEG_Y).unwrap());
@@ -308,7 +308,7 @@ fn an_inlet_that_could_never_let_in_is_refused() {
 fn disks_that_wait_at_an_inlet_are_warned_of() {
     let corners = [(2.0, 2.0), (8.0, 2.0), (8.0, 8.0), (2.0, 8.0)];
     let block = Part::block(corners.map(|(x, y)| DVec2::new(x, y))).unwrap();
-    let walls = Vessel::new(Container::closed(10.0, 10.0).unwrap()).with("block", block).unwrap();
+    let walls = Container::closed(10.0, 10.0).unwrap().with_part("block", block).unwrap();
     let mut run = Simulation::builder(Elastic, walls).build().unwrap();
     let (places, small) = ([DVec2::splat(4.0), DVec2::splat(6.0)], Disk::new(DVec2::ZERO, 0.1).unwrap());
     run.add_inlet(Inlet::new(places, [small], SampleTimes::every(1.0).unwrap(), 1).unwrap()).unwrap();
@@ -347,7 +347,7 @@ fn passed(part: Part, height: impl Fn(DVec2, f64) -> f64, speed: f64) -> Result<
         initial::with_maxwellian_velocities(initial::scattered(&container, 40, 0.4, 20.0, 2)?, 1.0, 2)?;
     let slowed = disks.into_iter().map(|disk| disk.with_velocity(speed * disk.velocity()));
     let disks = slowed.collect::<Result<Vec<_>, _>>()?;
-    let vessel = Vessel::new(container).with("line", part.absorbing_centers())?;
+    let vessel = container.with_part("line", part.absorbing_centers())?;
     laws::check(&mut vessel.clone(), 0.4, 1.0, 5)?;
     let gravity = speed * DVec2::new(0.1, -0.3);
     let mut run = Simulation::builder(Elastic, vessel).disks(disks).gravity(gravity).build()?;

@@ -1,10 +1,9 @@
 //! Warnings, stalls and panics point at their cause: each cause is planted.
 
-use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use granular_edmd::boundary::{
-    Boundary, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Vessel, Wall,
+    Boundary, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Wall,
 };
 use granular_edmd::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, Frictional, Impulse, LeastRebound, Smooth, from_fn,
@@ -43,7 +42,7 @@ fn gravity_upwards_without_a_lid_is_a_warning() -> Outcome {
     // A part may be a lid, but not one that leaves half of the top open.
     for (end, is_open) in [(20.0, false), (10.0, true)] {
         let roof = Part::polyline([(0.0, 24.0), (end, 24.0)].map(DVec2::from))?;
-        let vessel = Vessel::new(Container::open(20.0)?).with("roof", roof)?;
+        let vessel = Container::open(20.0)?.with_part("roof", roof)?;
         let disks = gas(&walls()?)?;
         let run = Simulation::builder(Elastic, vessel).disks(disks).gravity(-1.0).build()?;
         assert_eq!(run.warnings().len(), usize::from(is_open), "{:?}", run.warnings());
@@ -219,9 +218,6 @@ impl Boundary for Lying {
     }
     fn wall_count(&self) -> usize {
         self.0.wall_count()
-    }
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        self.0.wall_name(wall)
     }
     fn set_time_origin(&mut self, origin: f64) {
         self.0.set_time_origin(origin);

@@ -203,14 +203,9 @@ fn numbers_that_are_not_finite_are_refused_by_the_container() {
         assert!(verdict(fault).is_err(), "{fault:?}");
         let error = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, spoilt(fault)).unwrap_err();
         // A violation by NaN is not equal to itself, so the violations are compared as text.
-        let WallError::Motion { wall: Wall::Floor, violation: ref told } = error else {
-            panic!("{fault:?}: {error}")
-        };
+        let WallError::Motion { violation: ref told } = error else { panic!("{fault:?}: {error}") };
         assert_eq!(told.to_string(), violation.to_string());
-        assert_eq!(
-            error.to_string(),
-            format!("the motion of the wall \"floor\" cannot be used: {violation}")
-        );
+        assert_eq!(error.to_string(), format!("the motion of the wall cannot be used: {violation}"));
         assert!(error.source().is_none(), "the message has it already");
     }
 }

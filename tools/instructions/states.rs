@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use benches::Outcome;
-use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
+use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{disks_from_radii, even_lattice, scattered_mix, with_maxwellian_velocities};
@@ -35,15 +35,16 @@ pub(crate) fn mixture() -> Outcome<Simulation<Elastic>> {
 }
 
 /// Returns equal disks in a square vessel with 36 round pegs, at the area fraction 0.4.
-pub(crate) fn vessel() -> Outcome<Simulation<Elastic, Vessel>> {
+pub(crate) fn vessel() -> Outcome<Simulation<Elastic>> {
     let side = side(DISKS as f64, 0.4);
-    let mut vessel = Vessel::new(Container::closed(side, side)?);
-    for peg in 0..36 {
+    let peg = |peg: u32| {
         let place = DVec2::new(f64::from(peg % 6) + 0.5, f64::from(peg / 6) + 0.5);
-        vessel.put(format!("peg {peg}"), Part::peg(side / 6.0 * place, 0.25)?)?;
-    }
-    let disks = even_lattice(&vessel, DISKS, 0.5)?;
-    settled(vessel, disks)
+        Disk::new(side / 6.0 * place, 0.25)
+    };
+    let pegs = (0..36).map(peg).collect::<Result<Vec<_>, _>>()?;
+    let container = Container::closed(side, side)?.with_pegs(pegs)?;
+    let disks = even_lattice(&container, DISKS, 0.5)?;
+    settled(container, disks)
 }
 
 /// Returns the side of a square in which `disks` disks of diameter 1 have this area fraction.

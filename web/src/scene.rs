@@ -1,6 +1,6 @@
 //! The scenes: the paper's box, and a large disk among small ones, of which all else is the same.
 
-use granular_edmd::boundary::{Container, Obstacles, Wall};
+use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, Radii};
 use granular_edmd::observable::{CenterOfMass, Observable, OfKind, OrderParameters, Snapshot};
@@ -100,7 +100,7 @@ impl Scene {
                 let level = if density > 1.0 { height - 1.0 - radius } else { 1.0 + radius };
                 let large = Disk::new(DVec2::new(0.5 * width, level), radius)?;
                 let large = large.with_mass(density * diameter * diameter)?.with_kind(LARGE);
-                let around = Obstacles::new(container.clone(), [large]);
+                let around = container.clone().with_pegs([large])?;
                 // Equal grains would come to lie in a lattice, in which nothing moves.
                 let sites = initial::lattice(&around, self.count() - 1, RADIUS)?;
                 let radii = Radii::uniform(SMALLEST, RADIUS)?.draw(sites.len(), seed);

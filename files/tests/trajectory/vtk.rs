@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use granular_edmd::boundary::{Container, Domain, Part, Vessel, Wall};
+use granular_edmd::boundary::{Container, Domain, Part, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, Snapshot};
@@ -103,12 +103,12 @@ fn the_walls_are_those_of_the_run() {
     let paddle = paddle.with_rotation(place(5.0, 5.0), 0.3).unwrap();
     let gate = Part::polyline([place(1.0, 9.0), place(4.0, 9.0), place(9.0, 9.0)]).unwrap();
     let container = Container::closed(10.0, 20.0).unwrap();
-    let mut vessel = Vessel::new(container).with("paddle", paddle).unwrap().with("gate", gate).unwrap();
+    let mut vessel = container.with_part("paddle", paddle).unwrap().with_part("gate", gate).unwrap();
     let disk = Disk::new(place(5.0, 15.0), 0.5).unwrap();
     let mut run = Simulation::builder(Elastic, vessel.clone()).disks([disk]).build().unwrap();
     let mut recorder = Recorder::create(&path, Vtk, times()).unwrap();
     run.run_until(1.0, &mut recorder).unwrap();
-    vessel.remove("gate").unwrap();
+    vessel.remove_part("gate").unwrap();
     run.set_boundary(vessel).unwrap();
     run.run_until(1.5, &mut recorder).unwrap();
     drop(recorder);
@@ -131,8 +131,8 @@ fn frames_tell_where_the_walls_are() {
     let paddle = paddle.with_rotation(place(5.0, 5.0), 3.0).unwrap();
     let plate = Part::polyline([place(1.0, 12.0), place(9.0, 12.0)]).unwrap();
     let plate = plate.with_motion(place(0.0, 1.0), Sinusoidal::new(0.2, 4.0).unwrap()).unwrap();
-    let vessel = Vessel::new(container);
-    let vessel = vessel.with("paddle", paddle).unwrap().with("plate", plate).unwrap();
+    let vessel = container;
+    let vessel = vessel.with_part("paddle", paddle).unwrap().with_part("plate", plate).unwrap();
     let disk = Disk::new(place(5.0, 15.0), 0.5).unwrap();
     let mut run = Simulation::builder(Elastic, vessel).disks([disk]).build().unwrap();
     let names = ["run.xyz", "run.gsd", "run.pvd"].map(|name| scratch.path(name));

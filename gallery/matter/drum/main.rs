@@ -28,7 +28,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use granular_edmd::boundary::{Brick, Domain, VesselError};
+use granular_edmd::boundary::{Brick, Domain, WallError};
 use granular_edmd::collision::{ElasticBelow, TangentialResponse};
 use granular_edmd::initial::Radii;
 use granular_edmd::prelude::*;
@@ -160,9 +160,9 @@ fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
 }
 
 /// Returns the drum about the origin, which turns counterclockwise.
-fn drum(arguments: &Arguments, rate: f64) -> Result<Vessel, VesselError> {
+fn drum(arguments: &Arguments, rate: f64) -> Result<Container, WallError> {
     let rim = Part::drum(DVec2::ZERO, arguments.radius)?.with_rotation(DVec2::ZERO, rate)?;
-    let vessel = Vessel::around([("rim", rim)])?;
+    let vessel = Container::around([("rim", rim)])?;
     if arguments.pins == 0 {
         return Ok(vessel);
     }
@@ -171,7 +171,7 @@ fn drum(arguments: &Arguments, rate: f64) -> Result<Vessel, VesselError> {
         Brick::point((arguments.radius - PIN) * DVec2::from_angle(angle))
     };
     let pins = (0..arguments.pins).map(pin).collect::<Result<Vec<_>, _>>()?;
-    vessel.with("pins", Part::new(pins)?.with_rotation(DVec2::ZERO, rate)?)
+    vessel.with_part("pins", Part::new(pins)?.with_rotation(DVec2::ZERO, rate)?)
 }
 
 /// Returns grains that fill the lower half of a drum that stands still.
@@ -182,7 +182,7 @@ fn half_filled(arguments: &Arguments) -> Result<Vec<Disk>, Box<dyn Error>> {
     let count = LOOSE * room / (PI * 0.475 * 0.475);
     let radii = Radii::uniform(0.45, 0.5)?.draw(count as usize, arguments.seed);
     // Pins turn, and grains are packed only in vessels whose walls stand still.
-    let still = Vessel::around([("rim", Part::drum(DVec2::ZERO, arguments.radius - PIN)?)])?;
+    let still = Container::around([("rim", Part::drum(DVec2::ZERO, arguments.radius - PIN)?)])?;
     let disks = initial::disks_from_radii(radii, 1.0)?;
     let disks = initial::packed_mix(&still, disks, 0.35 * arguments.radius, arguments.seed)?;
     Ok(initial::with_maxwellian_velocities(disks, 0.01, arguments.seed)?)

@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use granular_edmd::boundary::VesselError;
+use granular_edmd::boundary::WallError;
 use granular_edmd::collision::TangentialResponse::{Frictionless, Reversing, Unchanged};
 use granular_edmd::collision::{ElasticBelow, SpeedDependent};
 use granular_edmd::initial::Radii;
@@ -69,7 +69,7 @@ const FRAME: f64 = 0.5;
 /// Latest end of a passage, if the neck is blocked.
 const END: f64 = 1000.0;
 
-type Run = Simulation<BoxedRule, Vessel>;
+type Run = Simulation<BoxedRule, Container>;
 
 fn main() -> ExitCode {
     command_line::main(run)
@@ -122,7 +122,7 @@ impl Glass {
         [(neck, 0.0), (width, shoulder), (width, top)].map(DVec2::from)
     }
 
-    fn upper_half(&self) -> Result<Part, VesselError> {
+    fn upper_half(&self) -> Result<Part, WallError> {
         let left = self.right().map(|point| DVec2::new(-point.x, point.y));
         Part::polygon(self.right().into_iter().chain(left.into_iter().rev()))
     }
@@ -134,7 +134,7 @@ impl Glass {
         half.iter().copied().chain(half.iter().rev().map(|p| DVec2::new(-p.x, p.y))).collect()
     }
 
-    fn gate(&self) -> Result<Part, VesselError> {
+    fn gate(&self) -> Result<Part, WallError> {
         Part::polyline([DVec2::new(-self.neck, 0.0), DVec2::new(self.neck, 0.0)])
     }
 }
@@ -171,10 +171,10 @@ fn both_ways(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<[W
 fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run, Box<dyn Error>> {
     let seed = arguments.seed;
     let radii = Radii::uniform(0.45, 0.5)?.draw(grains(arguments), seed);
-    let upper = Vessel::around([("upper half", glass.upper_half()?)])?;
+    let upper = Container::around([("upper half", glass.upper_half()?)])?;
     let disks = initial::packed_mix(&upper, initial::disks_from_radii(radii, 1.0)?, glass.top, seed)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.01, seed)?;
-    let shut = Vessel::around([("glass", Part::polygon(glass.outline())?), ("gate", glass.gate()?)])?;
+    let shut = Container::around([("glass", Part::polygon(glass.outline())?), ("gate", glass.gate()?)])?;
     let mut run = Simulation::builder(rule, shut).disks(disks).gravity(1.0).build()?;
     let mut progress = Progress::of("grains that come to rest").until(SETTLING);
     if run.run(&limits(arguments, SETTLING), &mut progress)? != RunEnd::Time {
@@ -183,7 +183,7 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
         );
     }
     let mut open = run.boundary().clone();
-    open.remove("gate")?;
+    open.remove_part("gate")?;
     run.set_boundary(open)?;
     Ok(run)
 }

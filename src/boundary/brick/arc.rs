@@ -151,8 +151,8 @@ impl Arc {
     }
 
     /// Returns a rectangle around the brick.
-    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
-        (self.center - self.radius, self.center + self.radius)
+    pub(super) fn bounds(&self) -> Region {
+        Region::around(self.center, self.radius)
     }
 
     /// Returns the smallest and the largest distance of the arc's points from a given point.

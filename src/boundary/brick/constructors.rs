@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::arc::{Arc, Sector};
 use super::segment::Segment;
 use super::{Brick, Free, Nearest, Shape};
-use crate::boundary::VesselError;
+use crate::boundary::WallError;
 use crate::boundary::vector::{direction, finite_point};
 use crate::quantity::{accept, finite, positive};
 
@@ -16,7 +16,7 @@ impl Brick {
     ///
     /// # Errors
     /// If a coordinate is not finite, or the points are equal.
-    pub fn segment(from: DVec2, to: DVec2) -> Result<Self, VesselError> {
+    pub fn segment(from: DVec2, to: DVec2) -> Result<Self, WallError> {
         let (from, to) = (finite_point(from)?, finite_point(to)?);
         positive("length of a segment", from.distance(to))?;
         Ok(Self::left_of(Shape::Segment(Segment::between(from, to))))
@@ -26,7 +26,7 @@ impl Brick {
     ///
     /// # Errors
     /// If a coordinate is not finite, or the radius is not finite and positive.
-    pub fn circle(center: DVec2, radius: f64) -> Result<Self, VesselError> {
+    pub fn circle(center: DVec2, radius: f64) -> Result<Self, WallError> {
         let (center, radius) = (finite_point(center)?, positive("radius of a circle", radius)?);
         Ok(Self::left_of(Shape::Arc(Arc { center, radius, sector: None })))
     }
@@ -45,9 +45,9 @@ impl Brick {
     /// use granular_edmd::glam::DVec2;
     /// let bowl = Brick::arc(DVec2::ZERO, 5.0, PI, 2.0 * PI)?;
     /// assert_eq!(bowl.signed_distance(DVec2::new(0.0, -2.0)), 3.0);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
-    pub fn arc(center: DVec2, radius: f64, from: f64, to: f64) -> Result<Self, VesselError> {
+    pub fn arc(center: DVec2, radius: f64, from: f64, to: f64) -> Result<Self, WallError> {
         const TURN: f64 = std::f64::consts::TAU;
         let (center, radius) = (finite_point(center)?, positive("radius of an arc", radius)?);
         let angle = finite("angle of an arc", to)? - finite("angle of an arc", from)?;
@@ -63,7 +63,7 @@ impl Brick {
     ///
     /// # Errors
     /// If a coordinate is not finite.
-    pub fn point(place: DVec2) -> Result<Self, VesselError> {
+    pub fn point(place: DVec2) -> Result<Self, WallError> {
         Ok(Self::corner(finite_point(place)?))
     }
 
@@ -104,7 +104,7 @@ impl Brick {
     ///
     /// # Errors
     /// If a coordinate would not be finite.
-    pub fn shifted(self, by: DVec2) -> Result<Self, VesselError> {
+    pub fn shifted(self, by: DVec2) -> Result<Self, WallError> {
         self.moved(DVec2::X, finite_point(by)?)
     }
 
@@ -112,12 +112,12 @@ impl Brick {
     ///
     /// # Errors
     /// If an argument or a resulting coordinate is not finite.
-    pub fn rotated(self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
+    pub fn rotated(self, about: DVec2, angle: f64) -> Result<Self, WallError> {
         let turn = direction(finite("angle", angle)?);
         self.moved(turn, finite_point(about)? - turn.rotate(about))
     }
 
-    fn moved(self, turn: DVec2, shift: DVec2) -> Result<Self, VesselError> {
+    fn moved(self, turn: DVec2, shift: DVec2) -> Result<Self, WallError> {
         let shape = match self.shape {
             Shape::Segment(segment) => Shape::Segment(segment.moved(turn, shift)),
             Shape::Arc(arc) => Shape::Arc(arc.moved(turn, shift)),

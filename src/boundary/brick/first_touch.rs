@@ -27,7 +27,7 @@ impl Brick {
     /// assert_eq!(drum.first_touch(&flight, 10.0), Some(5.0));
     /// assert_eq!(drum.normal(flight.position(5.0)), DVec2::Y);
     /// assert_eq!(drum.first_touch(&flight, 4.0), None);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
     pub fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {
         let wait = self.wait_for_touch(&Path::of(flight), until - flight.time())?;

@@ -81,7 +81,7 @@ impl Segment {
 
     /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
-        let (low, high) = self.bounds();
+        let Region { min: low, max: high } = self.bounds();
         let (min, max) = (region.min - reach, region.max + reach);
         let boxes_meet = low.x <= max.x && low.y <= max.y && high.x >= min.x && high.y >= min.y;
         if !boxes_meet {
@@ -93,8 +93,8 @@ impl Segment {
     }
 
     /// Returns the rectangle around the brick.
-    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
-        (self.from.min(self.to), self.from.max(self.to))
+    pub(super) fn bounds(&self) -> Region {
+        Region::new(self.from.min(self.to), self.from.max(self.to))
     }
 
     /// Returns the smallest and the largest distance of the segment's points from a given point.

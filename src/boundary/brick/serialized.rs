@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arc::{Arc, Sector};
 use super::{Brick, Free, Shape};
-use crate::boundary::VesselError;
+use crate::boundary::WallError;
 use crate::boundary::vector::unit_vector;
 use crate::quantity::accept;
 
@@ -35,9 +35,9 @@ impl From<Brick> for Record {
 }
 
 impl TryFrom<Record> for Brick {
-    type Error = VesselError;
+    type Error = WallError;
 
-    fn try_from(record: Record) -> Result<Self, VesselError> {
+    fn try_from(record: Record) -> Result<Self, WallError> {
         match record {
             Record::Segment { from, to, free } => Ok(Self { free, ..Self::segment(from, to)? }),
             Record::Circle { center, radius, free } => Ok(Self { free, ..Self::circle(center, radius)? }),

@@ -1,14 +1,11 @@
 //! A container as a boundary.
 
-use std::borrow::Cow;
-
 use glam::DVec2;
 
 use super::Container;
-use crate::boundary::area::{Curve, Curves};
 use crate::boundary::plane::Plane;
 use crate::boundary::{
-    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch,
+    Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch, WallView,
 };
 use crate::quantity::accept;
 use crate::wall::{Motion, Stroke};
@@ -24,50 +21,64 @@ impl Boundary for Container {
     }
 
     fn wall_count(&self) -> usize {
-        self.planes.len()
+        self.planes.len() + self.parts.as_ref().map_or(0, |parts| parts.wall_count())
     }
 
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        let plane = self.planes.get(wall);
-        plane.map_or_else(|| Cow::Owned(format!("wall {wall}")), |plane| plane.wall.name().into())
+    fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
+        let own = self.planes.get(wall).map(|plane| plane.view(time));
+        let view = own.or_else(|| self.parts.as_ref()?.view(wall, time));
+        view.unwrap_or_else(|| WallView::new(format!("wall {wall}")))
     }
 
     fn set_time_origin(&mut self, origin: f64) {
         for plane in &mut self.planes {
             plane.set_time_origin(origin);
         }
+        self.origin = origin;
+        if let Some(parts) = &mut self.parts {
+            parts.set_time_origin(origin);
+        }
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {
-        let is_moved = self.planes[impact.wall].take(impact.impulse, impact.time);
+        let is_moved = match (self.planes.get_mut(impact.wall), &mut self.parts) {
+            (Some(plane), _) => plane.take(impact.impulse, impact.time),
+            (None, parts) => parts.as_mut().is_some_and(|parts| parts.take(impact)),
+        };
         if is_moved { Reaction::Moved } else { Reaction::None }
     }
 
     fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        self.planes[wall].may_meet(region, radius, until)
+        match (self.planes.get(wall), &self.parts) {
+            (None, Some(parts)) => parts.may_meet(wall, region, radius, until),
+            (plane, _) => plane.is_some_and(|plane| plane.may_meet(region, radius, until)),
+        }
     }
 
     fn state(&self) -> Vec<f64> {
-        let strokes = self.planes.iter().filter_map(|plane| plane.motion.stroke());
-        strokes.flat_map(Stroke::numbers).collect()
+        let own = self.planes.iter().filter_map(|plane| plane.motion.stroke());
+        own.chain(self.parts.iter().flat_map(|parts| parts.pistons())).flat_map(Stroke::numbers).collect()
     }
 
     fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
         let (numbers, rest) = state.as_chunks::<3>();
         let pistons = self.planes.iter_mut().filter(|plane| plane.motion.stroke().is_some());
         let pistons: Vec<_> = pistons.collect();
-        let is_whole = rest.is_empty() && numbers.len() == pistons.len();
+        let of_parts = self.parts.iter().flat_map(|parts| parts.pistons()).count();
+        let is_whole = rest.is_empty() && numbers.len() == pistons.len() + of_parts;
         accept(is_whole, "state of the walls", "three numbers for each piston", state.len() as f64)?;
-        for (plane, &numbers) in pistons.into_iter().zip(numbers) {
+        let (own, of_parts) = numbers.split_at(pistons.len());
+        for (plane, &numbers) in pistons.into_iter().zip(own) {
             if let Some(stroke) = plane.motion.stroke() {
                 plane.motion = Motion::of(stroke.with_numbers(numbers)?);
             }
         }
-        Ok(())
+        self.parts.as_mut().map_or(Ok(()), |parts| parts.set_pistons(of_parts))
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         self.planes.iter().any(|plane| plane.may_touch(region, radius))
+            || self.parts.as_ref().is_some_and(|parts| parts.may_touch(region, radius))
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
@@ -76,24 +87,17 @@ impl Boundary for Container {
             let found = plane.first_touch(flight, until.min(first.time()));
             first = first.or(found.map(|time| Touch::new(time, wall)));
         }
-        first
+        match &self.parts {
+            None => first,
+            Some(parts) => parts.first_touch(flight, until, first, &self.planes),
+        }
     }
 
-    fn surface(&self, wall: usize, _position: DVec2, time: f64) -> Surface<'_> {
-        self.planes[wall].surface(time)
-    }
-
-    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.planes.get(wall).map(|plane| plane.place(time))
-    }
-
-    fn edges(&self, time: f64) -> Domain {
-        let Region { min, max } = self.room(0.0, time);
-        self.with_sides(Domain::new(min.x, max.x, min.y, max.y))
-    }
-
-    fn wall_motion(&self, wall: usize, time: f64) -> Option<(DVec2, f64)> {
-        self.planes.get(wall)?.moved(time)
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        match &self.parts {
+            Some(parts) if wall >= self.planes.len() => parts.surface(wall, position, time),
+            _ => self.planes[wall].surface(time),
+        }
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
@@ -101,25 +105,35 @@ impl Boundary for Container {
         let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
         let near =
             self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
-        Overlap::deepest(near.map(|(wall, plane)| Overlap::new(wall, plane.depth(position, radius, time))))
+        let own = near.map(|(wall, plane)| Overlap::new(wall, plane.depth(position, radius, time)));
+        let own = Overlap::deepest(own);
+        match &self.parts {
+            None => own,
+            Some(parts) => Overlap::deepest(own.into_iter().chain(parts.overlap(probe))),
+        }
+    }
+
+    fn tight_fit(&self, radius: f64) -> Option<usize> {
+        self.parts.as_ref().and_then(|parts| parts.tight_fit(radius))
     }
 
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
-        Some(region.within(&self.room(radius, time)).area())
-    }
-
-    fn curves(&self, region: &Region, radius: f64, time: f64) -> Option<Curves> {
-        let Region { min, max } = region.within(&self.room(radius, time));
-        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y), min];
-        Some(Curves(corners.windows(2).map(|ends| Curve::Line(ends[0], ends[1])).collect()))
+        let region = region.within(&self.room(radius, time));
+        match &self.parts {
+            None => Some(region.area()),
+            Some(parts) => parts.area(&region, radius, time),
+        }
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         let sizes = Fingerprint::of("Container").number(self.width).number(self.height);
         let DVec2 { x, y } = self.corner;
         let sizes = if self.corner == DVec2::ZERO { sizes } else { sizes.number(x).number(y) };
-        self.planes.iter().try_fold(sizes, |container, plane| {
+        let own = self.planes.iter().try_fold(sizes, |container, plane| {
             Some(container.text(plane.wall.name()).part(plane.fingerprint()?))
+        });
+        self.placed().iter().try_fold(own?, |container, placed| {
+            Some(container.text(&placed.name).part(placed.part.fingerprint()?))
         })
     }
 }

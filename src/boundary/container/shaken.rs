@@ -42,14 +42,14 @@ impl Container {
         wall: Wall,
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
-        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?;
+        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { violation })?;
         self.plane_mut(wall)?.set_slide(Slide::Motion { motion, phase: 0.0 })?;
         Ok(self)
     }
 
     /// Returns the same container, shaken sideways as a whole.
     ///
-    /// Side walls move along their normals; floor and lid slide.
+    /// Side walls move along their normals; floor and lid slide. Parts keep their own motions.
     ///
     /// Vertical motions that were set before are kept, so the floor or the box can move vertically, too.
     ///
@@ -95,9 +95,9 @@ impl Container {
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
         let [first, second] = pair;
-        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall: first, violation })?;
+        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { violation })?;
         let mirrored = Combined::of(motion.clone()).scaled(-1.0);
-        let mirrored = mirrored.map_err(|_| WallError::Jump { wall: second })?;
+        let mirrored = mirrored.map_err(|_| WallError::Jump)?;
         for (wall, motion) in [(first, motion.clone()), (second, Motion::of(mirrored))] {
             if let Ok(plane) = self.plane_mut(wall) {
                 if plane.motion.reach() != (0.0, 0.0) {
@@ -111,6 +111,6 @@ impl Container {
                 plane.set_slide(Slide::Motion { motion: motion.clone(), phase: 0.0 })?;
             }
         }
-        Ok(self)
+        self.changed()
     }
 }

@@ -10,10 +10,11 @@
 use glam::DVec2;
 
 use super::Random;
+use super::gap::Gap;
 use super::trial::{PART, Trial};
-use crate::Violation;
-use crate::boundary::{Boundary, Domain, Probe, Region};
+use crate::boundary::{Boundary, Domain, Region};
 use crate::violation::require;
+use crate::{Kind, Violation};
 
 /// Smallest and largest number of halvings of a region that a wall crosses.
 const FEWEST: u32 = 12;
@@ -34,22 +35,10 @@ const BEND: f64 = 0.01;
 /// of the region.
 const SLACK: f64 = 2e-5;
 
-/// Number of intervals in which moving points may come back, and number of times that such an interval
-/// becomes a third shorter.
-const RETURNS: u32 = 300;
-const THIRDS: u32 = 100;
-
-/// Share of the domain that is far from all simple fractions, so that it holds no whole number of equal
-/// teeth.
-const GOLDEN: f64 = 0.381_966;
-
-/// Share of the time between two snapshots after which points that come back are compared once more.
-const SHARE: f64 = 0.37;
-
 /// Checks the free areas of the domain, of a random region and of a narrow one, for centers of disks and for
 /// matter. Beyond its walls, the domain has no free area.
 pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> Result<(), Violation> {
-    let (low, high) = trial.rectangle();
+    let Region { min: low, max: high } = trial.rectangle();
     let any = |random: &mut Random| DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));
     let (one, other) = (any(random), any(random));
     let mut thin = || libm::exp10(random.between(-2.0, 0.0));
@@ -71,91 +60,7 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
             "the area for centers of disks of radius {radius:?} in the domain at {time:?} is {inside:?}, but with \
              a strip beyond the walls {all:?}");
     }
-    check_points(trial, time, time + random.between(0.1, 1.0) * trial.length() / trial.speed)
-}
-
-/// Checks that areas repeat when the points of the walls do: measures keep areas as long as all points stay
-/// where they are, and snapshots may follow each other at the period of a motion.
-fn check_points(trial: &Trial<'_>, time: f64, later: f64) -> Result<(), Violation> {
-    let apart = |time, later| distance(trial, time, later);
-    let between = time + SHARE * (later - time);
-    let now = areas(trial, time);
-    if now.is_empty() {
-        return Ok(());
-    }
-    for wait in std::iter::once(later - time).chain(returns(time, later, apart)) {
-        // Points that come back only once, as on their way back, do no harm.
-        let farthest = apart(time, time + wait).max(apart(between, between + wait));
-        if farthest <= trial.rounding() {
-            check_same_areas(trial, &now, time, time + wait, farthest)?;
-        }
-    }
     Ok(())
-}
-
-/// Returns the sum of the distances by which the points of the walls move between two times, or infinity if
-/// a wall has no point.
-fn distance(trial: &Trial<'_>, time: f64, later: f64) -> f64 {
-    let point = |wall, time| trial.boundary.wall_point(wall, time);
-    let moved = |wall| Some(point(wall, time)?.distance(point(wall, later)?));
-    (0..trial.wall_count).map(moved).sum::<Option<f64>>().unwrap_or(f64::INFINITY)
-}
-
-/// Returns the times after which points that move come nearest to their places at `time`.
-fn returns(time: f64, later: f64, apart: impl Fn(f64, f64) -> f64) -> impl Iterator<Item = f64> {
-    let step = 3.0 * (later - time) / f64::from(RETURNS);
-    (2..RETURNS).filter_map(move |number| {
-        let wait = f64::from(number) * step;
-        let moved = |wait| apart(time, time + wait);
-        let [before, here, after] = [wait - step, wait, wait + step].map(moved);
-        (here > 0.0 && here <= before && here < after).then(|| least(wait - step, wait + step, moved))
-    })
-}
-
-/// Returns the argument of the least value of a function that falls and then grows.
-fn least(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..THIRDS {
-        let third = (high - low) / 3.0;
-        if function(low + third) < function(high - third) { high -= third } else { low += third }
-    }
-    0.5 * (low + high)
-}
-
-/// Checks that the areas in the parts of the domain are the same at a later time.
-fn check_same_areas(
-    trial: &Trial<'_>,
-    now: &[PartArea],
-    time: f64,
-    later: f64,
-    apart: f64,
-) -> Result<(), Violation> {
-    for (now, then) in now.iter().zip(areas(trial, later)) {
-        let PartArea { region, radius, area } = now;
-        require!(PART, "wall_point", (area - then.area).abs() <= SLACK * region.area();
-            "the area for disks of radius {radius:?} in {region:?} is {area:?} at {time:?} and {:?} at {later:?}, but the points of \
-             all walls are back, within {apart:?}", then.area);
-    }
-    Ok(())
-}
-
-/// The area for disks of this radius in a part of the domain.
-struct PartArea {
-    region: Region,
-    radius: f64,
-    area: f64,
-}
-
-/// Returns the areas in four parts of the domain, as far as they are known. A tray that rocks takes on one
-/// side what it gives on the other, and teeth that slide do so in each of their periods.
-fn areas(trial: &Trial<'_>, time: f64) -> Vec<PartArea> {
-    let (low, high) = trial.rectangle();
-    let inside = low + GOLDEN * (high - low);
-    let corners = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)];
-    let parts = corners.map(|corner| Region::new(corner.min(inside), corner.max(inside)));
-    let both = parts.into_iter().flat_map(|region| [(region, 0.0), (region, trial.radius)]);
-    let area = |region, radius| trial.boundary.area(&region, radius, time);
-    both.map_while(|(region, radius)| Some(PartArea { region, radius, area: area(region, radius)? }))
-        .collect()
 }
 
 fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Result<(), Violation> {
@@ -204,12 +109,9 @@ impl Cell {
     /// Returns the share of the cell in which the center of a disk is free, or `None` if it is unknown.
     fn free_share(&self, trial: &Trial<'_>, radius: f64, time: f64) -> Option<f64> {
         let reach = self.half.length();
-        // The distance to the nearest wall, up to `seen`; negative inside a wall.
-        let gap = |x: f64, y: f64, seen: f64| {
-            let place = self.middle + DVec2::new(x, y) * self.half;
-            let found = trial.boundary.overlap(&Probe::new(place, radius + seen, time));
-            seen - found.map_or(0.0, |found| found.depth)
-        };
+        let of_disk = Gap { boundary: &*trial.boundary, radius, kind: Kind::DEFAULT };
+        let gap =
+            |x: f64, y: f64, reach: f64| of_disk.at(self.middle + DVec2::new(x, y) * self.half, reach, time);
         let middle = gap(0.0, 0.0, reach);
         if middle.abs() >= reach {
             return Some(if middle > 0.0 { 1.0 } else { 0.0 });

@@ -1,13 +1,13 @@
-//! The check of one flight, from its start to its touch.
+//! The check of one flight: its touch is the first root of the gap.
 
 use glam::DVec2;
 
 use super::reaction::check_reaction;
-use super::seen::{Seen, name};
-use super::surface::check_surface;
+use super::regions::check_regions;
+use super::surface::{check_surface, in_words, is_same};
 use super::trial::{PART, Trial, restarted};
 use super::{LATEST, SMALLEST};
-use crate::boundary::{Boundary, Overlap, Response, Touch};
+use crate::boundary::{Boundary, Response, Surface, Touch};
 use crate::violation::require;
 use crate::{Flight, Violation};
 
@@ -21,6 +21,9 @@ const GRAZING: f64 = 1e-2;
 /// Closing speeds of flights that graze a wall, as fractions of the speed along it.
 const GRAZES: [f64; 4] = [3e-2, 3e-3, 3e-4, 3e-5];
 
+/// Largest relative difference between surfaces that are seen from two time origins.
+const SAME: f64 = 1e-9;
+
 /// A touch, and how the disk meets the wall.
 struct Meeting {
     touch: Touch,
@@ -29,6 +32,21 @@ struct Meeting {
     rate: f64,
     /// True if the gap closes so slowly that rounding decides.
     is_grazing: bool,
+    /// The surface, and its response in words.
+    surface: (Surface<'static>, String),
+}
+
+impl Meeting {
+    /// Returns the uncertainty of the time of the touch: the time in which the gap closes by its rounding
+    /// error.
+    fn slack(&self, trial: &Trial<'_>) -> f64 {
+        4.0 * trial.rounding() / self.rate.abs()
+    }
+
+    /// Returns whether a touch is this one: of this wall, or of another wall with the same surface.
+    fn is(&self, trial: &Trial<'_>, other: Touch) -> bool {
+        other.wall == self.touch.wall || is_same(trial, self.touch, other.wall, self.place)
+    }
 }
 
 /// Checks consecutive flights of a disk. Each wall that the disk touches reflects it.
@@ -39,11 +57,11 @@ pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize
         trial.check_constants()?;
         let Some(meeting) = touched else { break };
         check_reaction(trial, meeting.touch, meeting.place)?;
-        flight = turned_back(trial, &flight, &meeting);
+        flight = turned_back(&flight, &meeting);
+        trial.touches += 1;
         if number % 2 == 1 {
-            trial.grazes += 1;
-            let grazing = grazing(trial, &flight, &meeting, GRAZES[trial.grazes % GRAZES.len()]);
-            if trial.depth(grazing.position(grazing.time()), 0.0, grazing.time()).is_none() {
+            let grazing = grazing(trial, &flight, &meeting, GRAZES[trial.touches / 2 % GRAZES.len()]);
+            if !trial.gap().is_below(0.0, grazing.position(grazing.time()), grazing.time()) {
                 check_flight(trial, &grazing)?;
             }
         }
@@ -55,118 +73,99 @@ pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize
 fn check_flight(trial: &mut Trial<'_>, flight: &Flight) -> Result<Option<Meeting>, Violation> {
     let until = flight.time() + trial.longest(flight);
     let found = trial.first_touch(flight, until)?;
-    if let Some(Touch { time, .. }) = found {
-        let is_inside = time >= flight.time() && time <= until;
-        require!(PART, "touch time", is_inside;
-            "a touch at {time:?} is not on the flight until {until:?}: {flight:?}");
-    }
+    let is_inside = found.is_none_or(|touch| (flight.time()..=until).contains(&touch.time));
+    require!(PART, "touch time", is_inside;
+        "the touch {found:?} is not on the flight until {until:?}: {flight:?}");
     check_way(trial, flight, found.map_or(until, |touch| touch.time), found)?;
     if let Some(touch) = found.filter(|&touch| is_sink_for_centers(trial, flight, touch)) {
-        trial.check_regions(touch, flight.position(touch.time))?;
+        check_regions(trial, touch, flight.position(touch.time))?;
         return Ok(None);
     }
     let meeting = found.map(|touch| check_place(trial, flight, touch)).transpose()?;
     let again = trial.first_touch(flight, until)?;
-    let is_same = again == found;
-    require!(PART, "repeatable", is_same;
+    require!(PART, "repeatable", again == found;
         "the touch {found:?} is {again:?} when asked for again: {flight:?}");
     check_origin(trial, flight, until, meeting.as_ref())?;
     if let Some(meeting) = &meeting {
         check_limits(trial, flight, meeting)?;
-        trial.check_regions(meeting.touch, meeting.place)?;
+        check_regions(trial, meeting.touch, meeting.place)?;
     }
     Ok(meeting)
 }
 
 /// Returns whether the flight ends at a sink that takes a disk out before a touch, when its center arrives.
-fn is_sink_for_centers(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> bool {
-    let place = flight.position(touch.time);
-    let surface = trial.boundary.surface(touch.wall, place, touch.time);
-    let is_open = trial.depth(place, trial.rounding(), touch.time).is_none();
-    matches!(surface.response, Response::Absorbing) && is_open
-}
-
-/// Returns the distance by which a gap closes during the rounding error of an absolute time. The phase of a
-/// motion without a period has this error.
-fn lateness(trial: &Trial<'_>, flight: &Flight, Touch { wall, time, .. }: Touch) -> f64 {
-    let surface = trial.boundary.surface(wall, flight.position(time), time);
-    let rate = (flight.velocity(time) - surface.velocity).dot(surface.normal);
-    // The check of the surface finds a rate that is NaN.
-    (16.0 * f64::EPSILON * (trial.origin + time) * rate.abs()).max(0.0)
+fn is_sink_for_centers(trial: &Trial<'_>, flight: &Flight, Touch { wall, time, .. }: Touch) -> bool {
+    let place = flight.position(time);
+    let is_sink = matches!(trial.boundary.surface(wall, place, time).response, Response::Absorbing);
+    is_sink && !trial.gap().is_below(trial.rounding(), place, time)
 }
 
 /// Checks that a disk overlaps no wall and stays in the domain during its flight.
 fn check_way(trial: &Trial<'_>, flight: &Flight, end: f64, found: Option<Touch>) -> Result<(), Violation> {
-    let domain = trial.domain;
-    let rounding = trial.rounding() + found.map_or(0.0, |touch| lateness(trial, flight, touch));
-    let found = found.map(|touch| touch.time);
+    // The phase of a motion without a period has the rounding error of an absolute time, during which the gap
+    // closes a little. The check of the surface finds a rate that is NaN.
+    let lateness = found.map_or(0.0, |Touch { wall, time, .. }| {
+        let surface = trial.boundary.surface(wall, flight.position(time), time);
+        let rate = (flight.velocity(time) - surface.velocity).dot(surface.normal);
+        (16.0 * f64::EPSILON * (trial.origin + time) * rate.abs()).max(0.0)
+    });
+    let rounding = trial.rounding() + lateness;
     for k in 0..=SAMPLES {
         let time = (flight.time() + (end - flight.time()) * f64::from(k) / f64::from(SAMPLES)).min(end);
         let place = flight.position(time);
-        if let Some(Overlap { with: wall, depth }) = trial.depth(place, -rounding, time) {
-            let sentence = format!(
-                "a disk goes into wall {wall}: at time {time:?} it is {depth:?} deep, with the touch {found:?}, \
-                 on {flight:?}"
-            );
-            return Err(Violation::new(PART, "no missed touch", sentence));
-        }
-        let is_inside = domain.contains(place, rounding);
-        require!(PART, "inside the domain", is_inside;
+        let is_free = !trial.gap().is_below(-rounding, place, time);
+        require!(PART, "no missed touch", is_free;
+            "a disk is in a wall at time {time:?}, with the touch {found:?}, on {flight:?}");
+        require!(PART, "inside the domain", trial.domain.contains(place, rounding);
             "a disk is at {place:?} at time {time:?}, on {flight:?}");
     }
     Ok(())
 }
 
 /// Checks that the gap is closed at the touch, and checks the surface there.
-fn check_place(trial: &mut Trial<'_>, flight: &Flight, touch: Touch) -> Result<Meeting, Violation> {
-    let Touch { time, wall, .. } = touch;
+fn check_place(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> Result<Meeting, Violation> {
+    let (Touch { time, wall, .. }, rounding) = (touch, trial.rounding());
     let place = flight.position(time);
-    let is_closed = trial.depth(place, trial.rounding(), time).is_some();
-    require!(PART, "no early touch", is_closed; "the gap to wall {wall} is open at {time:?}, on {flight:?}");
+    require!(PART, "no early touch", trial.gap().is_below(rounding, place, time);
+        "the gap to wall {wall} is open at {time:?}, on {flight:?}");
     check_surface(trial, touch, place)?;
     trial.check_seams(place, time)?;
     let surface = trial.boundary.surface(wall, place, time);
-    let small = SMALLEST * trial.largest;
-    let nearer = place - (trial.radius - small) * surface.normal;
-    let is_closed = trial.depth(nearer, small - trial.radius + 2.0 * trial.rounding(), time).is_some();
+    let less = trial.radius - SMALLEST * trial.largest;
+    let is_closed = trial.gap().is_below(2.0 * rounding - less, place - less * surface.normal, time);
     require!(PART, "sizes", is_closed;
-        "a disk of radius {:?} at {place:?}, {time:?}, touches wall {wall}, but one of radius {small:?} at the same point does \
-         not: walls tell disks apart by their kinds, not by their sizes", trial.radius);
+        "a disk of radius {:?} at {place:?}, {time:?}, touches wall {wall}, but one that is smaller by {less:?} does not touch it at \
+         the same point: walls tell disks apart by their kinds, not by their sizes", trial.radius);
     let velocity = flight.velocity(time);
     let rate = (velocity - surface.velocity).dot(surface.normal);
-    let speed = velocity.length() + surface.velocity.length();
-    let closes = rate <= GRAZING * speed;
-    require!(PART, "approach", closes;
+    let slow = GRAZING * (velocity.length() + surface.velocity.length());
+    require!(PART, "approach", rate <= slow;
         "wall {wall} is touched at {time:?}, but left at {rate:?}, on {flight:?}");
-    Ok(Meeting { touch, place, rate, is_grazing: rate > -GRAZING * speed })
+    Ok(Meeting { touch, place, rate, is_grazing: rate > -slow, surface: seen(&surface) })
 }
 
 /// Checks that a flight that ends before the touch finds none, unless the gap is closed up to rounding there,
-/// that a flight that ends just after the touch finds it, and that a flight that begins at the touch finds it
-/// immediately.
+/// and that a flight that ends just after the touch, or begins at it, finds it.
 fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
     let Touch { time, wall, .. } = meeting.touch;
     let half = flight.time() + 0.5 * (time - flight.time());
     let early = trial.first_touch(flight, half)?;
     // A search may end at any time at which the gap is closed up to rounding, as it is before a slow touch.
     let is_closed = |Touch { time, .. }: Touch| {
-        time <= half && trial.depth(flight.position(time), trial.rounding(), time).is_some()
+        time <= half && trial.gap().is_below(trial.rounding(), flight.position(time), time)
     };
-    let is_open = early.is_none_or(is_closed) || time <= half;
-    require!(PART, "touch time", is_open; "a search that ends at {half:?} finds {early:?}, on {flight:?}");
+    require!(PART, "touch time", early.is_none_or(is_closed) || time <= half;
+        "a search that ends at {half:?} finds {early:?}, on {flight:?}");
     if meeting.is_grazing {
         return Ok(());
     }
     // Rounding may have left the gap open. It then closes within this time.
-    let soon = time + slack(trial, meeting);
+    let slack = meeting.slack(trial);
     for start in [*flight, restarted(flight, time)] {
-        let found = trial.first_touch(&start, soon)?;
-        let is_same = |other| other == wall || name(trial, meeting.touch, meeting.place).is_none();
-        let is_found = found.is_some_and(|again| {
-            (time - slack(trial, meeting)..=soon).contains(&again.time) && is_same(again.wall)
-        });
+        let found = trial.first_touch(&start, time + slack)?;
+        let is_found = found.is_some_and(|again| again.time >= time - slack && meeting.is(trial, again));
         require!(PART, "no missed touch", is_found;
-            "wall {wall} is touched at {time:?}, but a search until {soon:?} finds {found:?}, on {start:?}");
+            "wall {wall} is touched at {time:?}, but a search that ends just later finds {found:?}, on {start:?}");
     }
     Ok(())
 }
@@ -186,65 +185,77 @@ fn check_origin(
     let state = trial.boundary.state();
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
     // react keep no record of their past, so for them the other origin is later.
-    let earlier = origin.min(LATEST * trial.length() / trial.speed);
     let known = trial.earliest();
-    let shift = if state.is_empty() { 0.37 * earlier } else { -known - 0.37 * (start - known) };
+    let earlier = 0.37 * origin.min(LATEST * trial.crossing());
+    let shift = if state.is_empty() { earlier } else { -known - 0.37 * (start - known) };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());
-    let seen = |trial: &Trial<'_>, meeting: &Meeting, shift: f64| {
-        let Touch { wall, time, .. } = meeting.touch;
-        Seen::of(trial, Touch::new(time + shift, wall), meeting.place)
-    };
-    let before = meeting.map(|meeting| seen(trial, meeting, 0.0));
     trial.set_origin(origin - shift);
     let found = trial.first_touch(&shifted, until + shift)?;
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
-    let after = meeting.map(|meeting| seen(trial, meeting, shift));
+    let after = meeting.map(|Meeting { touch: Touch { wall, time, .. }, place, .. }| {
+        seen(&trial.boundary.surface(*wall, *place, time + shift))
+    });
     trial.set_origin(origin);
     trial.take_state(&state)?;
     let other = other?;
     let later = |other: &Meeting| other.touch.time - shift;
+    let ends = |one: &Meeting, time: f64| one.is_grazing || until - time < 2.0 * one.slack(trial);
     let agree = match (meeting, &other) {
         (None, None) => true,
-        (Some(one), None) => one.is_grazing || until - one.touch.time < 2.0 * slack(trial, one),
-        (None, Some(one)) => one.is_grazing || until - later(one) < 2.0 * slack(trial, one),
+        (Some(one), None) => ends(one, one.touch.time),
+        (None, Some(one)) => ends(one, later(one)),
         (Some(one), Some(other)) => {
-            let apart = (one.touch.time - later(other)).abs();
-            let is_same = one.touch.wall == other.touch.wall || name(trial, one.touch, one.place).is_none();
-            one.is_grazing || other.is_grazing || apart <= slack(trial, one) && is_same
+            let is_near = (one.touch.time - later(other)).abs() <= one.slack(trial);
+            one.is_grazing || other.is_grazing || is_near && one.is(trial, other.touch)
         }
     };
-    let (one, other) = (meeting.map(|one| one.touch), other.map(|other| other.touch));
+    let (one, two) = (meeting.map(|one| one.touch), other.map(|other| other.touch));
     require!(PART, "time origin", agree;
-        "an origin {shift:?} before {origin:?} changes the touch {one:?} to {other:?}: {flight:?}");
-    let is_same =
-        before.as_ref().zip(after.as_ref()).is_none_or(|(before, after)| before.agrees(after, trial));
-    require!(PART, "time origin", is_same;
+        "an origin {shift:?} before {origin:?} changes the touch {one:?} to {two:?}: {flight:?}");
+    let Some((before, after)) = meeting.map(|meeting| &meeting.surface).zip(after) else { return Ok(()) };
+    require!(PART, "time origin", agrees(trial, before, &after);
         "an origin {shift:?} before {origin:?} changes {before:?} to {after:?}: {flight:?}");
     Ok(())
 }
 
-/// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding error.
-fn slack(trial: &Trial<'_>, meeting: &Meeting) -> f64 {
-    4.0 * trial.rounding() / meeting.rate.abs()
+/// Returns the surface, with its response in words.
+fn seen(surface: &Surface<'_>) -> (Surface<'static>, String) {
+    let Surface { normal, velocity, kind, radius, mass, .. } = *surface;
+    let bare = Surface::new(normal, velocity).with_kind(kind).with_radius(radius).with_mass(mass);
+    let response = Surface::new(DVec2::Y, DVec2::ZERO).with_response(surface.response);
+    (bare, in_words(&response, 20))
+}
+
+/// Returns whether two surfaces are the same up to the rounding error of late times, which shifts a wall that
+/// moves.
+fn agrees(trial: &Trial<'_>, one: &(Surface<'_>, String), two: &(Surface<'_>, String)) -> bool {
+    let late = SAME * (1.0 + trial.origin / trial.crossing());
+    // The difference of two infinite numbers is NaN.
+    let is_near = |one: f64, two: f64| one == two || (one - two).abs() <= late * one.abs().min(two.abs());
+    let ((one, response), (two, other)) = (one, two);
+    one.normal.distance(two.normal) <= 100.0 * late
+        && one.velocity.distance(two.velocity) <= SAME * one.velocity.length() + trial.speed * late
+        && is_near(one.radius, two.radius)
+        && is_near(one.mass, two.mass)
+        && one.kind == two.kind
+        && response == other
 }
 
 /// Returns the flight after the touch, as if wall and disk were elastic and smooth.
-fn turned_back(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Flight {
-    let time = meeting.touch.time;
-    let surface = trial.boundary.surface(meeting.touch.wall, meeting.place, time);
-    let velocity = flight.velocity(time) - 2.0 * meeting.rate.min(0.0) * surface.normal;
+fn turned_back(flight: &Flight, meeting: &Meeting) -> Flight {
+    let (time, normal) = (meeting.touch.time, meeting.surface.0.normal);
+    let velocity = flight.velocity(time) - 2.0 * meeting.rate.min(0.0) * normal;
     Flight::new(time, meeting.place, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind())
 }
 
 /// Returns a flight that starts slightly off the wall and approaches it slowly while moving along it.
 fn grazing(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting, share: f64) -> Flight {
-    let Touch { time, wall, .. } = meeting.touch;
-    let surface = trial.boundary.surface(wall, meeting.place, time);
-    let normal = surface.normal;
-    let velocity = surface.velocity + trial.speed * (normal.perp() - share * normal);
+    let Surface { normal, velocity, .. } = meeting.surface.0;
+    let velocity = velocity + trial.speed * (normal.perp() - share * normal);
     let place = meeting.place + 0.1 * share * share * flight.radius() * normal;
-    Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
+    Flight::new(meeting.touch.time, place, velocity, flight.acceleration(), flight.radius())
+        .with_kind(flight.kind())
 }

@@ -4,7 +4,7 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::seen::in_words;
+use super::surface::in_words;
 use super::trial::{PART, Trial};
 use super::{KINDS, Random};
 use crate::boundary::{Boundary, FirstTouch, Region};
@@ -76,7 +76,7 @@ where
         if other.take_state(&one.states[0]).is_err() {
             return judge(Some("in their states".to_owned()));
         }
-        let until = flight.time() + one.length() / speed;
+        let until = flight.time() + one.crossing();
         let answers = [answer(&one, &flight, until), answer(&other, &flight, until)];
         if answers[0] != answers[1] {
             return judge(Some(format!("on {flight:?}: {answers:?}")));
@@ -90,7 +90,7 @@ where
 fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
     let (start, boundary) = (flight.time(), &*trial.boundary);
     let place = flight.position(start);
-    let depth = trial.depth(place, trial.length(), start).map(|found| found.depth);
+    let gap = trial.gap().at(place, trial.length(), start);
     let around = DVec2::splat(flight.radius());
     let area = boundary.area(&Region::new(place - around, place + around), flight.radius(), start);
     let touch = boundary.first_touch(flight, until);
@@ -100,5 +100,5 @@ fn answer(trial: &Trial<'_>, flight: &Flight, until: f64) -> String {
         }
         FirstTouch::NotBefore(_) => String::new(),
     };
-    format!("{depth:?}, {area:?}, {touch:?}, {surface}")
+    format!("{gap:?}, {area:?}, {touch:?}, {surface}")
 }

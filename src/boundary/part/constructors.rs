@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::{Part, Travel, corners, polygon};
-use crate::Kind;
-use crate::boundary::VesselError;
+use crate::boundary::WallError;
 use crate::boundary::brick::Brick;
 use crate::boundary::conduct::Conduct;
 use crate::quantity::accept;
+use crate::{Disk, Kind};
 
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.
@@ -17,7 +17,7 @@ impl Part {
     ///
     /// # Errors
     /// If there are no bricks.
-    pub fn new(bricks: impl IntoIterator<Item = Brick>) -> Result<Self, VesselError> {
+    pub fn new(bricks: impl IntoIterator<Item = Brick>) -> Result<Self, WallError> {
         let bricks: Vec<Brick> = bricks.into_iter().collect();
         accept(!bricks.is_empty(), "number of bricks", "at least 1", 0.0)?;
         let (corners, travel) = (corners::corners(&bricks), Travel::default());
@@ -44,7 +44,7 @@ impl Part {
     /// assert_eq!(triangle.bricks().len(), 3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
+    pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Result<Self, WallError> {
         Self::new(polygon::sides(points.into_iter().collect(), true)?)
     }
 
@@ -61,9 +61,9 @@ impl Part {
     /// let ramp = Part::block([DVec2::ZERO, DVec2::new(9.0, 0.0), DVec2::new(0.0, 6.0)])?;
     /// assert!(ramp.signed_distance(DVec2::new(1.0, 1.0)) < 0.0);
     /// assert_eq!(ramp.signed_distance(DVec2::new(-2.0, 1.0)), 2.0);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
-    pub fn block(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
+    pub fn block(points: impl IntoIterator<Item = DVec2>) -> Result<Self, WallError> {
         Self::new(polygon::sides(points.into_iter().collect(), false)?)
     }
 
@@ -73,18 +73,18 @@ impl Part {
     ///
     /// # Errors
     /// If there are fewer than two points, a coordinate is not finite, or neighboring points are equal.
-    pub fn polyline(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
+    pub fn polyline(points: impl IntoIterator<Item = DVec2>) -> Result<Self, WallError> {
         let points: Vec<DVec2> = points.into_iter().collect();
         accept(points.len() >= 2, "number of points", "at least 2", points.len() as f64)?;
         let bricks = points.windows(2).map(|pair| Ok(Brick::segment(pair[0], pair[1])?.two_sided()));
-        Self::new(bricks.collect::<Result<Vec<_>, VesselError>>()?)
+        Self::new(bricks.collect::<Result<Vec<_>, WallError>>()?)
     }
 
     /// Creates a circle with the disks inside.
     ///
     /// # Errors
     /// If a coordinate is not finite, or the radius is not finite and positive.
-    pub fn drum(center: DVec2, radius: f64) -> Result<Self, VesselError> {
+    pub fn drum(center: DVec2, radius: f64) -> Result<Self, WallError> {
         Self::new([Brick::circle(center, radius)?])
     }
 
@@ -92,8 +92,16 @@ impl Part {
     ///
     /// # Errors
     /// If a coordinate is not finite, or the radius is not finite and positive.
-    pub fn peg(center: DVec2, radius: f64) -> Result<Self, VesselError> {
+    pub fn peg(center: DVec2, radius: f64) -> Result<Self, WallError> {
         Self::new([Brick::circle(center, radius)?.reversed()])
+    }
+}
+
+impl Part {
+    /// Creates a peg with the position, the radius and the kind of a disk.
+    pub(in crate::boundary) fn peg_of(disk: &Disk) -> Result<Self, WallError> {
+        let peg = Self::peg(disk.position(), disk.radius())?;
+        Ok(if disk.kind() == Kind::DEFAULT { peg } else { peg.with_kind(disk.kind()) })
     }
 }
 
@@ -110,5 +118,5 @@ crate::gate::from_file! {
         }
         let Some(super::Along { direction, motion }) = travel.along else { return Ok(part) };
         part.moving(super::Along { direction: crate::boundary::vector::unit_vector(direction)?, motion })
-    }, VesselError
+    }, WallError
 }

@@ -3,10 +3,12 @@
 use glam::DVec2;
 
 use super::{Along, Part, Travel, Turning};
-use crate::boundary::VesselError;
+use crate::ParameterError;
+use crate::boundary::brick::Brick;
 use crate::boundary::vector::{direction, finite_point, unit};
+use crate::boundary::{Region, WallError};
 use crate::quantity::{accept, finite};
-use crate::wall::{Motion, WallMotion};
+use crate::wall::{Motion, Piston, Stroke, WallMotion};
 
 /// Position and motion.
 impl Part {
@@ -25,10 +27,48 @@ impl Part {
         self,
         direction: DVec2,
         motion: impl WallMotion + Send + Sync + 'static,
-    ) -> Result<Self, VesselError> {
+    ) -> Result<Self, WallError> {
         let direction = unit(direction)?;
-        let motion = Motion::new(motion).map_err(|violation| VesselError::Motion { violation })?;
+        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { violation })?;
         self.moving(Along { direction, motion })
+    }
+
+    /// Returns the same part with a mass, which slides along a direction, and which the disks push: in place
+    /// of an earlier motion along a direction.
+    ///
+    /// The displacement of the piston counts along the vector `direction`, which can have any length except
+    /// 0. The part is guided, so an impulse with the normal $`n`$ meets the mass $`M/(n\cdot e)^2`$ for the
+    /// unit vector $`e`$ along the direction. Only the piston's stops hold the part: it collides with no
+    /// other wall.
+    ///
+    /// Friction along the direction would push the part, too, for which a rule would have to know how impulses
+    /// along the normal and along the surface depend on each other. A container therefore takes such a part
+    /// only if disks cannot rub it along its direction: its own rule, or the slip of its temperature, lets
+    /// them slide, or all of its bricks are straight, across the direction, and end at the edge of the domain
+    /// or beyond.
+    ///
+    /// # Errors
+    /// If the direction has no length, a number of the piston's motion is not finite, or the part turns.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    /// use granular_edmd::wall::Piston;
+    ///
+    /// // A partition that slides freely between two gases.
+    /// let wall = Part::polyline([(10.0, 0.0), (10.0, 4.0)].map(DVec2::from))?;
+    /// let wall = wall.with_piston(DVec2::X, Piston::new(50.0, [-8.0, 8.0])?)?;
+    /// let cell = Container::closed(20.0, 4.0)?.with_part("partition", wall)?;
+    /// let disk = Disk::new(DVec2::new(4.0, 2.0), 0.5)?.with_velocity(DVec2::X)?;
+    /// let mut run = Simulation::builder(Elastic, cell).disks([disk]).build()?;
+    /// run.run_until(6.0, &mut ())?;
+    /// // The disk of mass 1 bounces off the mass 50.
+    /// assert!((run.disks()[0].velocity().x + 49.0 / 51.0).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_piston(self, direction: DVec2, piston: Piston) -> Result<Self, WallError> {
+        let turning = self.travel.angular_velocity();
+        accept(turning == 0.0, "angular velocity of a part with a mass", "0", turning)?;
+        self.with_motion(direction, Stroke::from(piston))
     }
 
     /// Returns the same part, turning about a point, counterclockwise at this angular velocity, in place of
@@ -48,11 +88,11 @@ impl Part {
     ///
     /// # Errors
     /// If a number is not finite, if the angular velocity is so small or large that a turn would take more
-    /// than 1e60 or less than 1e-60, or if the part has a motion that jumps. An angular velocity of 0 is
-    /// allowed: the part then does not turn.
+    /// than 1e60 or less than 1e-60, or if the part has a mass or a motion that jumps. An angular velocity of
+    /// 0 is allowed: the part then does not turn.
     ///
     /// ```
-    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
+    /// use granular_edmd::boundary::{Boundary, Container, Part};
     /// use granular_edmd::glam::DVec2;
     /// use granular_edmd::wall::Tabulated;
     ///
@@ -60,18 +100,20 @@ impl Part {
     /// let stirrer = Part::polyline([DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.0)])?
     ///     .with_rotation(DVec2::ZERO, 1.0)?
     ///     .with_motion(DVec2::X, Tabulated::from_to(0.0, 10.0, 20.0)?)?;
-    /// let vessel = Vessel::around([("stirrer", stirrer)])?;
-    /// let wall = vessel.walls("stirrer").unwrap().start;
+    /// let container = Container::around([("stirrer", stirrer)])?;
+    /// let wall = container.walls_of("stirrer").unwrap().start;
     /// // Halfway, its middle moves at the speed 1.
-    /// let surface = vessel.surface(wall, DVec2::new(5.0, 0.0), 10.0);
+    /// let surface = container.surface(wall, DVec2::new(5.0, 0.0), 10.0);
     /// assert!(surface.velocity.distance(DVec2::X) < 1e-12);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
-    pub fn with_rotation(self, about: DVec2, angular_velocity: f64) -> Result<Self, VesselError> {
+    pub fn with_rotation(self, about: DVec2, angular_velocity: f64) -> Result<Self, WallError> {
         let about = finite_point(about)?;
         if finite("angular velocity", angular_velocity)? == 0.0 {
             return Ok(Self { travel: Travel { turning: None, ..self.travel }, ..self });
         }
+        let is_free = self.travel.piston().is_none();
+        accept(is_free, "angular velocity of a part with a mass", "0", angular_velocity)?;
         let turn = std::f64::consts::TAU / angular_velocity.abs();
         let range = "such that a turn takes from 1e-60 to 1e60";
         accept((1e-60..=1e60).contains(&turn), "angular velocity", range, angular_velocity)?;
@@ -90,20 +132,20 @@ impl Part {
     /// If the time is not finite.
     ///
     /// ```
-    /// use granular_edmd::boundary::{Boundary, Part, Probe, Vessel};
+    /// use granular_edmd::boundary::{Boundary, Container, Part, Probe};
     /// use granular_edmd::glam::DVec2;
     ///
     /// let wheel = Part::block([(0.0, 0.0), (8.0, 0.0), (8.0, 1.0), (0.0, 1.0)].map(DVec2::from))?;
     /// let wheel = wheel.with_rotation(DVec2::new(4.0, 0.5), 0.7)?.starting_at(30.0)?;
-    /// let vessel = Vessel::around([("wheel", wheel)])?;
+    /// let container = Container::around([("wheel", wheel)])?;
     /// // At time 30 the wheel lies as it was built.
     /// let probe = Probe::new(DVec2::new(1.0, 1.25), 0.5, 0.0);
-    /// let depth = |time| vessel.overlap(&probe.with_time(time)).map_or(0.0, |overlap| overlap.depth);
+    /// let depth = |time| container.overlap(&probe.with_time(time)).map_or(0.0, |overlap| overlap.depth);
     /// assert!((depth(30.0) - 0.25).abs() < 1e-12);
     /// assert_eq!(depth(0.0), 0.0);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
-    pub fn starting_at(self, time: f64) -> Result<Self, VesselError> {
+    pub fn starting_at(self, time: f64) -> Result<Self, WallError> {
         Ok(Self { start: finite("start of a motion", time)?, ..self })
     }
 
@@ -113,7 +155,7 @@ impl Part {
     ///
     /// # Errors
     /// If a coordinate would not be finite.
-    pub fn shifted(mut self, by: DVec2) -> Result<Self, VesselError> {
+    pub fn shifted(mut self, by: DVec2) -> Result<Self, WallError> {
         for brick in self.bricks.iter_mut().chain(&mut self.corners) {
             *brick = brick.shifted(by)?;
         }
@@ -129,7 +171,7 @@ impl Part {
     ///
     /// # Errors
     /// If an argument or a resulting coordinate is not finite.
-    pub fn rotated(mut self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
+    pub fn rotated(mut self, about: DVec2, angle: f64) -> Result<Self, WallError> {
         for brick in self.bricks.iter_mut().chain(&mut self.corners) {
             *brick = brick.rotated(about, angle)?;
         }
@@ -146,16 +188,55 @@ impl Part {
 
 impl Part {
     /// Sets a motion of the part along a direction, or returns an error if the part cannot move in this way.
-    pub(super) fn moving(self, along: Along) -> Result<Self, VesselError> {
+    pub(super) fn moving(self, along: Along) -> Result<Self, WallError> {
         Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()
     }
 
+    /// Sets the time origin of a part with a mass. Other parts have phases.
+    pub(in crate::boundary) fn set_time_origin(&mut self, origin: f64) {
+        self.change_piston(|piston| piston.at_origin(origin));
+    }
+
+    /// Changes the motion of a part with a mass by this impulse. Returns whether the part has a mass.
+    pub(in crate::boundary) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
+        let along = self.travel.along.as_ref().map_or(0.0, |along| impulse.dot(along.direction));
+        self.change_piston(|piston| piston.struck(along, time))
+    }
+
+    /// Sets the state of a part with a mass.
+    pub(in crate::boundary) fn set_piston(&mut self, numbers: [f64; 3]) -> Result<(), ParameterError> {
+        let changed = self.travel.piston().map(|piston| piston.with_numbers(numbers)).transpose()?;
+        self.change_piston(|piston| changed.clone().unwrap_or_else(|| piston.clone()));
+        Ok(())
+    }
+
+    fn change_piston(&mut self, change: impl FnOnce(&Stroke) -> Stroke) -> bool {
+        let Some(Along { motion, .. }) = &mut self.travel.along else { return false };
+        let Some(changed) = motion.stroke().map(change) else { return false };
+        *motion = Motion::of(changed);
+        true
+    }
+
+    /// Returns whether disks in this rectangle could rub a part with a mass along its direction.
+    pub(in crate::boundary) fn is_pushed_aside(&self, room: &Region) -> bool {
+        let Some(Along { direction, motion }) = &self.travel.along else { return false };
+        if motion.stroke().is_none() || !self.conduct.response().has_friction() {
+            return false;
+        }
+        let is_reached = |tip: &Brick| {
+            let Region { min, max } = self.travel.bounds(tip);
+            min.cmplt(room.max).all() && max.cmpgt(room.min).all()
+        };
+        let holds = |brick: &Brick| brick.is_across(*direction) || brick.is_point() && !is_reached(brick);
+        !self.all_bricks().all(holds)
+    }
+
     /// Returns the part, or an error if the part would jump into disks.
-    fn safe(self) -> Result<Self, VesselError> {
+    fn safe(self) -> Result<Self, WallError> {
         let Travel { along: Some(Along { direction, motion }), turning } = &self.travel else {
             return Ok(self);
         };
         let faces = turning.is_none() && self.all_bricks().all(|brick| brick.faces(*direction));
-        if faces || !motion.jumps() { Ok(self) } else { Err(VesselError::Jump) }
+        if faces || !motion.jumps() { Ok(self) } else { Err(WallError::Jump) }
     }
 }

@@ -2,13 +2,13 @@
 
 use glam::DVec2;
 
-use crate::boundary::VesselError;
+use crate::boundary::WallError;
 use crate::boundary::brick::Brick;
 use crate::boundary::vector::finite_point;
 use crate::quantity::accept;
 
 /// Returns the sides of a polygon with the disks inside or outside, each from one point to the next.
-pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, VesselError> {
+pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, WallError> {
     accept(points.len() >= 3, "number of points", "at least 3", points.len() as f64)?;
     for point in &points {
         finite_point(*point)?;
@@ -18,15 +18,15 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
         points.pop();
     }
     if let Some(first) = pairs(&points).position(|(from, to)| from == to) {
-        return Err(VesselError::EqualPoints { first, second: (first + 1) % points.len() });
+        return Err(WallError::EqualPoints { first, second: (first + 1) % points.len() });
     }
     let area = doubled_area(&points);
     // A line that goes back and forth has no area, though its sides do not cross.
     if area == 0.0 {
-        return Err(VesselError::NoArea);
+        return Err(WallError::NoArea);
     }
     if let Some((first, second)) = crossing(&points) {
-        return Err(VesselError::Crossing { first, second });
+        return Err(WallError::Crossing { first, second });
     }
     // Each side keeps its number, so that the names of walls follow the list of points.
     // A brick has the disks on its left, so with the disks inside, the sides lead counterclockwise.

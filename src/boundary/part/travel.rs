@@ -1,4 +1,4 @@
-//! Motions of the parts of a vessel, and flights in the frame of a moving part.
+//! Motions of the parts of a container, and flights in the frame of a moving part.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,7 @@ use glam::DVec2;
 use crate::boundary::Region;
 use crate::boundary::brick::{Brick, Path};
 use crate::boundary::vector::direction;
-use crate::wall::Motion;
+use crate::wall::{Motion, Stroke};
 use crate::{Fingerprint, Flight};
 
 /// Number of pieces into which a turn is divided. On each piece, a flight in the turning frame counts as a
@@ -27,6 +27,7 @@ pub(in crate::boundary) struct Travel {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct Along {
     pub(super) direction: DVec2,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::wall::motion_or_piston"))]
     pub(super) motion: Motion,
 }
 
@@ -102,6 +103,11 @@ fn unturned(turn: DVec2, vector: DVec2) -> DVec2 {
 }
 
 impl Along {
+    /// Returns the phase of the motion at a time origin. A piston knows its origin itself.
+    fn phase(&self, origin: f64) -> f64 {
+        if self.motion.stroke().is_some() { 0.0 } else { self.motion.phase(origin) }
+    }
+
     /// Returns the displacement at a phase.
     fn shift(&self, phase: f64) -> DVec2 {
         self.direction * self.motion.state(phase).displacement
@@ -161,7 +167,7 @@ impl Travel {
     /// Returns the phases of the motions at a time origin: the origin minus whole periods.
     pub(in crate::boundary) fn phase(&self, origin: f64) -> Phase {
         Phase {
-            along: self.along.as_ref().map_or(0.0, |along| along.motion.phase(origin)),
+            along: self.along.as_ref().map_or(0.0, |along| along.phase(origin)),
             turning: self.frame().map_or(0.0, |turning| origin % (TAU / turning.angular_velocity)),
         }
     }
@@ -175,8 +181,19 @@ impl Travel {
     /// part that only turns, the phase is the time within a turn.
     pub(in crate::boundary) fn moved(&self, phase: Phase) -> Option<(DVec2, f64)> {
         let turning = || self.frame().map(|turning| phase.turning % turning.period());
-        let along = self.along.as_ref().map(|along| along.motion.phase(phase.along));
+        let along = self.along.as_ref().map(|along| along.phase(phase.along));
         along.or_else(turning).map(|reduced| (self.shift(phase) + DVec2::ZERO, reduced))
+    }
+
+    /// Returns the piston, if the part has a mass.
+    pub(in crate::boundary) fn piston(&self) -> Option<&Stroke> {
+        self.along.as_ref().and_then(|along| along.motion.stroke())
+    }
+
+    /// Returns the mass that an impulse along this normal meets.
+    pub(in crate::boundary) fn mass(&self, normal: DVec2) -> f64 {
+        let along = self.along.as_ref().map_or(0.0, |along| along.direction.dot(normal));
+        self.piston().map_or(f64::INFINITY, |piston| piston.mass() / (along * along))
     }
 
     /// Returns the position of the part at a phase.
@@ -270,19 +287,27 @@ impl Travel {
         from <= farthest + reach && to >= nearest - reach
     }
 
+    /// Returns whether a brick of a part that does not turn comes within `reach` of a region while its
+    /// displacement is in this range.
+    pub(in crate::boundary) fn may_reach_in(
+        &self,
+        (low, high): (f64, f64),
+        brick: &Brick,
+        region: &Region,
+        reach: f64,
+    ) -> bool {
+        let middle = self.along.as_ref().map_or(DVec2::ZERO, |along| 0.5 * (low + high) * along.direction);
+        brick.is_near(&region.shifted(-middle), reach + 0.5 * (high - low))
+    }
+
     /// Returns a rectangle that holds a brick of the part at all times.
-    pub(in crate::boundary) fn bounds(&self, brick: &Brick) -> (DVec2, DVec2) {
-        let (low, high) = self.frame().map_or_else(
-            || brick.bounds(),
-            |&Turning { about, .. }| {
-                let (_, farthest) = brick.distances(about);
-                (about - farthest, about + farthest)
-            },
-        );
-        let Some(Along { direction, motion }) = &self.along else { return (low, high) };
+    pub(in crate::boundary) fn bounds(&self, brick: &Brick) -> Region {
+        let turned = |&Turning { about, .. }: &Turning| Region::around(about, brick.distances(about).1);
+        let Region { min, max } = self.frame().map_or_else(|| brick.bounds(), turned);
+        let Some(Along { direction, motion }) = &self.along else { return Region::new(min, max) };
         let (back, on) = motion.reach();
         let (back, on) = (*direction * back, *direction * on);
-        (low + back.min(on), high + back.max(on))
+        Region::new(min + back.min(on), max + back.max(on))
     }
 
     pub(in crate::boundary) fn fingerprint(&self) -> Option<Fingerprint> {

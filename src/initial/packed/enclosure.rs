@@ -1,10 +1,10 @@
 //! The boundary in which disks are packed.
 
-use std::borrow::Cow;
-
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch};
+use crate::boundary::{
+    Boundary, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallView,
+};
 use crate::initial::cut;
 use crate::roots::first_descent;
 use crate::{Flight, ParameterError};
@@ -61,9 +61,10 @@ fn stands<B: Boundary + ?Sized>(
 ) -> Result<(), ParameterError> {
     let middle = DVec2::new(0.5 * (room.left + room.right), 0.5 * (room.bottom + room.top));
     let surface = boundary.surface(wall, middle, 0.0);
-    let is_named = || reason.contains(&format!("\"{}\"", boundary.wall_name(wall)));
+    let view = |time| boundary.wall(wall, time);
+    let is_named = || reason.contains(&format!("\"{}\"", view(0.0)));
     if matches!(surface.response, Response::Absorbing) && is_named() {
-        let name = format!("wall index of the sink \"{}\"", boundary.wall_name(wall));
+        let name = format!("wall index of the sink \"{}\"", view(0.0));
         return Err(ParameterError::new(
             name,
             "absent while disks are packed (add the sink afterwards)",
@@ -73,9 +74,9 @@ fn stands<B: Boundary + ?Sized>(
     if surface.mass == f64::INFINITY {
         return Ok(());
     }
-    let place = |time| boundary.wall_motion(wall, time).map_or(DVec2::ZERO, |(displacement, _)| displacement);
+    let place = |time| view(time).motion.map_or(DVec2::ZERO, |(displacement, _)| displacement);
     let way = place(1.0).distance(place(0.0));
-    let name = || format!("displacement of the wall \"{}\" in a unit of time", boundary.wall_name(wall));
+    let name = || format!("displacement of the wall \"{}\" in a unit of time", view(0.0));
     let requirement = "0 while disks are packed (add the piston afterwards)";
     if way == 0.0 { Ok(()) } else { Err(ParameterError::new(name(), requirement, way)) }
 }
@@ -89,9 +90,11 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
         self.sides().count() + self.boundary.wall_count()
     }
 
-    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        let sides = self.sides().count();
-        if wall < sides { "the edge of the interior".into() } else { self.boundary.wall_name(wall - sides) }
+    fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
+        match wall.checked_sub(self.sides().count()) {
+            Some(inner) => self.boundary.wall(inner, time),
+            None => WallView::new("the edge of the interior"),
+        }
     }
 
     fn set_time_origin(&mut self, _origin: f64) {}
@@ -123,8 +126,7 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
                 .surface(wall - self.sides().count(), position, time)
                 .with_response(Response::Shared)
                 // A wall that reacts stands still here, like all others.
-                .with_mass(f64::INFINITY)
-                .with_tangential_mass(f64::INFINITY),
+                .with_mass(f64::INFINITY),
         }
     }
 
@@ -140,7 +142,7 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
 #[cfg(test)]
 mod tests {
     use super::Enclosure;
-    use crate::boundary::{Container, Obstacles, Wall, laws};
+    use crate::boundary::{Container, Wall, laws};
     use crate::glam::DVec2;
     use crate::wall::BiParabolic;
     use crate::{Disk, ParameterError};
@@ -155,7 +157,7 @@ mod tests {
             Container::periodic(8.0, 6.0)?,
             Container::periodic(8.0, 20.0)?,
         ] {
-            let board = Obstacles::new(container, [peg(2.0)?, peg(7.5)?]);
+            let board = container.with_pegs([peg(2.0)?, peg(7.5)?])?;
             assert_eq!(laws::check(&mut Enclosure::new(&board, 6.0)?, 0.3, 1.0, 1), Ok(()));
         }
         Ok(())

@@ -124,14 +124,23 @@ impl Stroke {
         Ok(Self::new(self.piston, self.origin, start, displacement, velocity))
     }
 
-    /// Returns a displacement that the piston does not exceed from the last impact to this phase.
-    pub(crate) fn highest_until(&self, until: f64) -> f64 {
+    /// Returns displacements between which the piston stays from the last impact to this phase.
+    pub(crate) fn range_until(&self, until: f64) -> (f64, f64) {
         let Piece { start, displacement, velocity, .. } = self.pieces[0];
         let elapsed = (until - start).max(0.0);
-        // The pull is largest at the lower stop, if it changes at all.
-        let pull = self.piston.acceleration_at(self.piston.lowest).max(0.0);
-        let way = (velocity.max(0.0) + 0.5 * pull * elapsed) * elapsed;
-        (displacement + way).min(self.piston.highest)
+        // The pull is largest at the lower stop, and smallest at the upper one, if it changes at all.
+        let [up, down] =
+            [self.piston.lowest, self.piston.highest].map(|stop| self.piston.acceleration_at(stop));
+        let way = |speed: f64, pull: f64| (speed + 0.5 * pull * elapsed) * elapsed;
+        let low = displacement + way(velocity.min(0.0), down.min(0.0));
+        let high = displacement + way(velocity.max(0.0), up.max(0.0));
+        (low.max(self.piston.lowest), high.min(self.piston.highest))
+    }
+
+    /// Returns the energy of the piston at a phase.
+    pub(crate) fn energy(&self, phase: f64) -> f64 {
+        let WallState { displacement, velocity } = self.state(phase);
+        self.piston.energy(displacement, velocity)
     }
 
     fn piece_at(&self, phase: f64) -> &Piece {

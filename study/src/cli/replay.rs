@@ -148,7 +148,7 @@ const HEADINGS: &str = "number,time,disk,partner,wall,x,y,closing_speed,slip_spe
 fn row(number: u64, it: &Collision, boundary: &impl Boundary) -> String {
     let [id, partner] = it.ids;
     let (partner, wall) = match it.partner {
-        Partner::Wall(wall) => (String::new().into(), boundary.wall_name(wall).to_string()),
+        Partner::Wall(wall) => (String::new().into(), boundary.wall(wall, 0.0).to_string()),
         Partner::Disk(_) => (Scalar::from(partner), String::new()),
     };
     let (contact, impulse) = (&it.contact, &it.impulse);

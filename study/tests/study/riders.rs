@@ -145,7 +145,7 @@ impl Observer for Comings {
 
 impl Experiment for Silo {
     type Rule = ContactDuration<Smooth>;
-    type Boundary = Vessel;
+    type Boundary = Container;
     type Observer = Comings;
     type Sample = usize;
 
@@ -155,13 +155,13 @@ impl Experiment for Silo {
     fn rule(&self) -> Result<Self::Rule, ExperimentError> {
         Ok(ContactDuration::new(Smooth::from_restitution(0.8)?, 1e-2)?)
     }
-    fn boundary(&self) -> Result<Vessel, ExperimentError> {
+    fn boundary(&self) -> Result<Container, ExperimentError> {
         let half = 0.5 * self.outlet;
         let plate = |from, to| Part::polyline([DVec2::new(from, 2.0), DVec2::new(to, 2.0)]);
-        let vessel = Vessel::new(Container::open(10.0)?.absorbing(Wall::Floor)?);
+        let vessel = Container::open(10.0)?.absorbing(Wall::Floor)?;
         Ok(vessel
-            .with("left plate", plate(0.0, 5.0 - half)?)?
-            .with("right plate", plate(5.0 + half, 10.0)?)?)
+            .with_part("left plate", plate(0.0, 5.0 - half)?)?
+            .with_part("right plate", plate(5.0 + half, 10.0)?)?)
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
         let above = |disk: &Disk| disk.with_position(disk.position() + DVec2::new(0.0, 3.0));

@@ -1,9 +1,7 @@
 //! A boundary.
 
-use std::borrow::Cow;
-
 use granular_edmd::boundary::{
-    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, VesselError,
+    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallError, WallView,
 };
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
@@ -23,7 +21,7 @@ pub struct Drum {
 impl Drum {
     /// # Errors
     /// If the radius is not finite and positive.
-    pub fn new(radius: f64) -> Result<Self, VesselError> {
+    pub fn new(radius: f64) -> Result<Self, WallError> {
         let wall = Brick::circle(DVec2::ZERO, radius)?;
         Ok(Self { wall, radius, angular_velocity: 0.0, rule: None })
     }
@@ -47,8 +45,8 @@ impl Boundary for Drum {
         1
     }
 
-    fn wall_name(&self, _wall: usize) -> Cow<'_, str> {
-        Cow::Borrowed("drum")
+    fn wall(&self, _wall: usize, _time: f64) -> WallView<'_> {
+        WallView::new("drum")
     }
 
     fn set_time_origin(&mut self, _: f64) {}

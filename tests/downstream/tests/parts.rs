@@ -10,11 +10,11 @@ type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 const LARGE: Kind = Kind::new(1);
 
 /// A box that a membrane for the large disks divides in two, under a lid that a force holds down.
-fn cell() -> Outcome<Vessel> {
+fn cell() -> Outcome<Container> {
     let lid = Piston::new(5.0, [-4.0, 4.0])?.with_force(-2.0)?;
     let container = Container::closed(20.0, 10.0)?.with_piston(Wall::Lid, lid)?;
     let membrane = Part::polyline([DVec2::new(10.0, 0.0), DVec2::new(10.0, 15.0)])?;
-    Ok(Vessel::new(container).with("membrane", membrane.only_for([LARGE]))?)
+    Ok(container.with_part("membrane", membrane.only_for([LARGE]))?)
 }
 
 fn disks() -> Outcome<Vec<Disk>> {

@@ -29,11 +29,8 @@ pub(super) fn energy_change(setting: &Setting) -> Cell {
         [mean.count() as f64, if mean.count() > 0 { mean.mean() } else { 0.0 }]
     };
     let disks = far(&of(measured.disks()), &change(collisions.iter().filter(is_of_disks)));
-    let at_wall = |wall: usize| {
-        let truth = change(collisions.iter().filter(|one| is_with(one.partner, wall)));
-        far(&of(measured.wall(wall)), &truth)
-    };
-    Ok((0..8).map(at_wall).fold(disks, f64::max))
+    let floor = change(collisions.iter().filter(|one| is_with(one.partner, 0)));
+    Ok(disks.max(far(&of(measured.wall("floor")), &floor)))
 }
 
 pub(super) fn energy_change_between_kinds(setting: &Setting) -> Cell {
@@ -84,7 +81,7 @@ pub(super) fn collision_counts(setting: &Setting) -> Cell {
     let Log { collisions, .. } = setting.run(&mut counts)?;
     let disks = collisions.iter().filter(is_of_disks).count();
     let floor = collisions.iter().filter(|one| is_with(one.partner, 0)).count();
-    let all = [counts.disk_collisions(), counts.wall_collisions(), counts.collisions_with_wall(0)];
+    let all = [counts.disk_collisions(), counts.wall_collisions(), counts.collisions_with_wall("floor")];
     let truth = [disks, collisions.len() - disks, floor];
     Ok(far(&all.map(|count| count as f64), &truth.map(|count| count as f64)))
 }
@@ -108,7 +105,7 @@ pub(super) fn collision_histograms(setting: &Setting) -> Cell {
 }
 
 pub(super) fn arrivals(setting: &Setting) -> Cell {
-    let mut arrivals = Arrivals::at([0], every(1.0));
+    let mut arrivals = Arrivals::at(["floor"], every(1.0));
     let log = setting.run(&mut arrivals)?;
     let truth: Vec<f64> = log
         .intervals()
@@ -120,7 +117,7 @@ pub(super) fn arrivals(setting: &Setting) -> Cell {
 
 pub(super) fn wall_stress(setting: &Setting) -> Cell {
     const LENGTH: f64 = 7.0;
-    let mut stress = WallStress::new(every(1.0)).with_wall(0, LENGTH).map_err(told)?;
+    let mut stress = WallStress::new(every(1.0)).with_wall("floor", LENGTH).map_err(told)?;
     let log = setting.run(&mut stress)?;
     let (mut impulse, mut intervals) = ([0.0; 2], 0.0);
     for (_, collisions) in log.intervals() {
@@ -130,7 +127,7 @@ pub(super) fn wall_stress(setting: &Setting) -> Cell {
         }
         intervals += 1.0;
     }
-    let measured =
-        [stress.pressure(0), stress.shear(0)].map(|mean| mean.map_or(f64::NAN, |mean| mean.mean()));
+    let measured = [stress.pressure("floor"), stress.shear("floor")]
+        .map(|mean| mean.map_or(f64::NAN, |mean| mean.mean()));
     Ok(far(&measured, &impulse.map(|sum| sum / (LENGTH * intervals))))
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use granular_edmd::boundary::{Boundary, Container, Domain, Part, Region, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Container, Domain, Part, Region, Wall};
 use granular_edmd::collision::{CollisionRule, ContactDuration, Elastic, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::Radii;
@@ -152,7 +152,7 @@ fn moving() -> Result<Run, Failure> {
 fn obstructed() -> Result<Run, Failure> {
     let block = Part::block(points([(0.0, 0.0), (3.0, 0.0), (0.0, 2.0)]))?;
     let peg = Part::peg(DVec2::new(8.5, 6.5), 1.0)?;
-    gas(Vessel::new(closed()?).with("block", block)?.with("peg", peg)?, 0.1)
+    gas(closed()?.with_part("block", block)?.with_part("peg", peg)?, 0.1)
 }
 
 fn mixed() -> Result<Run, Failure> {
@@ -216,7 +216,7 @@ fn vessels() -> Vec<Setting> {
             bulk: rectangle(1.75, 1.75, 4.0, 3.5),
             ..Setting::new("triangle", || {
                 let part = Part::polygon(points([(0.0, 0.0), (14.0, 0.0), (0.0, 9.0)]))?;
-                gas(Vessel::around([("triangle", part)])?, 0.1)
+                gas(Container::around([("triangle", part)])?, 0.1)
             })
         },
         Setting {
@@ -225,7 +225,7 @@ fn vessels() -> Vec<Setting> {
             bulk: rectangle(3.0, 3.0, 7.0, 7.0),
             ..Setting::new("drum", || {
                 let drum = Part::drum(DVec2::splat(5.0), 5.0)?.with_rotation(DVec2::splat(5.0), 0.3)?;
-                gas(Vessel::around([("drum", drum)])?, 0.1)
+                gas(Container::around([("drum", drum)])?, 0.1)
             })
         },
         Setting {

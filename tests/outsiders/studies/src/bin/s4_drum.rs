@@ -2,15 +2,14 @@
 use granular_edmd::prelude::*;
 use granular_edmd::{Fingerprint, Flight};
 use granular_edmd::observable::Partner;
-use granular_edmd::boundary::{Brick, Domain, FirstTouch, Overlap, Probe, Surface, Touch, laws};
-use std::borrow::Cow;
+use granular_edmd::boundary::{Brick, Domain, FirstTouch, Overlap, Probe, Surface, Touch, WallView, laws};
 #[derive(Clone)]
 struct Drum { r: f64, rim: Brick, spin: f64, w: f64, origin: f64, forget: u8 }
 impl Drum { fn new(r: f64, spin: f64, w: f64, forget: u8) -> anyhow::Result<Self> { Ok(Self { r, rim: Brick::circle(DVec2::ZERO, r)?, spin, w, origin: 0.0, forget }) } }
 impl Boundary for Drum {
     fn domain(&self) -> Domain { Domain::new(-self.r, self.r, -self.r, self.r) }
     fn wall_count(&self) -> usize { 1 }
-    fn wall_name(&self, _: usize) -> Cow<'_, str> { "rim".into() }
+    fn wall(&self, _: usize, _: f64) -> WallView<'_> { WallView::new("rim") }
     fn set_time_origin(&mut self, o: f64) { if self.forget != 1 { self.origin = o.rem_euclid(std::f64::consts::TAU/self.w); } }
     fn may_touch(&self, region: &Region, radius: f64) -> bool { self.rim.may_touch(region, radius) }
     fn first_touch(&self, f: &Flight, until: f64) -> FirstTouch<Touch> { self.rim.first_touch(f, until).map(|t| Touch::new(t, 0)).into() }

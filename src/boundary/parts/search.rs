@@ -1,13 +1,14 @@
-//! The search for the first touch of a vessel's parts, among the bricks near a flight.
+//! The search for the first touch of a part, among the bricks near a flight.
 
 use glam::DVec2;
 
 use super::index::Entry;
-use super::{Placed, Vessel, Wall};
+use super::{Parts, Placed, PlacedBrick};
 use crate::Flight;
-use crate::boundary::brick::Path;
+use crate::boundary::brick::{Brick, Path};
 use crate::boundary::part::{Travel, Turning};
-use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
+use crate::boundary::plane::Plane;
+use crate::boundary::{FirstTouch, Region, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
 /// one more round. The engine reads the clock every 256 events, so it still respects a limit of wall-clock
@@ -46,32 +47,39 @@ const LONGEST: f64 = 1e150;
 /// do not determine the position of a faster part.
 const LEAST_PERIOD: f64 = 64.0;
 
-impl Vessel {
+impl Parts {
     /// Returns a brick and the motion of its part.
-    pub(super) fn wall(&self, brick: usize) -> (&Wall, &Travel) {
-        let wall = &self.walls[brick];
-        (wall, self.parts[wall.part].part.travel())
+    pub(super) fn brick(&self, number: usize) -> (&PlacedBrick, &Travel) {
+        let of = &self.bricks[number];
+        (of, self.placed[of.part].part.travel())
     }
 
-    /// Returns the first touch of a part, or `other`, whichever is earlier.
-    pub(super) fn first_touch_with_parts(
+    /// Returns the first touch of a part, or the first touch of the container's own walls, whichever is
+    /// earlier.
+    #[inline(never)]
+    pub(in crate::boundary) fn first_touch(
         &self,
         flight: &Flight,
         until: f64,
         other: FirstTouch<Touch>,
+        planes: &[Plane],
     ) -> FirstTouch<Touch> {
-        let (low, high) = rectangle(flight, until);
+        let first = self.first_touch_or(flight, until, other);
+        if self.has_patches { first.map(|touch| self.on_patch(touch, flight, planes)) } else { first }
+    }
+
+    fn first_touch_or(&self, flight: &Flight, until: f64, other: FirstTouch<Touch>) -> FirstTouch<Touch> {
         let mut first = other;
         let mut moving: Vec<Entry> = Vec::new();
         let mut last = None;
-        for entry in self.index.near(low, high) {
+        for entry in self.index.near(&rectangle(flight, until)) {
             // A brick that lies in several cells appears several times, mostly in a row. A second search of a
             // brick at rest costs time and changes nothing.
             if last.replace(entry) == Some(entry) {
                 continue;
             }
-            let (wall, travel) = self.wall(entry.wall as usize);
-            if !self.parts[wall.part].part.stops(flight.kind()) {
+            let (of, travel) = self.brick(entry.wall as usize);
+            if !self.placed[of.part].part.stops(flight.kind()) {
                 continue;
             }
             if !travel.is_at_rest() {
@@ -79,7 +87,7 @@ impl Vessel {
                     moving.push(entry);
                 }
             } else if let Some(time) =
-                wall.brick.first_touch(&self.seen_from(entry, flight), until.min(first.time()))
+                of.brick.first_touch(&self.seen_from(entry, flight), until.min(first.time()))
             {
                 first = first.or(FirstTouch::At(self.touch(entry, time)));
             }
@@ -90,7 +98,7 @@ impl Vessel {
     /// Returns the flight as seen from a periodic image of a brick. For a brick that takes out centers, the
     /// disk shrinks to its center.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
-        let is_line = self.parts[self.walls[entry.wall as usize].part].part.takes_centers();
+        let is_line = self.placed[self.bricks[entry.wall as usize].part].part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
             return *flight;
         }
@@ -101,7 +109,7 @@ impl Vessel {
     }
 
     fn touch(&self, entry: Entry, time: f64) -> Touch {
-        Touch::new(time, entry.wall as usize + self.container.wall_count())
+        Touch::new(time, entry.wall as usize + self.first)
     }
 
     /// Searches for the first touch of the `moving` bricks, in rounds, up to `until` or the touch of another
@@ -120,10 +128,10 @@ impl Vessel {
             // and a search of the back alone would use up all steps.
             let mut first = other;
             for &entry in moving {
-                let wall = &self.walls[entry.wall as usize];
+                let PlacedBrick { part, brick } = &self.bricks[entry.wall as usize];
                 let search = Search {
-                    wall,
-                    placed: &self.parts[wall.part],
+                    brick,
+                    placed: &self.placed[*part],
                     flight: &self.seen_from(entry, flight),
                     until: until.min(first.time()),
                 };
@@ -141,20 +149,20 @@ impl Vessel {
     ///
     /// A sink in a wall, a belt or a thermal section is usually built as a part on the line of the wall.
     /// Without this rule, rounding would decide whether the part or the wall is touched first.
-    pub(super) fn on_patch(&self, touch: Touch, flight: &Flight) -> Touch {
-        let (place, radius, count) =
-            (flight.position(touch.time), flight.radius(), self.container.wall_count());
-        let is_patch = |brick: usize| self.parts[self.walls[brick].part].part.is_patch();
-        if touch.wall.checked_sub(count).is_some_and(is_patch) {
+    fn on_patch(&self, touch: Touch, flight: &Flight, planes: &[Plane]) -> Touch {
+        let (place, radius) = (flight.position(touch.time), flight.radius());
+        let part = |brick: usize| &self.placed[self.bricks[brick].part].part;
+        let is_patch = |brick: usize| part(brick).is_patch();
+        if touch.wall.checked_sub(self.first).is_some_and(is_patch) {
             return touch;
         }
-        let normal = self.surface(touch.wall, place, touch.time).normal;
-        let mut near = self.index.near(place - 2.0 * radius, place + 2.0 * radius).filter(|entry| {
+        let normal_of = |wall: usize| self.surface(wall, place, touch.time).normal;
+        let normal = planes.get(touch.wall).map_or_else(|| normal_of(touch.wall), |plane| plane.normal);
+        let mut near = self.index.near(&Region::around(place, 2.0 * radius)).filter(|entry| {
             let brick = entry.wall as usize;
-            let stops = self.parts[self.walls[brick].part].part.stops(flight.kind());
+            let stops = part(brick).stops(flight.kind());
             let is_there = || self.gap(brick, flight, touch.time).abs() <= IN_WALL * radius;
-            let is_along =
-                || self.surface_of_brick(brick, place, touch.time).normal.dot(normal) >= 1.0 - IN_WALL;
+            let is_along = || normal_of(brick + self.first).dot(normal) >= 1.0 - IN_WALL;
             is_patch(brick) && stops && is_there() && is_along()
         });
         near.next().map_or(touch, |entry| self.touch(entry, touch.time))
@@ -162,32 +170,30 @@ impl Vessel {
 
     /// Returns the gap between a disk and a brick at a time.
     fn gap(&self, brick: usize, flight: &Flight, time: f64) -> f64 {
-        let Wall { part, brick } = &self.walls[brick];
-        let placed = &self.parts[*part];
+        let PlacedBrick { part, brick } = &self.bricks[brick];
+        let placed = &self.placed[*part];
         let travel = placed.part.travel();
         let (pose, place) = (travel.pose(placed.phase.after(time)), flight.position(time));
-        let (low, high) = travel.bounds(brick);
-        let distances = self.container.domain().images_of(low, high);
+        let distances = self.domain.images_of(&travel.bounds(brick));
         let distances = distances.map(|image| brick.nearest(pose.inward(place - image)).distance);
         distances.fold(f64::INFINITY, f64::min) - flight.radius()
     }
 
-    /// Returns the surface of a brick that a disk at this position touches.
-    pub(super) fn surface_of_brick(&self, brick: usize, position: DVec2, time: f64) -> Surface<'_> {
-        let wall = &self.walls[brick];
-        let placed = &self.parts[wall.part];
+    /// Returns the surface of a wall that a disk at this position touches.
+    pub(in crate::boundary) fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let PlacedBrick { part, brick } = &self.bricks[wall - self.first];
+        let placed = &self.placed[*part];
         let travel = placed.part.travel();
         let pose = travel.pose(placed.phase.after(time));
-        let (low, high) = travel.bounds(&wall.brick);
-        let images = self.container.domain().images_of(low, high);
-        let sights = images.map(|image| (image, wall.brick.nearest(pose.inward(position - image))));
+        let images = self.domain.images_of(&travel.bounds(brick));
+        let sights = images.map(|image| (image, brick.nearest(pose.inward(position - image))));
         let nearest = sights.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
         let Some((image, nearest)) = nearest else {
             return Surface::new(DVec2::Y, DVec2::ZERO);
         };
         let normal = pose.direction_outward(nearest.normal);
         let contact = position - image - nearest.distance * normal;
-        let radius = wall.brick.radius_at(pose.inward(position - image));
+        let radius = brick.radius_at(pose.inward(position - image));
         placed.part.surface(normal, radius, travel.velocity(contact, placed.phase.after(time)))
     }
 }
@@ -204,7 +210,7 @@ impl Vessel {
 /// strip that the part sweeps, and the part sweeps all of the strip within a period. The search therefore
 /// goes straight to the time at which the disk enters the strip, and ends a few pieces later.
 struct Search<'a> {
-    wall: &'a Wall,
+    brick: &'a Brick,
     placed: &'a Placed,
     flight: &'a Flight,
     until: f64,
@@ -256,20 +262,20 @@ impl Search<'_> {
         let travel = self.placed.part.travel();
         let Some(Turning { about, angular_velocity, .. }) = travel.frame() else { return false };
         let phase = self.placed.phase.after(time);
-        let (low, high) = self.wall.brick.bounds();
-        let middle = travel.pose(phase).outward(0.5 * (low + high));
+        let Region { min, max } = self.brick.bounds();
+        let middle = travel.pose(phase).outward(0.5 * (min + max));
         let wait = self.until - time;
         let speed = self.flight.velocity(time).length()
             + self.flight.acceleration().length() * wait
             + angular_velocity.abs() * middle.distance(*about + travel.shift(phase));
-        let reach = 0.5 * (high - low).length() + 1.001 * self.flight.radius() + travel.stroke();
+        let reach = 0.5 * (max - min).length() + 1.001 * self.flight.radius() + travel.stroke();
         self.flight.position(time).distance(middle) - reach > speed * wait
     }
 
     fn step(&self, time: f64) -> Step {
         let travel = self.placed.part.travel();
         let look = travel.look(self.flight, self.placed.phase, time, self.until - time);
-        let (path, brick) = (look.path, &self.wall.brick);
+        let (path, brick) = (look.path, self.brick);
         let mut wait = (self.until.min(look.until) - time).max(0.0);
         if path.spread > 0.0 {
             // The disk must not grow so much that it no longer fits into a circle.
@@ -303,7 +309,7 @@ impl Search<'_> {
         let radius = radius + MARGIN * (radius + place.abs().max_element() + self.placed.size);
         let path = Path::exact(place, velocity, self.flight.acceleration(), radius);
         let wait = (self.until - time).clamp(0.0, LONGEST);
-        Some(time + travel.wait_to_enter_strip(&self.wall.brick, &path, wait)?)
+        Some(time + travel.wait_to_enter_strip(self.brick, &path, wait)?)
     }
 }
 
@@ -315,11 +321,11 @@ fn time_for(path: &Path, way: f64) -> f64 {
 }
 
 /// Returns a rectangle that holds the disk on its flight.
-fn rectangle(flight: &Flight, until: f64) -> (DVec2, DVec2) {
+fn rectangle(flight: &Flight, until: f64) -> Region {
     let wait = until - flight.time();
     let (from, to) = (flight.position(flight.time()), flight.position(until));
     // No point of the flight is farther from its chord than this.
     let sagitta = 0.125 * flight.acceleration().length() * wait * wait;
     let reach = 1.001 * (flight.radius() + sagitta);
-    (from.min(to) - reach, from.max(to) + reach)
+    Region::new(from.min(to) - reach, from.max(to) + reach)
 }

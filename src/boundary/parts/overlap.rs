@@ -1,4 +1,4 @@
-//! Overlaps with the parts of a vessel.
+//! Overlaps with the parts of a container.
 //!
 //! The nearest brick of a part decides whether a position is behind the part. If the disk reaches a brick of
 //! the part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away,
@@ -7,17 +7,17 @@
 use glam::DVec2;
 
 use super::index::{Entry, Index};
-use super::{Placed, Vessel};
+use super::{Parts, Placed};
 use crate::boundary::part::Sighted;
-use crate::boundary::{Boundary, Overlap, Probe};
+use crate::boundary::{Overlap, Probe, Region};
 
-impl Vessel {
+impl Parts {
     /// Returns the wall of a part that a disk penetrates most deeply, and the depth.
-    pub(super) fn overlap_with_parts(&self, probe: &Probe) -> Option<Overlap> {
+    pub(in crate::boundary) fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
         let filled = self.filled.get(self.index.cell(position)).into_iter().flatten();
         let whole = self.moving.iter().chain(filled);
-        let stops = |part: usize| self.parts[part].part.stops(probe.kind());
+        let stops = |part: usize| self.placed[part].part.stops(probe.kind());
         let whole = whole.filter(|&&part| stops(part as usize));
         let whole = whole.filter_map(|&part| self.depth(part as usize, position, radius, time));
         let near = self.near_at_rest(position, radius).filter(|(part, _)| stops(*part));
@@ -38,10 +38,10 @@ impl Vessel {
 
     /// Returns the bricks at rest in the cells around a disk, with the numbers of their parts.
     fn near_at_rest(&self, position: DVec2, radius: f64) -> impl Iterator<Item = (usize, Entry)> {
-        let near = self.index.near(position - radius, position + radius);
-        let with_part = near.map(|entry| (self.walls[entry.wall as usize].part, entry));
+        let near = self.index.near(&Region::around(position, radius));
+        let with_part = near.map(|entry| (self.bricks[entry.wall as usize].part, entry));
         with_part.filter(|(part, _)| {
-            let part = &self.parts[*part].part;
+            let part = &self.placed[*part].part;
             part.travel().is_at_rest() && !part.takes_centers()
         })
     }
@@ -50,18 +50,17 @@ impl Vessel {
     fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
         let sights = entries.map(|entry| {
             let wall = entry.wall as usize;
-            let sighted = Sighted::new(&self.walls[wall].brick, position - entry.image);
-            (wall + self.container.wall_count(), sighted)
+            let sighted = Sighted::new(&self.bricks[wall].brick, position - entry.image);
+            (wall + self.first, sighted)
         });
         sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a })
     }
 
     /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
     fn depth(&self, part: usize, position: DVec2, radius: f64, time: f64) -> Option<Overlap> {
-        let placed = &self.parts[part];
+        let placed = &self.placed[part];
         let pose = placed.part.travel().pose(placed.phase.after(time));
-        let (low, high) = placed.bounds;
-        let depths = self.container.domain().images_of(low, high).filter_map(|image| {
+        let depths = self.domain.images_of(&placed.bounds).filter_map(|image| {
             let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;
             Some(Overlap::new(placed.first + brick, radius - distance))
         });
@@ -72,7 +71,7 @@ impl Vessel {
     /// behind them.
     pub(super) fn filled_cells(&self) -> Vec<Vec<u32>> {
         let mut filled = vec![Vec::new(); self.index.len()];
-        for (number, placed) in self.parts.iter().enumerate() {
+        for (number, placed) in self.placed.iter().enumerate() {
             if placed.part.travel().is_at_rest() && placed.part.has_back() {
                 for cell in self.cells_filled_by(number, placed) {
                     filled[cell].push(number as u32);
@@ -88,8 +87,9 @@ impl Vessel {
     /// therefore examined only if its left and lower neighbors do not decide.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
-        let has_brick =
-            |cell: usize| self.index.within(cell).any(|entry| self.walls[entry.wall as usize].part == number);
+        let has_brick = |cell: usize| {
+            self.index.within(cell).any(|entry| self.bricks[entry.wall as usize].part == number)
+        };
         let is_behind = |cell: usize| self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some();
         // The results so far for cells without a brick of the part: true if the cell is behind the part.
         let mut known: Vec<Option<bool>> = vec![None; self.index.len()];
@@ -107,11 +107,11 @@ impl Vessel {
     /// Returns the cells that may be behind a part: the cells of its rectangle if disks are free outside it,
     /// otherwise all cells.
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
-        let (low, high) = placed.part.bounds();
-        let is_walled = self.domain().periods() == DVec2::ZERO;
+        let bounds = placed.part.bounds();
+        let is_walled = self.domain.periods() == DVec2::ZERO;
         // This point is far enough from the part to stay outside after rounding, whatever the part's size.
-        let outside = low - (high - low) - DVec2::ONE;
+        let outside = bounds.min - (bounds.max - bounds.min) - DVec2::ONE;
         let is_free_outside = is_walled && placed.part.signed_distance(outside) > 0.0;
-        if is_free_outside { self.index.cells(low, high).collect() } else { (0..self.index.len()).collect() }
+        if is_free_outside { self.index.cells(&bounds).collect() } else { (0..self.index.len()).collect() }
     }
 }

@@ -1,18 +1,20 @@
-//! Rules, boundaries, schedulers and observers that break their contract. Each is named, and the state is
-//! whole afterwards.
+//! Rules, boundaries, schedulers and observers that break their contract: each is named, and the state is whole
+//! afterwards. A run that is wrong does not end as if it were right.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use granular_edmd::boundary::{
-    Boundary, Container, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch,
+    Boundary, Brick, Container, Domain, FirstTouch, Overlap, Part, Probe, Region, Surface, Touch, Wall,
+    WallView,
 };
 use granular_edmd::collision::{CollisionRule, Contact, Elastic, Frictional, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Observer, ObserverError, Partner, Snapshot, Verdict};
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BoundaryFault, BuildError, RunError};
+use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
 use granular_edmd::{Disk, Flight, Simulation, initial};
 use support::cases::few;
 
@@ -20,9 +22,13 @@ fn walls() -> Container {
     Container::closed(12.0, 10.0).unwrap()
 }
 
-fn disks() -> Vec<Disk> {
-    let disks = initial::lattice(&walls(), 20, 0.5).unwrap();
+fn gas(container: &Container, count: usize) -> Vec<Disk> {
+    let disks = initial::lattice(container, count, 0.5).unwrap();
     initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap()
+}
+
+fn disks() -> Vec<Disk> {
+    gas(&walls(), 20)
 }
 
 /// Asserts that all disks are at possible places after an error, and that a checkpoint is a state from which
@@ -52,7 +58,14 @@ enum Lie {
     Wall(usize),
     Normal(DVec2),
     Velocity(DVec2),
-    Depth,
+    /// An overlap is no number.
+    NoDepth,
+    /// Disks touch when they are this deep in a wall; with a negative depth, before they touch it.
+    Depth(f64),
+    /// Overlaps are not told.
+    Blind,
+    /// Disks do not touch the floor.
+    NoFloor,
 }
 
 /// A container that tells the truth this many times.
@@ -81,12 +94,22 @@ impl Boundary for Liar {
     fn set_time_origin(&mut self, origin: f64) {
         self.honest.set_time_origin(origin);
     }
+    fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
+        self.honest.wall(wall, time)
+    }
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        self.honest.may_touch(region, radius)
+        self.honest.may_touch(region, 1.1 * radius)
     }
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let touch = self.honest.first_touch(flight, until);
         match self.lie {
+            Lie::Depth(depth) => {
+                let (start, pull) = (flight.time(), flight.acceleration());
+                let (place, velocity) = (flight.position(start), flight.velocity(start));
+                let other = Flight::new(start, place, velocity, pull, flight.radius() - depth);
+                self.honest.first_touch(&other, until)
+            }
+            Lie::NoFloor => touch.touch().filter(|touch| touch.wall != 0).into(),
             Lie::Time(wait) if self.lies() => FirstTouch::At(Touch::new(flight.time() + wait, 0)),
             Lie::Beyond if self.lies() => {
                 FirstTouch::At(Touch::new(if until == f64::INFINITY { until } else { until.next_up() }, 0))
@@ -105,7 +128,8 @@ impl Boundary for Liar {
     }
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         match self.lie {
-            Lie::Depth if self.lies() => Some(Overlap::new(2, f64::NAN)),
+            Lie::NoDepth if self.lies() => Some(Overlap::new(2, f64::NAN)),
+            Lie::Blind => None,
             _ => self.honest.overlap(probe),
         }
     }
@@ -199,11 +223,11 @@ fn surfaces_that_cannot_be_are_named() {
 /// It would stay the largest depth, so that no later one would be noticed.
 #[test]
 fn a_depth_that_is_no_number_is_named() {
-    let liar = Liar { honest: walls(), truths: Rc::new(Cell::new(7)), lie: Lie::Depth };
+    let liar = Liar { honest: walls(), truths: Rc::new(Cell::new(7)), lie: Lie::NoDepth };
     let error = Simulation::builder(Elastic, liar).disks(disks()).build().err().unwrap();
     assert!(matches!(error, BuildError::OverlapsWall { disk: 7, depth, .. } if depth.is_nan()), "{error}");
     for truths in [20, 33] {
-        let (run, end) = run_among_liars(Lie::Depth, truths);
+        let (run, end) = run_among_liars(Lie::NoDepth, truths);
         let error = end.unwrap_err();
         assert!(matches!(error, RunError::FalseContact { depth, .. } if depth.is_nan()), "{error}");
         assert_whole(&run);
@@ -303,32 +327,6 @@ fn schedulers_that_name_what_is_not_so_are_named() {
             assert_whole(&run);
         }
     }
-}
-
-/// The scheduler forgets the times that it was given. What it names has been done already.
-#[test]
-fn a_scheduler_that_names_an_old_time_is_named() {
-    struct Forgetful(LinearScan, u32);
-    impl EventScheduler for Forgetful {
-        fn reset(&mut self, due: &[f64]) {
-            self.0.reset(due);
-        }
-        fn set(&mut self, disk: usize, due: f64) {
-            self.1 += 1;
-            if self.1 != 200 {
-                self.0.set(disk, due);
-            }
-        }
-        fn earliest(&self) -> (usize, f64) {
-            self.0.earliest()
-        }
-    }
-    let scheduler = Forgetful(LinearScan::new(), 0);
-    let builder = Simulation::builder(Elastic, walls()).disks(disks()).scheduler(scheduler);
-    let mut run = builder.build().unwrap();
-    let error = run.run_until(50.0, &mut ()).unwrap_err();
-    assert!(matches!(error, RunError::Scheduler { expected: Some(_), .. }), "{error}");
-    assert_whole(&run);
 }
 
 #[test]
@@ -497,7 +495,7 @@ fn an_outcome_that_is_no_motion_names_both_partners_and_the_contact() {
                 }
                 Partner::Wall(wall) => {
                     walls_named += 1;
-                    let name = run.boundary().wall_name(wall).into_owned();
+                    let name = run.boundary().wall(wall, 0.0).to_string();
                     let names = format!("disk {} with the wall {name:?}", failed.disk);
                     assert_eq!(failed.wall, Some(name));
                     names
@@ -554,48 +552,6 @@ impl<R: CollisionRule> CollisionRule for Strict<R> {
     }
 }
 
-/// A round drum whose wall turns and carries along what touches it.
-#[derive(Debug, Clone)]
-struct Drum {
-    radius: f64,
-    speed: f64,
-}
-
-impl Boundary for Drum {
-    fn domain(&self) -> Domain {
-        Domain::new(-self.radius, self.radius, -self.radius, self.radius)
-    }
-    fn wall_count(&self) -> usize {
-        1
-    }
-    fn set_time_origin(&mut self, _: f64) {}
-    fn may_touch(&self, _: &Region, _: f64) -> bool {
-        true
-    }
-    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
-        let start = flight.time();
-        let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
-        let free = self.radius - flight.radius();
-        let gap = [
-            (free - r.length()) * (free + r.length()),
-            -2.0 * r.dot(v),
-            -(v.length_squared() + r.dot(a)),
-            -v.dot(a),
-            -0.25 * a.length_squared(),
-        ];
-        let wait = granular_edmd::roots::first_descent_of_quartic(&gap, until - start);
-        wait.map(|wait| Touch::new((start + wait).min(until), 0)).into()
-    }
-    fn surface(&self, _: usize, position: DVec2, _: f64) -> Surface<'_> {
-        let normal = -position.normalize_or(DVec2::Y);
-        Surface::new(normal, normal.perp() * self.speed)
-    }
-    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
-        let depth = probe.position().length() + probe.radius() - self.radius;
-        (depth > 0.0).then_some(Overlap::new(0, depth))
-    }
-}
-
 /// Does this many collisions, or all if there are fewer, since disks at rest on a wall collide without end.
 fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
     for _ in 0..steps {
@@ -607,7 +563,7 @@ fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: 
 
 #[test]
 fn no_rule_is_given_a_closing_speed_below_zero() {
-    use granular_edmd::boundary::{Thermal, Wall};
+    use granular_edmd::boundary::Thermal;
     use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
     let rules = || {
         [
@@ -638,7 +594,8 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
         }
     }
     for (speed, rule) in [0.0, 0.3, -7.0].into_iter().flat_map(|speed| rules().map(|rule| (speed, rule))) {
-        let drum = Drum { radius: 4.0, speed };
+        let rim = Part::drum(DVec2::ZERO, 4.0).unwrap().with_surface_speed(speed).unwrap();
+        let drum = Container::around([("rim", rim)]).unwrap();
         let places =
             (-2..=2).flat_map(|x| (-2..=2).map(move |y| 1.1 * DVec2::new(f64::from(x), f64::from(y))));
         let disks = places.map(|place| Disk::new(place, 0.45).unwrap()).collect();
@@ -652,4 +609,158 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
             assert!(run.counters().max_wall_overlap < 1e-9, "{speed} {rule:?}: {:?}", run.counters());
         }
     }
+}
+
+/// Runs one disk that falls onto the floor of a container with a fault.
+fn fall(lie: Lie, honest: Container) -> (Simulation<Elastic, Liar>, Result<(), RunError>) {
+    let disk = Disk::new(DVec2::new(6.0, 5.0), 0.5).unwrap().with_velocity(DVec2::new(0.3, 0.0)).unwrap();
+    let builder =
+        Simulation::builder(Elastic, Liar { honest, truths: Rc::default(), lie }).disks([disk]).gravity(1.0);
+    let mut run = builder.build().unwrap();
+    let end = run.run_until(100.0, &mut ()).map(|_| ());
+    (run, end)
+}
+
+#[test]
+fn a_collision_away_from_its_wall_ends_the_run() {
+    for fault in [0.01, 1e-6, -0.01, -1e-6] {
+        let (run, end) = fall(Lie::Depth(fault), walls());
+        let error = end.unwrap_err();
+        let RunError::FalseContact { disk: 0, partner: Partner::Wall(0), wall, depth, time } = &error else {
+            panic!("{error}")
+        };
+        assert_eq!((wall.as_deref(), *time), (Some("floor"), run.time()));
+        assert!((depth / fault - 1.0).abs() < 1e-6, "{fault:e} {depth:e}");
+        let said = error.to_string();
+        assert!(said.contains("boundary::laws::check") && said.contains("\"floor\""), "{said}");
+        assert_eq!(run.counters().wall_collisions, 0, "the collision is not carried out");
+    }
+}
+
+#[test]
+fn overlaps_within_rounding_are_counted() {
+    for depth in [1e-8, 3e-7] {
+        let (run, end) = fall(Lie::Depth(depth), walls());
+        end.unwrap();
+        assert!((run.counters().max_wall_overlap - depth).abs() < 1e-13, "{:?}", run.counters());
+    }
+}
+
+#[test]
+fn a_boundary_that_tells_no_overlap_is_named() {
+    let error = fall(Lie::Blind, walls()).1.unwrap_err();
+    assert!(matches!(error, RunError::FalseContact { depth: f64::NEG_INFINITY, .. }), "{error}");
+    assert!(error.to_string().contains("does `overlap` know"), "{error}");
+}
+
+#[test]
+fn a_disk_that_passes_a_wall_is_noticed() {
+    // Between periodic sides, there is no other wall that it could meet.
+    for sides in [walls(), walls().with_periodic_sides().unwrap()] {
+        let (run, end) = fall(Lie::NoFloor, sides);
+        let error = end.unwrap_err();
+        let is_told = match &error {
+            RunError::FalseContact { wall: Some(name), .. } => name == "floor",
+            RunError::Boundary { fault: BoundaryFault::Outside { y, .. }, .. } => *y < -0.5,
+            _ => false,
+        };
+        assert!(is_told && run.time() < 20.0, "{error}");
+        assert!(error.to_string().contains("boundary::laws::check"), "{error}");
+    }
+}
+
+/// A floor whose motion is not what its bounds of the acceleration say.
+#[test]
+fn a_motion_with_false_bounds_ends_the_run() {
+    struct Broken;
+    impl WallMotion for Broken {
+        fn state(&self, phase: f64) -> WallState {
+            WallState::new(0.3 * libm::sin(10.0 * phase), 3.0 * libm::cos(10.0 * phase))
+        }
+        fn acceleration(&self, _: f64) -> AccelerationBounds {
+            AccelerationBounds::new(f64::INFINITY, 0.0, 0.0)
+        }
+        fn reach(&self) -> (f64, f64) {
+            (-0.3, 0.3)
+        }
+    }
+    let container = Container::closed(20.0, 20.0).unwrap().with_motion(Wall::Floor, Broken).unwrap();
+    let disks = gas(&container, 50);
+    let mut run = Simulation::builder(Elastic, container).disks(disks).gravity(1.0).build().unwrap();
+    let error = run.run_until(1000.0, &mut ()).unwrap_err();
+    let RunError::FalseContact { wall: Some(wall), depth, .. } = &error else { panic!("{error}") };
+    assert!(wall == "floor" && depth.abs() > 5e-10 && run.time() < 5.0, "{error}");
+    assert!(error.to_string().contains("wall::laws::check"), "{error}");
+}
+
+/// A scheduler that loses one time. A disk that is hit before its own event is missed gets a new event.
+#[test]
+fn one_event_that_the_scheduler_lost_is_noticed_before_disks_overlap() {
+    struct Forgetful {
+        honest: LinearScan,
+        sets_until_lost: u64,
+    }
+    impl EventScheduler for Forgetful {
+        fn reset(&mut self, due: &[f64]) {
+            self.honest.reset(due);
+        }
+        fn set(&mut self, disk: usize, due: f64) {
+            self.honest.set(disk, if self.sets_until_lost == 0 { f64::INFINITY } else { due });
+            self.sets_until_lost = self.sets_until_lost.wrapping_sub(1);
+        }
+        fn earliest(&self) -> (usize, f64) {
+            self.honest.earliest()
+        }
+    }
+    let mut errors = 0;
+    for sets_until_lost in (0..1400).step_by(2) {
+        let scheduler = Forgetful { honest: LinearScan::new(), sets_until_lost };
+        let builder = Simulation::builder(Elastic, walls()).disks(gas(&walls(), 40)).scheduler(scheduler);
+        let mut run = builder.build().unwrap();
+        let mut deepest = 0.0_f64;
+        let end = (1..=300).map(|step| 0.1 * f64::from(step)).try_for_each(|time| {
+            run.run_until(time, &mut ())?;
+            let disks = run.disks();
+            let overlap = |(one, other): (&Disk, &Disk)| {
+                one.radius() + other.radius() - one.position().distance(other.position())
+            };
+            let pairs = disks
+                .iter()
+                .enumerate()
+                .flat_map(|(number, one)| disks[number + 1..].iter().map(move |other| (one, other)));
+            deepest = pairs.map(overlap).fold(deepest, f64::max);
+            Ok::<(), RunError>(())
+        });
+        errors += u32::from(end.is_err());
+        assert!(end.is_err() || deepest < 1e-9, "{sets_until_lost}: {deepest}");
+    }
+    assert!(errors > 400, "{errors}");
+}
+
+/// A scheduler that names nothing at all has no events, so that its epoch alone shows it.
+#[test]
+fn a_scheduler_that_names_nothing_is_noticed() {
+    struct Mute;
+    impl EventScheduler for Mute {
+        fn reset(&mut self, _: &[f64]) {}
+        fn set(&mut self, _: usize, _: f64) {}
+        fn earliest(&self) -> (usize, f64) {
+            (usize::MAX, f64::INFINITY)
+        }
+    }
+    let builder = Simulation::builder(Elastic, walls()).disks(gas(&walls(), 20)).scheduler(Mute);
+    let error = builder.build().unwrap().run_until(100.0, &mut ()).unwrap_err();
+    assert!(error.to_string().contains("scheduler::laws::check"), "{error}");
+}
+
+/// A disk that rolls over the open end of a bowl is behind it, and the error names the bowl, not the floor on
+/// which it lands.
+#[test]
+fn the_wall_that_a_disk_is_in_is_named_and_not_the_one_it_touches() {
+    let bowl = Part::new([Brick::arc(DVec2::new(10.0, 10.0), 8.0, 4.0, 5.0).unwrap()]).unwrap();
+    let vessel = Container::closed(20.0, 20.0).unwrap().with_part("bowl", bowl).unwrap();
+    let disk = Disk::new(DVec2::new(15.0, 8.0), 0.3).unwrap();
+    let mut run = Simulation::builder(Elastic, vessel).disks([disk]).gravity(1.0).build().unwrap();
+    let error = run.run_until(60.0, &mut ()).unwrap_err();
+    assert!(matches!(&error, RunError::FalseContact { wall: Some(name), .. } if name == "bowl"), "{error}");
 }

@@ -1,11 +1,10 @@
-//! The index of a vessel: it finds the bricks near a rectangle.
+//! The index of the parts of a container: it finds the bricks near a rectangle.
 
 use std::ops::Range;
 
 use glam::DVec2;
 
-use super::Wall;
-use crate::boundary::part::enclosing;
+use super::PlacedBrick;
 use crate::boundary::{Domain, Region};
 
 /// Number of cells for each brick. A brick is then alone in most of its cells.
@@ -38,7 +37,7 @@ pub(super) struct Entry {
 }
 
 impl Index {
-    /// The index of a vessel without bricks.
+    /// The index without bricks.
     pub(super) const EMPTY: Self = Self {
         corner: DVec2::ZERO,
         density: DVec2::ONE,
@@ -52,30 +51,28 @@ impl Index {
     /// and `is_near` decides whether the wall may come into a cell's region.
     pub(super) fn new(
         domain: &Domain,
-        walls: &[Wall],
-        bounds: impl Fn(&Wall) -> (DVec2, DVec2),
-        is_near: impl Fn(&Wall, &Region) -> bool,
+        bricks: &[PlacedBrick],
+        bounds: impl Fn(&PlacedBrick) -> Region,
+        is_near: impl Fn(&PlacedBrick, &Region) -> bool,
     ) -> Self {
-        let images: Vec<(u32, DVec2, (DVec2, DVec2))> = (0..)
-            .zip(walls.iter().map(bounds))
-            .flat_map(|(wall, (low, high))| {
-                domain.images_of(low, high).map(move |image| (wall, image, (low + image, high + image)))
+        let images: Vec<(u32, DVec2, Region)> = (0..)
+            .zip(bricks.iter().map(bounds))
+            .flat_map(|(wall, bounds)| {
+                domain.images_of(&bounds).map(move |image| (wall, image, bounds.shifted(image)))
             })
             .collect();
-        let (low, high) = rectangle(domain, images.iter().map(|(_, _, bounds)| *bounds));
-        let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
+        let Region { min, max } = rectangle(domain, images.iter().map(|(_, _, bounds)| *bounds));
+        let size = (max - min).max(DVec2::splat(f64::MIN_POSITIVE));
         let most = (CELLS_PER_BRICK * images.len()).clamp(1, MOST_CELLS) as f64;
         let columns = (most * size.x / size.y).sqrt().clamp(1.0, most).floor();
         let rows = (most / columns).floor().max(1.0);
         let density = DVec2::new(columns, rows) / size;
         let (columns, rows) = (columns as usize, rows as usize);
-        let mut index = Self { corner: low, density, columns, rows, starts: vec![0], entries: Vec::new() };
+        let mut index = Self { corner: min, density, columns, rows, starts: vec![0], entries: Vec::new() };
         let mut cells = vec![Vec::new(); columns * rows];
-        for (wall, image, (low, high)) in images {
-            for cell in index.cells(low, high) {
-                let region = index.region(cell);
-                let region = Region::new(region.min - image, region.max - image);
-                if is_near(&walls[wall as usize], &region) {
+        for (wall, image, bounds) in images {
+            for cell in index.cells(&bounds) {
+                if is_near(&bricks[wall as usize], &index.region(cell).shifted(-image)) {
                     cells[cell].push(Entry { wall, image });
                 }
             }
@@ -88,8 +85,8 @@ impl Index {
     }
 
     /// Returns the bricks that may enter a rectangle, some of them several times.
-    pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = Entry> {
-        let (columns, rows) = self.span(min, max);
+    pub(super) fn near(&self, region: &Region) -> impl Iterator<Item = Entry> + use<'_> {
+        let (columns, rows) = self.span(region);
         // In a row, the entries of a cell follow the entries of the previous cell.
         rows.flat_map(move |row| {
             let before = row * self.columns;
@@ -104,7 +101,7 @@ impl Index {
 
     /// Returns the cell that holds a point.
     pub(super) fn cell(&self, place: DVec2) -> usize {
-        self.cells(place, place).next().unwrap_or(0)
+        self.cells(&Region::new(place, place)).next().unwrap_or(0)
     }
 
     /// Returns the middle of a cell. For a cell at an edge of the grid, which extends to infinity, the result
@@ -128,13 +125,13 @@ impl Index {
     }
 
     /// Returns the cells that overlap a rectangle.
-    pub(super) fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> {
-        let ((columns, rows), width) = (self.span(min, max), self.columns);
+    pub(super) fn cells(&self, region: &Region) -> impl Iterator<Item = usize> + use<> {
+        let ((columns, rows), width) = (self.span(region), self.columns);
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
     /// Returns the columns and the rows that overlap a rectangle.
-    fn span(&self, min: DVec2, max: DVec2) -> (Range<usize>, Range<usize>) {
+    fn span(&self, &Region { min, max }: &Region) -> (Range<usize>, Range<usize>) {
         // The conversion takes negative numbers to 0.
         let place = |value: f64, count: usize| (value as usize).min(count - 1);
         let (from, to) = ((min - self.corner) * self.density, (max - self.corner) * self.density);
@@ -158,8 +155,8 @@ impl Index {
 }
 
 /// Returns the part of the domain that holds the bricks.
-fn rectangle(domain: &Domain, bounds: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
-    let (low, high) = enclosing(bounds);
-    let low = low.max(DVec2::new(domain.left, domain.bottom)).min(DVec2::new(domain.right, domain.top));
-    (low, high.min(DVec2::new(domain.right, domain.top)).max(low))
+fn rectangle(domain: &Domain, bounds: impl Iterator<Item = Region>) -> Region {
+    let (all, domain) = (Region::enclosing(bounds), domain.region());
+    let min = all.min.max(domain.min).min(domain.max);
+    Region::new(min, all.max.min(domain.max).max(min))
 }

@@ -1,0 +1,631 @@
+//! Boundaries that break their contract.
+
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Impact, Overlap, Part, Probe, Reaction, Region, Surface, Touch,
+    Wall, laws,
+};
+use granular_edmd::glam::DVec2;
+use granular_edmd::wall::{BiParabolic, Piston, Sinusoidal};
+use granular_edmd::{Disk, Fingerprint, Flight, Kind, ParameterError};
+
+use crate::Half::{Blind, Honest, Informed, Survivor};
+use crate::{Fault, judge, one_in};
+
+/// An honest boundary behind functions that change its answers. At first, they change nothing.
+pub(crate) struct Altered {
+    honest: Box<dyn Boundary>,
+    /// The last origin that was given.
+    since: f64,
+    origin: fn(f64) -> f64,
+    /// The origin, and the domain.
+    domain: fn(f64, Domain) -> Domain,
+    interior: fn(Domain) -> Domain,
+    /// The origin, and the number of walls.
+    walls: fn(f64, usize) -> usize,
+    may_touch: fn(&dyn Boundary, &Region, f64) -> bool,
+    touch: Box<dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>>,
+    /// The surface, the position of the disk, and the time.
+    surface: fn(&mut Surface<'_>, DVec2, f64),
+    overlap: fn(&dyn Boundary, &Probe) -> Option<Overlap>,
+    /// The answer, the region and the radius.
+    area: fn(f64, &Region, f64) -> f64,
+    react: fn(&mut dyn Boundary, &Impact) -> Reaction,
+    /// The answer, and the region.
+    may_meet: fn(bool, &Region) -> bool,
+    state: fn(Vec<f64>) -> Vec<f64>,
+    restored: fn(&[f64]) -> Vec<f64>,
+    mark: Option<Fingerprint>,
+    /// True if the mark depends on the origin.
+    is_marked_anew: bool,
+}
+
+impl Altered {
+    pub(crate) fn new(honest: impl Boundary + 'static) -> Self {
+        Self {
+            honest: Box::new(honest),
+            since: 0.0,
+            origin: |origin| origin,
+            domain: |_, domain| domain,
+            interior: |domain| domain,
+            walls: |_, count| count,
+            may_touch: |honest, region, radius| honest.may_touch(region, radius),
+            touch: Box::new(|honest, flight, until| honest.first_touch(flight, until)),
+            surface: |_, _, _| (),
+            overlap: |honest, probe| honest.overlap(probe),
+            area: |area, _, _| area,
+            react: |honest, impact| honest.react(impact),
+            may_meet: |answer, _| answer,
+            state: |state| state,
+            restored: <[f64]>::to_vec,
+            mark: None,
+            is_marked_anew: false,
+        }
+    }
+
+    /// Returns the same boundary with this fingerprint.
+    pub(crate) fn marked(self, mark: Fingerprint) -> Self {
+        Self { mark: Some(mark), ..self }
+    }
+
+    /// Returns the same boundary, whose fingerprint depends on the time origin.
+    pub(crate) fn marked_anew(self) -> Self {
+        Self { is_marked_anew: true, ..self }
+    }
+
+    fn surface(self, surface: fn(&mut Surface<'_>, DVec2, f64)) -> Self {
+        Self { surface, ..self }
+    }
+
+    fn touch(self, touch: impl Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch> + 'static) -> Self {
+        Self { touch: Box::new(touch), ..self }
+    }
+
+    /// Misses the touches for which the condition holds.
+    fn missing(self, is_missed: impl Fn(&Flight, Touch) -> bool + 'static) -> Self {
+        self.touch(move |honest, flight, until| match honest.first_touch(flight, until) {
+            FirstTouch::At(touch) if is_missed(flight, touch) => FirstTouch::NONE,
+            other => other,
+        })
+    }
+
+    fn renamed(self, name: fn(usize) -> usize) -> Self {
+        self.touch(move |honest, flight, until| {
+            honest.first_touch(flight, until).map(|touch| Touch::new(touch.time, name(touch.wall)))
+        })
+    }
+
+    /// Finds touches late by this share of the radius, or early if it is negative.
+    fn late(self, share: f64) -> Self {
+        self.touch(move |honest, flight, until| {
+            let found = honest.first_touch(flight, until);
+            let FirstTouch::At(touch) = found else { return found };
+            let surface = honest.surface(touch.wall, flight.position(touch.time), touch.time);
+            let speed = (flight.velocity(touch.time) - surface.velocity).dot(surface.normal).abs();
+            let wait = share * flight.radius() / speed.max(1e-3);
+            found.map(|touch| Touch::new((touch.time + wait).clamp(flight.time(), until), touch.wall))
+        })
+    }
+
+    fn overlap(self, overlap: fn(&dyn Boundary, &Probe) -> Option<Overlap>) -> Self {
+        Self { overlap, ..self }
+    }
+
+    fn area(self, area: fn(f64, &Region, f64) -> f64) -> Self {
+        Self { area, ..self }
+    }
+
+    fn may_touch(self, may_touch: fn(&dyn Boundary, &Region, f64) -> bool) -> Self {
+        Self { may_touch, ..self }
+    }
+
+    fn react(self, react: fn(&mut dyn Boundary, &Impact) -> Reaction) -> Self {
+        Self { react, ..self }
+    }
+}
+
+impl Boundary for Altered {
+    fn domain(&self) -> Domain {
+        (self.domain)(self.since, self.honest.domain())
+    }
+
+    fn interior(&self) -> Domain {
+        (self.interior)(self.honest.interior())
+    }
+
+    fn wall_count(&self) -> usize {
+        (self.walls)(self.since, self.honest.wall_count())
+    }
+
+    fn set_time_origin(&mut self, origin: f64) {
+        self.since = origin;
+        self.honest.set_time_origin((self.origin)(origin));
+    }
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        (self.may_touch)(&*self.honest, region, radius)
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        (self.touch)(&*self.honest, flight, until)
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let mut surface = self.honest.surface(wall, position, time);
+        (self.surface)(&mut surface, position, time);
+        surface
+    }
+
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
+        (self.overlap)(&*self.honest, probe)
+    }
+
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        self.honest.area(region, radius, time).map(|area| (self.area)(area, region, radius))
+    }
+
+    fn react(&mut self, impact: &Impact) -> Reaction {
+        (self.react)(&mut *self.honest, impact)
+    }
+
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
+        (self.may_meet)(self.honest.may_meet(wall, region, radius, until), region)
+    }
+
+    fn state(&self) -> Vec<f64> {
+        (self.state)(self.honest.state())
+    }
+
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
+        self.honest.set_state(&(self.restored)(state))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.mark.map(|mark| if self.is_marked_anew { mark.number(self.since) } else { mark })
+    }
+}
+
+pub(crate) fn resting() -> Container {
+    Container::closed(10.0, 12.0).expect("a size")
+}
+
+fn shaken() -> Altered {
+    let motion = BiParabolic::new(0.2, 6.0).expect("an amplitude");
+    Altered::new(resting().with_motion(Wall::Floor, motion).expect("a floor"))
+}
+
+/// A box with a floor that slides to the right and back.
+fn sliding() -> Altered {
+    let motion = Sinusoidal::new(0.3, 2.0).expect("an amplitude");
+    Altered::new(resting().with_sliding(Wall::Floor, motion).expect("a floor"))
+}
+
+fn dish() -> Altered {
+    let drum = Part::drum(DVec2::splat(6.0), 6.0).expect("a radius");
+    Altered::new(Container::around([("dish", drum)]).expect("a drum"))
+}
+
+pub(crate) fn pegs(place: DVec2) -> Container {
+    resting().with_pegs([Disk::new(place, 1.5).expect("a radius")]).expect("a peg")
+}
+
+fn board() -> Altered {
+    Altered::new(pegs(DVec2::new(5.0, 6.0)))
+}
+
+/// A box with a bar that turns about the point (5, 6).
+fn stirred() -> Altered {
+    let bar = Part::polyline([DVec2::new(4.0, 6.0), DVec2::new(6.0, 6.0)]).expect("a bar");
+    let bar = bar.with_rotation(DVec2::new(5.0, 6.0), 0.7).expect("a rotation");
+    Altered::new(resting().with_part("bar", bar).expect("a bar"))
+}
+
+/// A periodic box with a peg on the seam.
+fn torus() -> Altered {
+    let peg = Part::peg(DVec2::new(0.0, 6.0), 1.0).expect("a radius");
+    let torus = Container::periodic(10.0, 12.0).expect("a size");
+    Altered::new(torus.with_part("peg", peg).expect("a peg"))
+}
+
+/// A box with a heavy lid on a spring.
+fn sprung() -> Altered {
+    let lid = Piston::new(50.0, [-2.0, 2.0]).and_then(|lid| lid.with_spring(100.0, 0.0));
+    Altered::new(resting().with_piston(Wall::Lid, lid.expect("a mass")).expect("a lid"))
+}
+
+fn surfaces() -> Vec<Fault<Altered>> {
+    vec![
+        Fault(
+            Blind,
+            "the floor is faster than its geometry by 1e-5",
+            shaken().surface(|surface, _, _| surface.velocity *= 1.0 + 1e-5),
+        ),
+        Fault(
+            Informed,
+            "the floor is faster near the right side, by 1e-4",
+            shaken().surface(|surface, position, _| {
+                surface.velocity.y += if position.x > 9.0 { 1e-4 } else { 0.0 };
+            }),
+        ),
+        Fault(
+            Blind,
+            "the bar turns about the corner of the box",
+            stirred().surface(|surface, position, _| {
+                if surface.velocity != DVec2::ZERO {
+                    surface.velocity = 0.7 * position.perp();
+                }
+            }),
+        ),
+        Fault(
+            Survivor,
+            "the floor forgets that it slides",
+            sliding().surface(|surface, _, _| surface.velocity.x = 0.0),
+        ),
+        Fault(
+            Blind,
+            "the normal of a dish is turned by 1e-5",
+            dish().surface(|surface, _, _| {
+                surface.normal = DVec2::from_angle(1e-5).rotate(surface.normal);
+            }),
+        ),
+        Fault(
+            Informed,
+            "the normals of a peg are those of an oval",
+            board().surface(|surface, position, _| {
+                if surface.radius.is_finite() {
+                    surface.normal = ((position - DVec2::new(5.0, 6.0)) * DVec2::new(1.0, 1.001)).normalize();
+                }
+            }),
+        ),
+        Fault(
+            Blind,
+            "the normal is longer than 1 by 1e-6",
+            dish().surface(|surface, _, _| surface.normal *= 1.0 + 1e-6),
+        ),
+        Fault(
+            Informed,
+            "the velocity is not a number where the floor turns",
+            shaken().surface(|surface, _, _| {
+                surface.velocity.y +=
+                    if surface.velocity.y.abs() < 0.05 && surface.normal.y > 0.5 { f64::NAN } else { 0.0 };
+            }),
+        ),
+        Fault(
+            Blind,
+            "the hollow dish has a positive radius",
+            dish().surface(|surface, _, _| surface.radius *= -1.0),
+        ),
+        Fault(
+            Informed,
+            "straight walls have a radius of 1000",
+            shaken().surface(|surface, _, _| {
+                surface.radius = surface.radius.min(1e3);
+            }),
+        ),
+        Fault(
+            Blind,
+            "a turning bar has no angular velocity",
+            stirred().surface(|surface, _, _| surface.angular_velocity = 0.0),
+        ),
+        Fault(
+            Informed,
+            "a sliding floor turns near its right end",
+            sliding().surface(|surface, position, _| {
+                surface.angular_velocity = if position.x > 9.0 { 0.01 } else { 0.0 };
+            }),
+        ),
+    ]
+}
+
+fn touches() -> Vec<Fault<Altered>> {
+    let [often, last] = [one_in(5), one_in(11)];
+    vec![
+        Fault(
+            Blind,
+            "flights that begin at a speed of 0.9 to 1.2 touch nothing",
+            shaken().missing(|flight, _| (0.9..1.2).contains(&flight.velocity(flight.time()).length())),
+        ),
+        Fault(
+            Informed,
+            "the right side ends at a height of 11.4",
+            shaken().missing(|flight, touch| {
+                let place = flight.position(touch.time);
+                place.x > 9.4 && place.y > 11.4
+            }),
+        ),
+        Fault(
+            Informed,
+            "a pull to the side is forgotten",
+            shaken().touch(|honest, flight, until| {
+                let (start, pull) = (flight.time(), DVec2::new(0.0, flight.acceleration().y));
+                let (place, velocity) = (flight.position(start), flight.velocity(start));
+                let down = Flight::new(start, place, velocity, pull, flight.radius());
+                honest.first_touch(&down.with_kind(flight.kind()), until)
+            }),
+        ),
+        Fault(Blind, "touches are early by 1e-5 of the radius", shaken().late(-1e-5)),
+        Fault(Survivor, "touches are early by 1e-9 of the radius", shaken().late(-1e-9)),
+        Fault(Blind, "touches are late by 1e-5 of the radius", dish().late(1e-5)),
+        Fault(
+            Informed,
+            "the time of a touch is in single precision",
+            shaken().touch(|honest, flight, until| {
+                honest
+                    .first_touch(flight, until)
+                    .map(|touch| Touch::new(f64::from(touch.time as f32), touch.wall))
+            }),
+        ),
+        Fault(
+            Blind,
+            "a touch after the end of the search is reported",
+            shaken().touch(|honest, flight, until| honest.first_touch(flight, until + 1.0)),
+        ),
+        Fault(
+            Informed,
+            "a search shorter than 1e-3 finds nothing",
+            shaken().touch(|honest, flight, until| {
+                if until - flight.time() < 1e-3 {
+                    FirstTouch::NONE
+                } else {
+                    honest.first_touch(flight, until)
+                }
+            }),
+        ),
+        Fault(
+            Blind,
+            "a disk that overlaps and leaves touches at once",
+            shaken().touch(|honest, flight, until| {
+                let probe = Probe::new(flight.position(flight.time()), flight.radius(), flight.time());
+                let overlap = honest.overlap(&probe.with_kind(flight.kind()));
+                let touch = overlap.map(|found| FirstTouch::At(Touch::new(flight.time(), found.with)));
+                touch.unwrap_or_else(|| honest.first_touch(flight, until))
+            }),
+        ),
+        Fault(Blind, "walls are counted from 1", shaken().renamed(|wall| wall + 1)),
+        Fault(Informed, "the two sides are exchanged", shaken().renamed(|wall| [0, 2, 1, 3][wall.min(3)])),
+        Fault(
+            Blind,
+            "a search comes no further than its start",
+            shaken().touch(|_, flight, _| FirstTouch::NotBefore(flight.time())),
+        ),
+        Fault(Blind, "one touch in five is missed", shaken().missing(move |_, _| often())),
+        Fault(
+            Informed,
+            "one touch in eleven is later by the last bit",
+            shaken().touch(move |honest, flight, until| {
+                let time = |time: f64| if last() { time.next_up().min(until) } else { time };
+                honest.first_touch(flight, until).map(|touch| Touch::new(time(touch.time), touch.wall))
+            }),
+        ),
+        Fault(
+            Blind,
+            "kind 1 passes the peg, but overlaps it",
+            board().missing(|flight, touch| touch.wall >= 4 && flight.kind() == Kind::new(1)),
+        ),
+        Fault(
+            Informed,
+            "the peg is missed by disks smaller than 0.4",
+            board().missing(|flight, touch| touch.wall >= 4 && flight.radius() < 0.4),
+        ),
+    ]
+}
+
+fn overlaps_and_areas() -> Vec<Fault<Altered>> {
+    vec![
+        Fault(
+            Blind,
+            "an overlap is too deep by 1e-3 of itself",
+            dish().overlap(|honest, probe| {
+                honest.overlap(probe).map(|found| Overlap::new(found.with, 1.001 * found.depth))
+            }),
+        ),
+        Fault(
+            Informed,
+            "overlaps deeper than 0.01 are twice as deep",
+            shaken().overlap(|honest, probe| {
+                let depth = |depth: f64| if depth > 0.01 { 2.0 * depth } else { depth };
+                honest.overlap(probe).map(|found| Overlap::new(found.with, depth(found.depth)))
+            }),
+        ),
+        Fault(
+            Informed,
+            "kind 2 overlaps no lid",
+            shaken().overlap(|honest, probe| {
+                honest.overlap(probe).filter(|found| probe.kind() != Kind::new(2) || found.with != 3)
+            }),
+        ),
+        Fault(
+            Blind,
+            "the left half of a peg on the seam is forgotten",
+            torus().overlap(|honest, probe| honest.overlap(probe).filter(|_| probe.position().x < 5.0)),
+        ),
+        Fault(
+            Blind,
+            "the free area is too large by a hundredth",
+            Altered::new(resting()).area(|area, _, _| 1.01 * area),
+        ),
+        Fault(
+            Informed,
+            "disks below 0.2 have an area that is larger by 1e-4",
+            Altered::new(resting()).area(|area, _, radius| if radius < 0.2 { 1.0001 * area } else { area }),
+        ),
+        Fault(
+            Informed,
+            "regions that begin left of the box have a hundredth more",
+            Altered::new(resting()).area(
+                |area, region, _| {
+                    if region.min.x < 0.0 { area + 0.01 } else { area }
+                },
+            ),
+        ),
+        Fault(
+            Blind,
+            "a region is touched where its middle is",
+            shaken().may_touch(|honest, region, radius| {
+                let middle = 0.5 * (region.min + region.max);
+                honest.may_touch(&Region::new(middle, middle), radius)
+            }),
+        ),
+        Fault(
+            Informed,
+            "a region without an area is free",
+            shaken().may_touch(|honest, region, radius| {
+                (region.max - region.min).max_element() > 1e-6 && honest.may_touch(region, radius)
+            }),
+        ),
+        Fault(
+            Informed,
+            "a region that reaches to infinity is free",
+            shaken().may_touch(|honest, region, radius| {
+                region.min.is_finite() && region.max.is_finite() && honest.may_touch(region, radius)
+            }),
+        ),
+        Fault(
+            Blind,
+            "the domain follows the floor",
+            Altered {
+                domain: |since, domain| {
+                    Domain::new(domain.left, domain.right, 0.1 * (0.3 * since).sin(), domain.top)
+                },
+                ..shaken()
+            },
+        ),
+        Fault(
+            Blind,
+            "the domain leaves out the centers of small disks",
+            Altered { domain: |_, domain| Domain::new(1.0, 9.0, domain.bottom, domain.top), ..shaken() },
+        ),
+        Fault(
+            Blind,
+            "the interior reaches beyond the domain",
+            Altered {
+                interior: |inside| Domain::new(inside.left, inside.right + 2.0, inside.bottom, inside.top),
+                ..shaken()
+            },
+        ),
+        Fault(
+            Informed,
+            "the right edge of the domain is not a number",
+            Altered { domain: |_, domain| Domain::new(domain.left, f64::NAN, 0.0, domain.top), ..shaken() },
+        ),
+        Fault(
+            Blind,
+            "a wall is added at later origins",
+            Altered { walls: |since, count| if since > 0.0 { count + 1 } else { count }, ..shaken() },
+        ),
+        Fault(Blind, "the whole box is full", shaken().overlap(|_, _| Some(Overlap::new(0, 1.0)))),
+        Fault(Blind, "the origin is forgotten", Altered { origin: |_| 0.0, ..shaken() }),
+        Fault(
+            Informed,
+            "origins above 1100 are forgotten",
+            Altered { origin: |origin| if origin > 1100.0 { 0.0 } else { origin }, ..shaken() },
+        ),
+        Fault(
+            Informed,
+            "the kind of walls depends on the offset",
+            shaken().surface(|surface, _, time| {
+                surface.kind = Kind::new((time as u16) % 2);
+            }),
+        ),
+    ]
+}
+
+fn reactions() -> Vec<Fault<Altered>> {
+    fn scaled(impact: &Impact, by: f64) -> Impact {
+        Impact::new(impact.wall, by * impact.impulse, impact.point, impact.time)
+    }
+    vec![
+        Fault(
+            Blind,
+            "the lid takes an impulse that is too large by 1e-6",
+            sprung().react(|honest, impact| honest.react(&scaled(impact, 1.0 + 1e-6))),
+        ),
+        Fault(
+            Informed,
+            "the lid forgets weak blows",
+            sprung().react(
+                |honest, impact| {
+                    if impact.impulse.length() < 0.5 { Reaction::None } else { honest.react(impact) }
+                },
+            ),
+        ),
+        Fault(
+            Blind,
+            "the lid does not say that it moves",
+            sprung().react(|honest, impact| {
+                let _ = honest.react(impact);
+                Reaction::None
+            }),
+        ),
+        Fault(
+            Informed,
+            "the lid jumps at each blow",
+            sprung().react(|honest, impact| {
+                let reaction = honest.react(impact);
+                let mut state = honest.state();
+                state[1] += if reaction == Reaction::Moved { 1e-3 } else { 0.0 };
+                honest.set_state(&state).expect("a state");
+                reaction
+            }),
+        ),
+        Fault(
+            Blind,
+            "the lid reacts, but its surface has an infinite mass",
+            sprung().surface(|surface, _, _| surface.mass = f64::INFINITY),
+        ),
+        Fault(
+            Informed,
+            "a blow on the floor moves the lid",
+            sprung()
+                .react(|honest, impact| honest.react(&Impact::new(3, DVec2::Y, impact.point, impact.time))),
+        ),
+        Fault(Blind, "the lid meets nobody after a blow", Altered { may_meet: |_, _| false, ..sprung() }),
+        Fault(
+            Informed,
+            "the lid meets only what is above its place at rest",
+            Altered { may_meet: |answer, region| answer && region.max.y > 11.4, ..sprung() },
+        ),
+        Fault(
+            Blind,
+            "the state is in single precision",
+            Altered {
+                state: |state| state.iter().map(|&number| f64::from(number as f32)).collect(),
+                ..sprung()
+            },
+        ),
+        Fault(
+            Informed,
+            "a state that is too long is accepted",
+            Altered { restored: |state| state.iter().take(3).copied().collect(), ..sprung() },
+        ),
+        Fault(
+            Blind,
+            "the lid is at rest after its state is set",
+            Altered { restored: |state| state.iter().map(|_| 0.0).collect(), ..sprung() },
+        ),
+        Fault(Honest, "shaken", shaken()),
+        Fault(Honest, "sliding", sliding()),
+        Fault(Honest, "dish", dish()),
+        Fault(Honest, "stirred", stirred()),
+        Fault(Honest, "board", board()),
+        Fault(Honest, "torus", torus()),
+        Fault(Honest, "sprung", sprung()),
+    ]
+}
+
+/// A violation names the law, the numbers and the flight that show it.
+#[test]
+fn violations_name_their_numbers() {
+    let violation =
+        laws::check(&mut shaken().renamed(|wall| wall + 4), 0.5, 1.0, 1).expect_err("a violation");
+    let text = violation.to_string();
+    assert!(text.starts_with("boundary, law \"touched wall\": wall "), "{text}");
+    assert!(text.contains("but there are 4, on Flight"), "{text}");
+}
+
+#[test]
+fn the_check_of_boundaries_finds_planted_faults() {
+    let all = surfaces().into_iter().chain(touches()).chain(overlaps_and_areas()).chain(reactions());
+    judge("boundary", all.collect(), |mut boundary: Altered| {
+        (1..=3).try_for_each(|seed| laws::check(&mut boundary, 0.5, 1.0, seed))
+    });
+}

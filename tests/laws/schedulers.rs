@@ -1,0 +1,179 @@
+//! Schedulers that break their contract.
+
+use std::cell::Cell;
+
+use granular_edmd::scheduler::{EventScheduler, NOTHING_DUE, laws};
+
+use crate::Half::{Blind, Honest, Informed};
+use crate::{Fault, judge};
+
+/// A scan through all times, some of whose steps are changed.
+struct Altered {
+    due: Vec<f64>,
+    /// Numbers of calls.
+    sets: u64,
+    asked: Cell<u64>,
+    reset: fn(&mut Vec<f64>, &[f64]),
+    /// The times that are kept, the disk, its new time, and the number of calls.
+    set: fn(&mut Vec<f64>, usize, f64, u64),
+    /// The times that are kept, and the number of calls.
+    answer: fn(&[f64], u64) -> (usize, f64),
+    hint: fn(&mut Vec<usize>),
+}
+
+const HONEST: Altered = Altered {
+    due: Vec::new(),
+    sets: 0,
+    asked: Cell::new(0),
+    reset: |due, times| *due = times.to_vec(),
+    set: |due, disk, time, _| due[disk] = time,
+    answer: |due, _| earliest(due),
+    hint: |_| (),
+};
+
+impl EventScheduler for Altered {
+    fn reset(&mut self, due: &[f64]) {
+        (self.reset)(&mut self.due, due);
+    }
+
+    fn set(&mut self, disk: usize, due: f64) {
+        self.sets += 1;
+        (self.set)(&mut self.due, disk, due, self.sets);
+    }
+
+    fn earliest(&self) -> (usize, f64) {
+        self.asked.set(self.asked.get() + 1);
+        (self.answer)(&self.due, self.asked.get())
+    }
+
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
+        (self.hint)(disks);
+    }
+}
+
+/// Returns the right answer for these times, as a `LinearScan` would.
+fn earliest(due: &[f64]) -> (usize, f64) {
+    due.iter().enumerate().fold(NOTHING_DUE, |first, (disk, &time)| {
+        if time < first.1 || first.0 == usize::MAX { (disk, time) } else { first }
+    })
+}
+
+/// Returns the last of the disks with the earliest time.
+fn last_of_ties(due: &[f64]) -> (usize, f64) {
+    let (_, first) = earliest(due);
+    due.iter().rposition(|&time| time == first).map_or(NOTHING_DUE, |disk| (disk, first))
+}
+
+fn answering(answer: fn(&[f64], u64) -> (usize, f64)) -> Altered {
+    Altered { answer, ..HONEST }
+}
+
+fn setting(set: fn(&mut Vec<f64>, usize, f64, u64)) -> Altered {
+    Altered { set, ..HONEST }
+}
+
+fn resetting(reset: fn(&mut Vec<f64>, &[f64])) -> Altered {
+    Altered { reset, ..HONEST }
+}
+
+type Maker = fn() -> Altered;
+
+fn times() -> Vec<Fault<Maker>> {
+    vec![
+        Fault(Blind, "of equal times, the last disk comes first", || answering(|due, _| last_of_ties(due))),
+        Fault(Informed, "a negative zero comes before a zero", || {
+            answering(|due, _| {
+                let first = due.iter().enumerate().min_by(|one, other| one.1.total_cmp(other.1));
+                first.map_or(NOTHING_DUE, |(disk, &time)| (disk, time))
+            })
+        }),
+        Fault(Informed, "of infinite times, the last disk comes first", || {
+            answering(|due, _| {
+                let (disk, time) = earliest(due);
+                if time == f64::INFINITY { last_of_ties(due) } else { (disk, time) }
+            })
+        }),
+        Fault(Blind, "times are kept in single precision", || {
+            setting(|due, disk, time, _| due[disk] = f64::from(time as f32))
+        }),
+        Fault(Informed, "a time below 1e-307 is 0", || {
+            answering(|due, _| {
+                let (disk, time) = earliest(due);
+                (disk, if time.abs() < 1e-307 { 0.0 } else { time })
+            })
+        }),
+        Fault(Blind, "without disks, disk 0 is due never", || {
+            answering(|due, _| if due.is_empty() { (0, f64::INFINITY) } else { earliest(due) })
+        }),
+        Fault(Informed, "infinite times alone are nothing due", || {
+            answering(|due, _| {
+                let (disk, time) = earliest(due);
+                if time == f64::INFINITY { NOTHING_DUE } else { (disk, time) }
+            })
+        }),
+        Fault(Blind, "only the first 256 disks are ever due", || {
+            answering(|due, _| earliest(&due[..due.len().min(256)]))
+        }),
+        Fault(Informed, "only the first 40000 disks are ever due", || {
+            answering(|due, _| earliest(&due[..due.len().min(40_000)]))
+        }),
+    ]
+}
+
+fn calls() -> Vec<Fault<Maker>> {
+    vec![
+        Fault(Blind, "one set in a hundred is lost", || {
+            setting(|due, disk, time, sets| {
+                if sets % 100 != 0 {
+                    due[disk] = time;
+                }
+            })
+        }),
+        Fault(Informed, "one set in 20000 is lost", || {
+            setting(|due, disk, time, sets| {
+                if sets % 20_000 != 0 {
+                    due[disk] = time;
+                }
+            })
+        }),
+        Fault(Blind, "a time that is earlier than the last one of the disk is lost", || {
+            setting(|due, disk, time, _| due[disk] = due[disk].max(time))
+        }),
+        Fault(Informed, "a time that is later by less than 1e-6 is lost", || {
+            setting(|due, disk, time, _| {
+                if !(0.0..1e-6).contains(&(time - due[disk])) {
+                    due[disk] = time;
+                }
+            })
+        }),
+        Fault(Blind, "a reset with fewer disks leaves the others", || {
+            resetting(|due, times| {
+                due.resize(due.len().max(times.len()), f64::INFINITY);
+                due[..times.len()].copy_from_slice(times);
+            })
+        }),
+        Fault(Informed, "a reset to one disk sets time 0", || {
+            resetting(|due, times| {
+                *due = if times.len() == 1 { vec![0.0] } else { times.to_vec() };
+            })
+        }),
+        Fault(Blind, "each third answer is never", || {
+            answering(|due, asked| {
+                let (disk, time) = earliest(due);
+                (disk, if asked % 3 == 0 { f64::INFINITY } else { time })
+            })
+        }),
+        Fault(Blind, "a hint clears the disks that it is given", || Altered { hint: Vec::clear, ..HONEST }),
+        Fault(Informed, "a hint removes disks that are named twice", || Altered {
+            hint: Vec::dedup,
+            ..HONEST
+        }),
+        Fault(Honest, "scan", || HONEST),
+    ]
+}
+
+#[test]
+fn the_check_of_schedulers_finds_planted_faults() {
+    let all = times().into_iter().chain(calls()).collect();
+    judge("scheduler", all, |make: Maker| laws::check(make));
+}
