@@ -129,10 +129,10 @@ impl Part {
     /// a membrane. A part for no kinds at all would stop no disk, and a container refuses it.
     ///
     /// If such a part has an inside, as a block, a peg, a polygon and a drum have, the free area is not the
-    /// same for all kinds. Its container then does not know the [`area`](super::Boundary::area), and stresses,
-    /// densities and profiles are refused unless they are restricted to a region that no wall reaches. A line
-    /// of two-sided bricks, such as a [`polyline`](Self::polyline), encloses no area, so this restriction
-    /// does not apply to it.
+    /// same for all kinds. Its container then does not know the [`area`](super::Boundary::area), and
+    /// stresses, densities and profiles are refused unless they are restricted to a region that no wall
+    /// reaches. A line of two-sided bricks, such as a [`polyline`](Self::polyline), encloses no area, so this
+    /// restriction does not apply to it.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -162,9 +162,9 @@ impl fmt::Debug for Response<'_> {
 /// the angular velocity are Gaussian with variances $`T_0/m`$ and $`T_0/I`$. The slip variant redraws only
 /// the normal speed, as the base of Ramírez, Risso and Cordero, PRL 85, 1230 (2000), does.
 ///
-/// A wall of mass $`M`$ recoils: the speed relative to it has this density for the reduced mass
-/// $`m M/(m + M)`$, and the momentum along the normal is conserved. If the wall turns, the gas behind it turns
-/// with it, and so do the disks that the wall emits.
+/// A wall of mass $`M`$ recoils: the speed relative to it has this density for the reduced mass $`m M/(m +
+/// M)`$, and the momentum along the normal is conserved. If the wall turns, the gas behind it turns with it,
+/// and so do the disks that the wall emits.
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;

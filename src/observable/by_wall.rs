@@ -8,8 +8,8 @@ use crate::boundary::WallView;
 /// Largest number of names that an error lists.
 const LISTED: usize = 8;
 
-/// A value for each of some walls and parts. All walls of a part share a value, unless one of them is named by
-/// its number, as in "funnel, brick 2".
+/// A value for each of some walls and parts. All walls of a part share a value, unless one of them is named
+/// by its number, as in "funnel, brick 2".
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct ByWall<T> {

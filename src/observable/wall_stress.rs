@@ -22,8 +22,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// cannot hit it again immediately, so the values of short intervals are anticorrelated, and their errors are
 /// up to three times too large. Choose intervals with many collisions.
 ///
-/// One brick of a part has a name like "funnel, brick 2". A run ends with an error if its boundary has no wall
-/// and no part of one of the names.
+/// One brick of a part has a name like "funnel, brick 2". A run ends with an error if its boundary has no
+/// wall and no part of one of the names.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

@@ -277,8 +277,8 @@ fn forged_measurements_are_refused() -> Outcome {
     Ok(())
 }
 
-/// Fails unless the measurement, read back from a file, finds its part again when the indices have changed, and
-/// refuses a run without it if it needs the part.
+/// Fails unless the measurement, read back from a file, finds its part again when the indices have changed,
+/// and refuses a run without it if it needs the part.
 fn finds_its_part<O: Observer + Serialize + DeserializeOwned>(mut observer: O, is_needed: bool) -> Outcome {
     let peg = |x: f64| Part::peg(DVec2::new(x, 3.0), 1.0);
     let container = || Container::closed(20.0, 20.0);

@@ -1,5 +1,5 @@
-//! Rules, boundaries, schedulers and observers that break their contract: each is named, and the state is whole
-//! afterwards. A run that is wrong does not end as if it were right.
+//! Rules, boundaries, schedulers and observers that break their contract: each is named, and the state is
+//! whole afterwards. A run that is wrong does not end as if it were right.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;

@@ -12,7 +12,7 @@ use crate::scratch::Scratch;
 use support::report::report;
 
 pub(crate) fn path(name: &str) -> PathBuf {
-    [env!("CARGO_MANIFEST_DIR"), "trajectory/files", name].iter().collect()
+    [env!("CARGO_MANIFEST_DIR"), "tests/trajectory/files", name].iter().collect()
 }
 
 /// Checks what files say, without their paths in refusals.

@@ -112,7 +112,7 @@ fn huge_numbers_are_only_numbers() {
 
 /// Files of other programs, of each format.
 fn files() -> Vec<(String, Vec<u8>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("trajectory/files");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trajectory/files");
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending != "py"));
     paths.sort();

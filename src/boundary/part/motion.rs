@@ -41,11 +41,11 @@ impl Part {
     /// unit vector $`e`$ along the direction. Only the piston's stops hold the part: it collides with no
     /// other wall.
     ///
-    /// Friction along the direction would push the part, too, for which a rule would have to know how impulses
-    /// along the normal and along the surface depend on each other. A container therefore takes such a part
-    /// only if disks cannot rub it along its direction: its own rule, or the slip of its temperature, lets
-    /// them slide, or all of its bricks are straight, across the direction, and end at the edge of the domain
-    /// or beyond.
+    /// Friction along the direction would push the part, too, for which a rule would have to know how
+    /// impulses along the normal and along the surface depend on each other. A container therefore takes such
+    /// a part only if disks cannot rub it along its direction: its own rule, or the slip of its temperature,
+    /// lets them slide, or all of its bricks are straight, across the direction, and end at the edge of the
+    /// domain or beyond.
     ///
     /// # Errors
     /// If the direction has no length, a number of the piston's motion is not finite, or the part turns.
