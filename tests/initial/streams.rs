@@ -144,7 +144,7 @@ fn every_seed_goes_through_a_stream() {
         let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
         entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
     }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     for file in ["src", "study/src"].into_iter().flat_map(|folder| files(&root.join(folder))) {
         let text = fs::read_to_string(&file).unwrap();
         let code = text.split("mod tests").next().unwrap();

@@ -21,6 +21,7 @@ use crate::{Disk, ParameterError};
 ///
 /// let container = Container::periodic(20.0, 20.0)?;
 /// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 100, 0.5)?, 1.0, 1)?;
+/// let disks = initial::without_drift(disks)?;
 /// let mut run = Simulation::builder(Smooth::from_restitution(0.8)?, container).disks(disks).build()?;
 /// let mut rescaling = Rescaling::new(2.0, SampleTimes::every(0.5)?)?;
 /// run.run_driven(&Limits::until(50.0), &mut rescaling, &mut ())?;
