@@ -206,8 +206,9 @@ impl<E: Experiment> Study<E> {
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
     /// done.
     ///
-    /// This method is for batch engines that give each ramp to one process. In a study of more than 960 ramps,
-    /// the process waits while another one runs ramp K ± 960, K ± 1920 and so on, which have the same log.
+    /// This method is for batch engines that give each ramp to one process. In a study of more than 960
+    /// ramps, the process waits while another one runs ramp K ± 960, K ± 1920 and so on, which have the same
+    /// log.
     ///
     /// # Errors
     /// The same as for [`Self::run`], and if there is no such ramp.

@@ -31,8 +31,8 @@ const AT_RISK: f32 = 0.1;
 
 /// The blocks of a study.
 ///
-/// Ramps go around: with 960 blocks, ramps 0, 960, 1920 and so on are in block 0. Batch engines that start one
-/// ramp after the other thus have their processes in different blocks.
+/// Ramps go around: with 960 blocks, ramps 0, 960, 1920 and so on are in block 0. Batch engines that start
+/// one ramp after the other thus have their processes in different blocks.
 #[derive(Debug, Clone)]
 pub(super) struct Store {
     blocks: Arc<[Mutex<Block>]>,
@@ -113,7 +113,8 @@ impl Store {
         self.block(block).refresh()
     }
 
-    /// Returns the error of a log that is unreadable in part. That part may have held any record of its block.
+    /// Returns the error of a log that is unreadable in part. That part may have held any record of its
+    /// block.
     pub(super) fn damage(&self, block: usize) -> Option<StudyError> {
         let Log { path, is_damaged, .. } = &self.block(block).log;
         is_damaged.then(|| StudyError::damaged(path, "a part of it is no record"))

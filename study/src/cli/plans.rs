@@ -1,5 +1,5 @@
-//! The commands that need no study: a new plan, the check of a plan, the meanings of its keys, its core hours,
-//! and completions.
+//! The commands that need no study: a new plan, the check of a plan, the meanings of its keys, its core
+//! hours, and completions.
 
 use std::collections::HashSet;
 use std::path::Path;

@@ -22,8 +22,8 @@ pub(crate) const START: u64 = 12;
 /// The number of the error with which Windows refuses to read a file that another process has locked.
 const LOCKED_ON_WINDOWS: i32 = 33;
 
-/// A log, up to the point to which it was read or written: a file to which the process appends that has locked
-/// it, while any number of others may read.
+/// A log, up to the point to which it was read or written: a file to which the process appends that has
+/// locked it, while any number of others may read.
 ///
 /// A piece counts once it is whole. A writer that is killed, or a drive that is full, leaves no piece, or an
 /// incomplete piece at the end, which the next piece overwrites.
