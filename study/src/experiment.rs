@@ -8,7 +8,6 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::observable::{Observer, Snapshot};
 use granular_edmd::quantity::positive;
-use granular_edmd::simulation::Checkpoint;
 use granular_edmd::{Disk, Fingerprint, Gravity, Simulation};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -284,23 +283,6 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     fn can_be_ramped(parameter: &str) -> bool {
         let _ = parameter;
         true
-    }
-
-    /// Checks that the contents of a file can belong to these parameters.
-    ///
-    /// The study has already checked the checksum, the ramp and the value, and the time. `state` is `None` if
-    /// the record keeps no state.
-    ///
-    /// # Errors
-    /// If the contents cannot belong to these parameters. The error gives the reason.
-    fn check_measured(
-        &self,
-        samples: &[Self::Sample],
-        observer: &Self::Observer,
-        state: Option<&Checkpoint>,
-    ) -> Result<(), ExperimentError> {
-        let _ = (samples, observer, state);
-        Ok(())
     }
 
     /// Returns the name of the state in a record, for a refined ramp

@@ -217,7 +217,7 @@ fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(),
         check_state(state, time..=time)?;
         check([state.rule(), state.boundary()] == record.contents.parts, "its state is of other parts")?;
     }
-    measured.check(&record.experiment, state.as_ref())
+    Ok(())
 }
 
 /// Progress of a ramp.

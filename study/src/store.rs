@@ -26,7 +26,7 @@ const SEAL: Seal = Seal::new(*b"GRANSTUD", 7);
 /// processes have a block left and the others none. The folder of a study stays below a thousand files.
 const MOST_BLOCKS: usize = 960;
 
-/// Most seconds of work on finished values that a power failure may cost a process.
+/// Most seconds of work on finished values that a power failure may cost a thread.
 const AT_RISK: f32 = 0.1;
 
 /// The blocks of a study.

@@ -17,7 +17,6 @@ use granular_edmd::boundary::{Container, Thermal, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Frictional, KnownRule};
 use granular_edmd::observable::Snapshot;
 use granular_edmd::quantity::accept;
-use granular_edmd::simulation::Checkpoint;
 use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion};
 use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
 
@@ -292,18 +291,6 @@ impl Experiment for VibratedBox {
         let name = parameter.rsplit('.').next().unwrap_or(parameter);
         let fixed = ["disks", "width", "height", "sides", "angular_frequency", "slip", "initial_temperature"];
         !fixed.contains(&name)
-    }
-
-    fn check_measured(
-        &self,
-        samples: &[Sample],
-        measurement: &Measurement,
-        state: Option<&Checkpoint>,
-    ) -> Result<(), ExperimentError> {
-        if let Some(found) = state.map(Checkpoint::disk_count).filter(|found| *found != self.disks) {
-            return Err(format!("it has {found} disks instead of {}", self.disks).into());
-        }
-        Ok(sample::check(samples, measurement)?)
     }
 }
 

@@ -154,7 +154,6 @@ impl<'a, E: Experiment> Value<'a, E> {
         let [from, to] = [work.steps, protocol.steps().min(work.steps + 1)]
             .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
         check_state(&state, from..=to)?;
-        work.measured.check(&self.experiment, Some(&state))?;
         let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
         check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
         Ok((work, run))

@@ -254,19 +254,6 @@ impl Cycles {
     }
 }
 
-impl<S, O> Measured<S, O> {
-    /// Checks that the times, the samples and the observer are possible.
-    pub(crate) fn check<E>(&self, experiment: &E, state: Option<&Checkpoint>) -> Result<(), String>
-    where
-        E: Experiment<Sample = S, Observer = O>,
-    {
-        check(self.times.len() == self.samples.len(), "its times are not as many as its samples")?;
-        check(self.times.iter().all(|time| time.is_finite()), "a time is not finite")?;
-        check(self.times.is_sorted(), "its times are out of order")?;
-        experiment.check_measured(&self.samples, &self.observer, state).map_err(|reason| reason.to_string())
-    }
-}
-
 pub(crate) fn check(valid: bool, reason: &'static str) -> Result<(), &'static str> {
     if valid { Ok(()) } else { Err(reason) }
 }

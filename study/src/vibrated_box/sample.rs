@@ -9,7 +9,6 @@ use granular_edmd::statistics::{BlockedMean, Estimate};
 use super::VibratedBox;
 use crate::Record;
 use crate::analysis::thermal_noise;
-use crate::experiment::record;
 
 /// Largest number of bins of a profile. A bin is one diameter high.
 const MOST_BINS: usize = 65_536;
@@ -101,22 +100,6 @@ fn profile(snapshot: &Snapshot<'_>) -> Vec<f64> {
     });
     // Creating the profile fails only for a height that is not positive, and a container's area is known.
     profile.unwrap_or_default()
-}
-
-/// Checks that the contents of a file are possible measurements.
-pub(super) fn check(samples: &[Sample], measurement: &Measurement) -> Result<(), &'static str> {
-    let Measurement { samples: count, profile, .. } = measurement;
-    let is_sum = |sum: &f64| sum.is_finite() && *sum >= 0.0;
-    record::check(samples.iter().all(is_finite), "a sample is not finite")?;
-    record::check(profile.iter().all(is_sum), "a packing fraction is negative or not finite")?;
-    record::check(profile.len() <= MOST_BINS, "its profile is higher than any")?;
-    record::check(*count == samples.len() as u64, "its profile is not of its samples")
-}
-
-fn is_finite(sample: &Sample) -> bool {
-    let flow = [sample.one_roll, sample.two_rolls, sample.height, sample.vertical_temperature];
-    let energies = [sample.translational_energy, sample.rotational_energy, sample.energy_change];
-    flow.iter().chain(&energies).all(|number| number.is_finite())
 }
 
 /// Convection, layers and energy loss in a record of the box.

@@ -74,13 +74,6 @@ impl Specimen {
 #[test]
 fn a_record_with_impossible_numbers_is_damaged() {
     let mut record = Specimen::record("impossible");
-    let sample = record.study.record(0, 1).unwrap().unwrap().samples()[1];
-    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        record.put(bad, sample.height);
-        record.assert_damaged("a sample is not finite");
-        record.put(bad, sample.translational_energy);
-        record.assert_damaged("a sample is not finite");
-    }
     record.forge(|_| ());
     let time = record.study.record(0, 1).unwrap().unwrap().checkpoint().unwrap().time();
     for bad in [0.0, 2.0 * time, 1e300] {
@@ -98,8 +91,7 @@ fn a_record_with_impossible_numbers_is_damaged() {
 #[test]
 fn what_a_forged_record_said_is_done_again() {
     let mut record = Specimen::record("again");
-    let sample = record.study.record(0, 1).unwrap().unwrap().samples()[0];
-    record.put(f64::NAN, sample.height);
+    record.forge(|contents| contents.push(0));
     let summary = record.study.run(&Control::default().with_verification()).unwrap();
     assert_eq!(summary.redone, [record.scratch.0.join("blocks/0000.log")]);
     assert!(logs::record(&record.scratch.0, 0, 1) == record.contents);

@@ -2,12 +2,10 @@
 //! ramps and points that do not exist.
 
 use std::fs;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{HeightProfile, SampleTimes, Sampled, Snapshot};
-use granular_edmd::simulation::Checkpoint;
 use granular_edmd::{Disk, Fingerprint, Gravity, initial};
 use granular_edmd_study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, RampStatus,
@@ -17,9 +15,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::support::{AnyError, Scratch};
 use support::report::report;
-
-/// Number of files that are still refused.
-static REFUSED: AtomicU32 = AtomicU32::new(0);
 
 /// Disks that are watched by a profile up to a height.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -75,16 +70,6 @@ impl Experiment for Watched {
         vec![Table::new(String::from("layers"), headings, |record| record.samples().to_vec())]
     }
 
-    fn check_measured(
-        &self,
-        _: &[Vec<f64>],
-        _: &Sampled<HeightProfile>,
-        _: Option<&Checkpoint>,
-    ) -> Result<(), ExperimentError> {
-        let refused = REFUSED.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
-        refused.map_or(Ok(()), |_| Err("a \"bad\"\nfile of C:\\data".into()))
-    }
-
     fn state(record: &Record<Self>) -> Option<String> {
         Some(if record.experiment().weight < 0.5 { "light" } else { "heavy" }.to_owned())
     }
@@ -122,9 +107,6 @@ fn names_of_columns_may_be_made_when_the_program_runs() -> Result<(), AnyError> 
             .estimate("layer_1")
             .is_some_and(|layer| layer.mean() == record.mean(|sample| sample[1]).mean())
     );
-    // A file that the experiment refuses, for whatever reason, is done again.
-    REFUSED.store(1, Ordering::Relaxed);
-    assert_eq!(study.run(&Control::default().with_verification())?.redone.len(), 1);
     Ok(())
 }
 
