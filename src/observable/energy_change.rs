@@ -14,8 +14,8 @@ use crate::statistics::BlockedMean;
 /// change of the disk's energy, including the work of the wall.
 ///
 /// A run ends with an error if it belongs to another system than the previous run, or if it goes back in
-/// time. Clear the observer before such a run, or use another one. [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) gives the mean
-/// over several systems.
+/// time. Clear the observer before such a run, or use another one.
+/// [`Estimate::over_repeats`](crate::statistics::Estimate::over_repeats) gives the mean over several systems.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;

@@ -1,4 +1,5 @@
-//! Boundaries: the container in exact numbers; the contract of containers and parts; areas, files and fingerprints.
+//! Boundaries: the container in exact numbers; the contract of containers and parts; areas, files and
+//! fingerprints.
 
 mod areas;
 mod checks;
