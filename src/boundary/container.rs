@@ -11,13 +11,13 @@ use super::conduct::Conduct;
 use super::parts::Parts;
 use super::plane::Plane;
 use super::vector::finite_point;
-use super::{Part, Thermal, Wall, WallError};
+use super::{Thermal, Wall, WallError};
 use crate::collision::CollisionRule;
 use crate::quantity::{accept, positive};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
 
-/// A rectangular container, such as the paper's box, with [parts](Part) of any shape in it. Its lower left
+/// A rectangular container, such as the paper's box, with [parts](super::Part) of any shape in it. Its lower left
 /// corner is at the origin unless it is [shifted](Self::shifted).
 ///
 /// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
@@ -284,7 +284,7 @@ impl Container {
 
 crate::gate::from_file! {
     Container {
-        corner: DVec2, width: f64, height: Option<f64>, walls: Vec<Plane>, parts: Vec<(String, Part)>
+        corner: DVec2, width: f64, height: Option<f64>, walls: Vec<Plane>, parts: Vec<(String, super::Part)>
     } => {
         let has = |wall: Wall| walls.iter().any(|plane| plane.wall == wall);
         let mut container = match height {

@@ -24,11 +24,11 @@ pub enum Partner {
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::observable::{Collision, EnergyChange, Observer, Partner};
 ///
-/// // An observer sees a collision with the floor, without a simulation.
+/// // An observer sees a collision of two disks, without a simulation.
 /// let (contact, impulse) = (Contact::new(2.0, 0.0, 1.0, 1.0 / 3.0), Impulse::new(3.0, 0.0));
 /// let mut energy_change = EnergyChange::default();
-/// energy_change.on_collision(&Collision::new(0.5, 7, Partner::Wall(0), contact, impulse));
-/// assert_eq!(energy_change.wall(0).mean(), -1.5);
+/// energy_change.on_collision(&Collision::new(0.5, 7, Partner::Disk(8), contact, impulse));
+/// assert_eq!(energy_change.disks().mean(), -1.5);
 ///
 /// let mut collision = Collision::new(0.5, 7, Partner::Disk(8), contact, impulse);
 /// collision.position = DVec2::new(2.0, 3.0);

@@ -11,6 +11,9 @@ use granular_edmd::{Disk, Fingerprint, Flight, Kind, ParameterError};
 use crate::Half::{Blind, Honest, Informed, Survivor};
 use crate::{Fault, judge, one_in};
 
+/// A search for the first touch of the honest boundary, changed.
+type Search = dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>;
+
 /// An honest boundary behind functions that change its answers. At first, they change nothing.
 pub(crate) struct Altered {
     honest: Box<dyn Boundary>,
@@ -23,7 +26,7 @@ pub(crate) struct Altered {
     /// The origin, and the number of walls.
     walls: fn(f64, usize) -> usize,
     may_touch: fn(&dyn Boundary, &Region, f64) -> bool,
-    touch: Box<dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>>,
+    touch: Box<Search>,
     /// The surface, the position of the disk, and the time.
     surface: fn(&mut Surface<'_>, DVec2, f64),
     overlap: fn(&dyn Boundary, &Probe) -> Option<Overlap>,
@@ -479,6 +482,11 @@ fn overlaps_and_areas() -> Vec<Fault<Altered>> {
                 region.min.is_finite() && region.max.is_finite() && honest.may_touch(region, radius)
             }),
         ),
+    ]
+}
+
+fn frames() -> Vec<Fault<Altered>> {
+    vec![
         Fault(
             Blind,
             "the domain follows the floor",
@@ -624,7 +632,12 @@ fn violations_name_their_numbers() {
 
 #[test]
 fn the_check_of_boundaries_finds_planted_faults() {
-    let all = surfaces().into_iter().chain(touches()).chain(overlaps_and_areas()).chain(reactions());
+    let all = surfaces()
+        .into_iter()
+        .chain(touches())
+        .chain(overlaps_and_areas())
+        .chain(frames())
+        .chain(reactions());
     judge("boundary", all.collect(), |mut boundary: Altered| {
         (1..=3).try_for_each(|seed| laws::check(&mut boundary, 0.5, 1.0, seed))
     });

@@ -21,15 +21,17 @@ struct Altered {
     hint: fn(&mut Vec<usize>),
 }
 
-const HONEST: Altered = Altered {
-    due: Vec::new(),
-    sets: 0,
-    asked: Cell::new(0),
-    reset: |due, times| *due = times.to_vec(),
-    set: |due, disk, time, _| due[disk] = time,
-    answer: |due, _| earliest(due),
-    hint: |_| (),
-};
+fn honest() -> Altered {
+    Altered {
+        due: Vec::new(),
+        sets: 0,
+        asked: Cell::new(0),
+        reset: |due, times| *due = times.to_vec(),
+        set: |due, disk, time, _| due[disk] = time,
+        answer: |due, _| earliest(due),
+        hint: |_| (),
+    }
+}
 
 impl EventScheduler for Altered {
     fn reset(&mut self, due: &[f64]) {
@@ -65,15 +67,15 @@ fn last_of_ties(due: &[f64]) -> (usize, f64) {
 }
 
 fn answering(answer: fn(&[f64], u64) -> (usize, f64)) -> Altered {
-    Altered { answer, ..HONEST }
+    Altered { answer, ..honest() }
 }
 
 fn setting(set: fn(&mut Vec<f64>, usize, f64, u64)) -> Altered {
-    Altered { set, ..HONEST }
+    Altered { set, ..honest() }
 }
 
 fn resetting(reset: fn(&mut Vec<f64>, &[f64])) -> Altered {
-    Altered { reset, ..HONEST }
+    Altered { reset, ..honest() }
 }
 
 type Maker = fn() -> Altered;
@@ -163,12 +165,12 @@ fn calls() -> Vec<Fault<Maker>> {
                 (disk, if asked % 3 == 0 { f64::INFINITY } else { time })
             })
         }),
-        Fault(Blind, "a hint clears the disks that it is given", || Altered { hint: Vec::clear, ..HONEST }),
+        Fault(Blind, "a hint clears the disks that it is given", || Altered { hint: Vec::clear, ..honest() }),
         Fault(Informed, "a hint removes disks that are named twice", || Altered {
             hint: Vec::dedup,
-            ..HONEST
+            ..honest()
         }),
-        Fault(Honest, "scan", || HONEST),
+        Fault(Honest, "scan", honest),
     ]
 }
 
