@@ -1,9 +1,8 @@
 //! Containers and their parts.
 
 use edmd::Kind;
-use edmd::boundary::{Boundary as _, Brick, Container, Part, Thermal, Vessel, VesselError, Wall, WallError};
+use edmd::boundary::{Boundary as _, Brick, Container, Part, Thermal, Wall, WallError};
 use edmd::glam::DVec2;
-use edmd::wall::KnownMotion;
 use numpy::PyArray2;
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
@@ -15,9 +14,6 @@ use crate::disks::Disks;
 use crate::errors::invalid;
 use crate::motion::{Motion, PyPiston};
 use crate::rule::AnyRule;
-
-/// The type of all boundaries in simulations from Python.
-pub(crate) type Walls = Vessel;
 
 /// A thermal wall of a temperature (energy): disks leave it with random velocities.
 ///
@@ -73,7 +69,7 @@ fn with_walls(container: Container, walls: Option<&Bound<'_, PyDict>>) -> PyResu
     for (name, setting) in walls.into_iter().flatten() {
         container = set(container, wall(name.extract()?)?, &setting)?;
     }
-    Ok(PyContainer(Vessel::new(container)))
+    Ok(PyContainer(container))
 }
 
 /// A box for disks, with parts of any shape in it. It never changes: each method returns another one.
@@ -82,7 +78,7 @@ fn with_walls(container: Container, walls: Option<&Bound<'_, PyDict>>) -> PyResu
 /// `Thermal`, a rule or `"absorbing"`, or a list of these.
 #[pyclass(name = "Container", module = "granular_edmd", frozen, from_py_object)]
 #[derive(Clone)]
-pub(crate) struct PyContainer(pub(crate) Walls);
+pub(crate) struct PyContainer(pub(crate) Container);
 
 impl Data for PyContainer {
     fn data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -96,15 +92,8 @@ impl Data for PyContainer {
 data_class!(PyContainer);
 
 impl PyContainer {
-    /// Returns the same container with other walls of its own, and with the same parts.
-    fn changed(&self, change: impl FnOnce(Container) -> PyResult<Container>) -> PyResult<Self> {
-        let empty = Vessel::new(change(self.0.container().clone())?);
-        let parts = self.0.names().filter_map(|name| Some((name, self.0.part(name)?.clone())));
-        parts.fold(Ok(empty), |vessel, (name, part)| vessel?.with(name, part)).map(Self).map_err(invalid)
-    }
-
     fn with(&self, change: impl FnOnce(Container) -> Result<Container, WallError>) -> PyResult<Self> {
-        self.changed(|container| change(container).map_err(invalid))
+        change(self.0.clone()).map(Self).map_err(invalid)
     }
 }
 
@@ -134,11 +123,11 @@ impl PyContainer {
             Ok((name.extract::<String>()?, part.extract::<PyPart>()?.0))
         };
         let parts = parts.iter().map(named).collect::<PyResult<Vec<_>>>()?;
-        Vessel::around(parts).map(Self).map_err(invalid)
+        Container::around(parts).map(Self).map_err(invalid)
     }
     /// Returns the same container with a motion, a `Piston`, a `Thermal`, a rule or `"absorbing"` at a wall.
     fn with_wall(&self, name: &str, setting: &Bound<'_, PyAny>) -> PyResult<Self> {
-        self.changed(|container| set(container, wall(name)?, setting))
+        set(self.0.clone(), wall(name)?, setting).map(Self)
     }
     /// Returns the same container with another kind of a wall, which rules by kind read.
     fn with_kind(&self, name: &str, kind: u16) -> PyResult<Self> {
@@ -173,39 +162,33 @@ impl PyContainer {
     }
     /// Returns the same container with an additional part.
     fn with_part(&self, name: String, part: &PyPart) -> PyResult<Self> {
-        self.0.clone().with(name, part.0.clone()).map(Self).map_err(invalid)
+        self.with(|container| container.with_part(name, part.0.clone()))
     }
     /// Returns the same container without this part.
     fn without_part(&self, name: &str) -> PyResult<Self> {
-        let mut walls = self.0.clone();
-        walls.remove(name).map_err(invalid)?;
-        Ok(Self(walls))
+        let mut container = self.0.clone();
+        container.remove_part(name).map_err(invalid)?;
+        Ok(Self(container))
     }
     /// Returns the same container with a fixed round peg for each disk, with its position, radius and kind.
     ///
     /// The parts are named "peg 0", "peg 1" and so on.
     fn with_pegs(&self, disks: &Disks) -> PyResult<Self> {
-        let mut walls = self.0.clone();
-        for (number, disk) in disks.0.iter().enumerate() {
-            let peg = Part::peg(disk.position(), disk.radius()).map_err(invalid)?;
-            let peg = if disk.kind() == Kind::new(0) { peg } else { peg.with_kind(disk.kind()) };
-            walls = walls.with(format!("peg {number}"), peg).map_err(invalid)?;
-        }
-        Ok(Self(walls))
+        self.with(|container| container.with_pegs(disks.0.iter().copied()))
     }
     /// The names of the parts, in the order of their walls.
     #[getter]
     fn parts(&self) -> Vec<String> {
-        self.0.names().map(ToOwned::to_owned).collect()
+        self.0.part_names().map(ToOwned::to_owned).collect()
     }
     /// The names of all walls: the container's own, then those of its parts.
     #[getter]
     pub(crate) fn walls(&self) -> Vec<String> {
-        (0..self.0.wall_count()).map(|wall| self.0.wall_name(wall).into_owned()).collect()
+        (0..self.0.wall_count()).map(|wall| self.0.wall(wall, 0.0).name.into_owned()).collect()
     }
     /// Returns the indices of the walls of a part.
     fn walls_of(&self, part: &str) -> PyResult<Vec<usize>> {
-        let walls = self.0.walls(part).ok_or_else(|| PyKeyError::new_err(format!("no part {part:?}")))?;
+        let walls = self.0.walls_of(part).ok_or_else(|| PyKeyError::new_err(format!("no part {part:?}")))?;
         Ok(walls.collect())
     }
     /// The rectangle of the container: (left, right, bottom, top); the top of an open one is infinite.
@@ -217,7 +200,7 @@ impl PyContainer {
     /// Returns the lines of all walls at a time, for pictures: arrays of shape (points, 2).
     #[pyo3(signature = (time=0.0))]
     fn lines<'py>(&self, py: Python<'py>, time: f64) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
-        self.0.wall_lines(time).into_iter().map(|line| to_rows(py, line)).collect()
+        (0..self.0.wall_count()).map(|wall| to_rows(py, self.0.wall(wall, time).line())).collect()
     }
     fn __repr__(&self) -> String {
         let (left, right, bottom, top) = self.domain();
@@ -243,7 +226,7 @@ impl Data for PyPart {
 data_class!(PyPart);
 
 impl PyPart {
-    fn checked(part: Result<Part, VesselError>) -> PyResult<Self> {
+    fn checked(part: Result<Part, WallError>) -> PyResult<Self> {
         part.map(Self).map_err(invalid)
     }
 }
@@ -318,8 +301,11 @@ impl PyPart {
     }
     /// Returns the same part, which moves along a direction.
     fn with_motion(&self, direction: Pair, motion: Motion) -> PyResult<Self> {
-        let motion: KnownMotion = motion.0;
-        Self::checked(self.0.clone().with_motion(vector(direction), motion))
+        Self::checked(self.0.clone().with_motion(vector(direction), motion.0))
+    }
+    /// Returns the same part, which disks push along a direction: a `Piston`.
+    fn with_piston(&self, direction: Pair, piston: PyPiston) -> PyResult<Self> {
+        Self::checked(self.0.clone().with_piston(vector(direction), piston.0))
     }
     /// Returns the same part, which turns about a point at this angular velocity (1/time), counterclockwise.
     fn with_rotation(&self, about: Pair, angular_velocity: f64) -> PyResult<Self> {
@@ -348,7 +334,7 @@ impl PyPart {
 pub(crate) struct PyBrick(Brick);
 
 impl PyBrick {
-    fn checked(brick: Result<Brick, VesselError>) -> PyResult<Self> {
+    fn checked(brick: Result<Brick, WallError>) -> PyResult<Self> {
         brick.map(Self).map_err(invalid)
     }
 }

@@ -2,15 +2,13 @@
 
 mod functions;
 mod measures;
-mod walls;
 
 pub(crate) use functions::{PyCollision, on_collision, on_sample, series, stop_when};
 pub(crate) use measures::{
-    collision_counts, collision_histograms, crossings, energy_change, energy_change_profile, fields,
-    height_profile, mean_squared_displacement, pair_correlation, recorder, stress, velocity_correlation,
-    velocity_distribution,
+    arrivals, collision_counts, collision_histograms, crossings, energy_change, energy_change_profile,
+    fields, height_profile, mean_squared_displacement, pair_correlation, recorder, stress,
+    velocity_correlation, velocity_distribution, wall_stress,
 };
-pub(crate) use walls::{arrivals, wall_stress};
 
 use edmd::Kind;
 use edmd::observable::{BetweenKinds, ByCollisions, Observer, OfKind, Table};
@@ -46,12 +44,6 @@ pub(crate) trait Watch: Observer + Send + Sync {
             columns.set_item(heading.name(), to_array(py, rows.iter().map(|row| row[index])))?;
         }
         Ok(columns)
-    }
-
-    /// Receives the names of the walls of the next run, and may return the observer that takes its place.
-    fn prepared(&self, walls: &[String]) -> PyResult<Option<Box<dyn Watch>>> {
-        let _ = walls;
-        Ok(None)
     }
 }
 

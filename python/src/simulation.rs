@@ -7,6 +7,7 @@ pub(crate) use samples::PySamples;
 
 use std::sync::Arc;
 
+use edmd::boundary::Container;
 use edmd::glam::DVec2;
 use edmd::simulation::Checkpoint;
 use edmd::{Disk, Gravity, Simulation};
@@ -15,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::arguments::{Every, Pair, vector};
-use crate::boundary::{PyContainer, Walls};
+use crate::boundary::PyContainer;
 use crate::data::to_data;
 use crate::disks::{Disks, disk_columns};
 use crate::driving::{PyDriving, PyInlet};
@@ -24,7 +25,7 @@ use crate::observable::{PyObservable, PySnapshot};
 use crate::rule::{AnyRule, PyRule, SharedRule};
 use run::{Observers, Wishes};
 
-type Engine = Simulation<SharedRule, Walls>;
+type Engine = Simulation<SharedRule, Container>;
 
 /// An argument that is gravity: a number, downward, or a vector.
 struct AnyGravity(Gravity);

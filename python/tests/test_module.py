@@ -271,12 +271,12 @@ def test_a_piston_falls():
 
 def test_pegs_and_walls_by_name():
     board = ge.Container.closed(20, 20).with_pegs(ge.Disks([[5, 5], [15, 5]], 1.0))
-    assert board.parts == ["peg 0", "peg 1"]
+    assert board.parts == ["peg 0", "peg 1"] == board.walls[-2:]
     disks = ge.with_maxwellian_velocities(ge.lattice(board, 50, 0.5), 1.0, 1)
     run, stress = ge.Simulation(ge.Elastic(), board, disks), ge.WallStress({"left": 20.0}, every=5.0)
     run.run_until(50.0, observe=stress)
     assert stress.table()
-    with pytest.raises(ValueError, match="north"):
+    with pytest.raises(ge.RunError, match="north"):
         run.run_for(1.0, observe=ge.Arrivals(["north"], every=1.0))
 
 

@@ -1,12 +1,13 @@
 //! The measures of the library as observers.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use edmd::Kind;
 use edmd::observable::{
-    Accumulator, CollisionCounts, CollisionHistograms, Crossings, EnergyChange, EnergyChangeProfile, Fields,
-    HeightProfile, MeanSquaredDisplacement, PairCorrelation, Sampled, Series, Stress, Table, TimeCorrelation,
-    Velocities, VelocityDistribution,
+    Accumulator, Arrivals, CollisionCounts, CollisionHistograms, Crossings, EnergyChange,
+    EnergyChangeProfile, Fields, HeightProfile, MeanSquaredDisplacement, PairCorrelation, Sampled, Series,
+    Stress, Table, TimeCorrelation, Velocities, VelocityDistribution, WallStress,
 };
 use edmd_files::{ByEnding, Recorder};
 use pyo3::prelude::*;
@@ -36,6 +37,8 @@ watch! {
     TimeCorrelation<Velocities>;
     CollisionCounts;
     CollisionHistograms;
+    WallStress;
+    Arrivals: |own| ["rate" => own.rate().ok()];
     EnergyChange: |own| ["disks" => Some(own.disks().estimate())];
     Crossings: |own| ["flux" => own.flux().ok()];
     MeanSquaredDisplacement: |own| ["diffusion_coefficient" => Some(own.diffusion_coefficient())];
@@ -78,11 +81,17 @@ pub(crate) fn collision_counts() -> PyObserver {
 }
 
 /// Returns histograms of collisions: their obliqueness, closing speeds up to `speed` (length/time) and
-/// impulses up to `impulse` (mass length/time).
+/// impulses up to `impulse` (mass length/time); of two disks, or with the walls of these names.
 #[pyfunction]
-#[pyo3(name = "CollisionHistograms")]
-pub(crate) fn collision_histograms(speed: f64, impulse: f64, bins: usize) -> PyResult<PyObserver> {
-    CollisionHistograms::new(speed, impulse, bins).map(PyObserver::of).map_err(invalid)
+#[pyo3(name = "CollisionHistograms", signature = (speed, impulse, bins, *, walls=Vec::new()))]
+pub(crate) fn collision_histograms(
+    speed: f64,
+    impulse: f64,
+    bins: usize,
+    walls: Vec<String>,
+) -> PyResult<PyObserver> {
+    let histograms = CollisionHistograms::new(speed, impulse, bins).map_err(invalid)?;
+    Ok(PyObserver::of(walls.into_iter().fold(histograms, CollisionHistograms::with_wall)))
 }
 
 /// Returns an observer of the mean squared displacement (length²) over up to `lags` intervals.
@@ -106,6 +115,22 @@ pub(crate) fn stress(every: Every, corners: Option<(Pair, Pair)>) -> PyResult<Py
     let stress = Stress::new(every.0);
     let stress = corners.map_or(Ok(stress.clone()), |corners| stress.within(region(corners)));
     stress.map(PyObserver::of).map_err(invalid)
+}
+
+/// Returns an observer of the disks that arrive at walls or parts of these names, per interval.
+#[pyfunction]
+#[pyo3(name = "Arrivals")]
+pub(crate) fn arrivals(names: Vec<String>, every: Every) -> PyObserver {
+    PyObserver::of(Arrivals::at(names, every.0))
+}
+
+/// Returns an observer of the pressure and the shear stress (mass/time²) on walls, from their names and
+/// lengths: `{"left": 40.0}`.
+#[pyfunction]
+#[pyo3(name = "WallStress")]
+pub(crate) fn wall_stress(lengths: BTreeMap<String, f64>, every: Every) -> PyResult<PyObserver> {
+    let stress = |stress: WallStress, (name, length)| stress.with_wall(name, length);
+    lengths.into_iter().try_fold(WallStress::new(every.0), stress).map(PyObserver::of).map_err(invalid)
 }
 
 /// Returns an observer of the disks that cross a line between two points (length): forward is from its right

@@ -6,7 +6,6 @@ use edmd::simulation::{Limits, RunEnd};
 use pyo3::prelude::*;
 
 use super::{Engine, PySimulation};
-use crate::boundary::PyContainer;
 use crate::driving::{BoxedDriving, PyDriving};
 use crate::errors::{ParameterError, RunError, or_raised, sentence};
 use crate::observer::{PyObserver, Watch, absent};
@@ -50,17 +49,12 @@ struct Lent<'py> {
 }
 
 impl<'py> Lent<'py> {
-    fn take(&mut self, py: Python<'py>, wishes: &Wishes, walls: &[String]) -> PyResult<()> {
+    fn take(&mut self, py: Python<'py>, wishes: &Wishes) -> PyResult<()> {
         for observer in wishes.observe.iter().flat_map(Observers::list) {
             let observer = observer.bind(py);
             let watch = observer.try_borrow_mut()?.0.take().ok_or_else(absent)?;
             self.observers.push(observer.clone());
             self.watches.push(watch);
-        }
-        for watch in &mut self.watches {
-            if let Some(ready) = watch.prepared(walls)? {
-                *watch = ready;
-            }
         }
         if let Some(driver) = wishes.drive.as_ref().map(|driver| driver.bind(py)) {
             self.driving = Some(driver.try_borrow_mut()?.0.take().ok_or_else(absent)?);
@@ -84,7 +78,7 @@ impl Drop for Lent<'_> {
 /// Runs a simulation, and returns the name of what ended the run.
 pub(super) fn run(simulation: &mut PySimulation, py: Python<'_>, wishes: &Wishes) -> PyResult<&'static str> {
     let mut lent = Lent::default();
-    lent.take(py, wishes, &PyContainer(simulation.run.boundary().clone()).walls())?;
+    lent.take(py, wishes)?;
     let deadline = wishes.max_seconds.map(|seconds| {
         let seconds = Duration::try_from_secs_f64(seconds);
         seconds.map_err(|_| ParameterError::new_err("max_seconds: a number that is not negative is needed"))
