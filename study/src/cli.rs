@@ -40,6 +40,7 @@ mod replay;
 mod terminal;
 
 use std::error::Error;
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -51,6 +52,7 @@ use serde_json::json;
 use super::errors::{PlanError, StudyError, chain};
 use super::{Control, Experiment, Plan, Progress, RampStatus, Record, Study};
 use arguments::{Arguments, Command, Manner};
+pub use plans::example;
 use terminal::{STOP, Watch, listen, read, say};
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` prints; the JSON of
@@ -79,7 +81,19 @@ type Failure = Box<dyn Error>;
 ///
 /// The command `new` writes the plan that `example` returns.
 pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
-    let ended = match Arguments::parse().command {
+    ExitCode::from(main_from(std::env::args_os(), example))
+}
+
+/// Runs the command line with these arguments, of which the first is the name of the program, and returns the
+/// exit code.
+///
+/// A program in another language that calls this library uses it in place of [`main`]. A command line that
+/// cannot be read, and a request for help, end the process.
+pub fn main_from<E: Experiment>(
+    arguments: impl IntoIterator<Item = OsString>,
+    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
+) -> u8 {
+    let ended = match Arguments::parse_from(arguments).command {
         Command::New { file } => plans::new(example, file.as_deref()),
         Command::Explain { key } => plans::explain::<E>(key.as_deref()),
         Command::Check { plan } => plans::check::<E>(&plan),
@@ -94,17 +108,17 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         Command::Bench { plan, json, quick } => plans::bench::<E>(&plan, json, quick),
     };
     match ended {
-        Ok(end) => ExitCode::from(end as u8),
+        Ok(end) => end as u8,
         Err(error) => report(error.as_ref()),
     }
 }
 
 /// Prints an error, and returns its exit code: 2 if the plan is at fault, and otherwise 1.
-fn report(error: &(dyn Error + 'static)) -> ExitCode {
+fn report(error: &(dyn Error + 'static)) -> u8 {
     let _ = writeln!(io::stderr(), "error: {}", chain(error));
     let of_study = error.downcast_ref::<StudyError>();
     let is_of_plan = matches!(of_study, Some(StudyError::Plan(_) | StudyError::Unreadable { .. }));
-    ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
+    if is_of_plan || error.is::<PlanError>() { 2 } else { 1 }
 }
 
 /// Opens or creates the study of a plan in a folder.

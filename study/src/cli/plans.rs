@@ -14,10 +14,29 @@ use super::arguments::Arguments;
 use super::terminal::{read, say, write_new};
 use super::{End, Failure, LISTED, core_time};
 use crate::experiment::columns::{Meanings, OF_TABLES, find, meanings, of_error};
-use crate::{Column, Experiment, Plan, PlanError, Ramp, StudyError, Table, parameters};
+use crate::vibrated_box::{Base, VibratedBox};
+use crate::{
+    Axis, Column, Course, Experiment, Plan, PlanError, Protocol, Ramp, StudyError, Table, parameters,
+};
 
 /// Largest number of values of a ramp that `check` prints in full.
 const MOST_VALUES: usize = 60;
+
+/// Returns the plan of the program `granular-edmd`: a box smaller than the paper's, whose study takes a few
+/// minutes.
+///
+/// # Errors
+/// None: all its numbers are possible.
+pub fn example() -> Result<Plan<VibratedBox>, PlanError> {
+    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+    let experiment = VibratedBox::new(200, 30.0, base)
+        .with_height(80.0)
+        .with_gravity(0.015_625)
+        .with_contact_duration(1e-4);
+    Plan::new(experiment, Protocol::new(2000, 100, 10)?, 1)?
+        .with_ramp(Ramp::new("friction", [0.01, 0.03, 0.06, 0.1], Course::Up)?)?
+        .with_axis(Axis::new("inelasticity", [0.0, 0.01])?)
+}
 
 pub(super) fn new<E: Experiment>(
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,

@@ -1,0 +1,154 @@
+//! Observers: what a run shows its samples and collisions to.
+
+mod functions;
+mod measures;
+
+pub(crate) use functions::{PyCollision, on_collision, on_sample, series, stop_when};
+pub(crate) use measures::{
+    arrivals, collision_counts, collision_histograms, crossings, energy_change, energy_change_profile,
+    fields, height_profile, mean_squared_displacement, pair_correlation, recorder, stress,
+    velocity_correlation, velocity_distribution, wall_stress,
+};
+
+use edmd::Kind;
+use edmd::observable::{BetweenKinds, ByCollisions, Observer, OfKind, Table};
+use edmd::statistics::Estimate;
+use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arguments::{Column, to_array};
+use crate::errors::invalid;
+use crate::statistics::{PyEstimate, averaged};
+
+/// The name of a result, and its value once it can be told.
+pub(crate) type Named = (&'static str, Option<Estimate>);
+
+/// An observer of Rust, with its results.
+pub(crate) trait Watch: Observer + Send + Sync {
+    fn table(&self) -> Option<&dyn Table> {
+        None
+    }
+
+    /// Returns the results that are single numbers.
+    fn results(&self) -> Vec<Named> {
+        Vec::new()
+    }
+
+    /// Returns the table as arrays by the names of the columns.
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let table = self.table().ok_or_else(|| PyTypeError::new_err("this observer has no table"))?;
+        let rows: Vec<Vec<f64>> = table.rows().collect();
+        let columns = PyDict::new(py);
+        for (index, heading) in table.headings().iter().enumerate() {
+            columns.set_item(heading.name(), to_array(py, rows.iter().map(|row| row[index])))?;
+        }
+        Ok(columns)
+    }
+}
+
+/// Passes everything on to the watch inside an adapter.
+macro_rules! adapters {
+    ($($adapter:ident),+) => {$(
+        impl Watch for $adapter<Box<dyn Watch>> {
+            fn table(&self) -> Option<&dyn Table> {
+                self.inner().table()
+            }
+            fn results(&self) -> Vec<Named> {
+                self.inner().results()
+            }
+            fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+                self.inner().columns(py)
+            }
+        }
+    )+};
+}
+
+adapters!(OfKind, BetweenKinds, ByCollisions);
+
+/// An observer of runs: give it to `run_until(…, observe=…)`, and read its table or results afterwards.
+///
+/// A run takes the observer out of the object and puts it back at its end. The next run continues it.
+#[pyclass(name = "Observer", module = "granular_edmd")]
+pub(crate) struct PyObserver(pub(crate) Option<Box<dyn Watch>>);
+
+impl PyObserver {
+    pub(crate) fn of(watch: impl Watch + 'static) -> Self {
+        Self(Some(Box::new(watch)))
+    }
+
+    fn watch(&self) -> PyResult<&dyn Watch> {
+        self.0.as_deref().ok_or_else(absent)
+    }
+
+    /// Moves the observer into an adapter.
+    fn adapted<W: Watch + 'static>(
+        &mut self,
+        adapter: impl FnOnce(Box<dyn Watch>) -> PyResult<W>,
+    ) -> PyResult<Self> {
+        adapter(self.0.take().ok_or_else(absent)?).map(Self::of)
+    }
+}
+
+/// Returns the exception for an observer that is in use.
+pub(crate) fn absent() -> PyErr {
+    PyRuntimeError::new_err("this observer is used by a run or by another observer, or it is given twice")
+}
+
+#[pymethods]
+impl PyObserver {
+    /// Returns the table: a dictionary of arrays, as `pandas.DataFrame` and `polars.DataFrame` take it.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.watch()?.columns(py)
+    }
+    /// Returns a column of the table.
+    fn __getitem__<'py>(&self, py: Python<'py>, column: &str) -> PyResult<Bound<'py, PyAny>> {
+        let columns = self.table(py)?;
+        let unknown = || PyKeyError::new_err(format!("no column {column:?}, but {}", columns.keys()));
+        columns.get_item(column)?.ok_or_else(unknown)
+    }
+    /// The units of the columns by their names, in words; "1" for a pure number.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let units = PyDict::new(py);
+        for heading in self.watch()?.table().map(Table::headings).unwrap_or_default() {
+            units.set_item(heading.name(), heading.unit())?;
+        }
+        Ok(units)
+    }
+    /// Returns the mean of a column without its first `skip` rows, with an error that accounts for correlation.
+    #[pyo3(signature = (column, *, skip=0))]
+    fn mean(&self, py: Python<'_>, column: &str, skip: usize) -> PyResult<PyEstimate> {
+        let numbers: Column<'_> = self.__getitem__(py, column)?.extract()?;
+        let rows: Vec<f64> = numbers.as_array().iter().skip(skip).copied().collect();
+        averaged(to_array(py, rows).extract()?)
+    }
+    /// The results that are single numbers, by name: an `Estimate`, or `None` before there are enough samples.
+    #[getter]
+    fn results<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let results = PyDict::new(py);
+        for (name, estimate) in self.watch()?.results() {
+            results.set_item(name, estimate.map(PyEstimate))?;
+        }
+        Ok(results)
+    }
+    /// Returns the observer of disks of one kind; this object gives its observer away.
+    fn of_kind(&mut self, kind: u16) -> PyResult<Self> {
+        self.adapted(|inner| Ok(OfKind::new(Kind::new(kind), inner)))
+    }
+    /// Returns the observer of collisions between two kinds; this object gives its observer away.
+    fn between_kinds(&mut self, first: u16, second: u16) -> PyResult<Self> {
+        self.adapted(|inner| Ok(BetweenKinds::new(Kind::new(first), Kind::new(second), inner)))
+    }
+    /// Returns the observer with a sample after each number of collisions, in place of its times; this object
+    /// gives its observer away.
+    fn by_collisions(&mut self, count: u64) -> PyResult<Self> {
+        self.adapted(|inner| ByCollisions::new(count, inner).map_err(invalid))
+    }
+    fn __repr__(&self) -> String {
+        let names = self.0.as_ref().and_then(|watch| Some(watch.table()?.headings()));
+        let names = names.unwrap_or_default();
+        let names: Vec<&str> = names.iter().map(|heading| heading.name()).collect();
+        format!("<Observer of {}>", names.join(", "))
+    }
+}
