@@ -178,8 +178,8 @@ fn a_format_is_chosen_by_value_or_by_ending() {
     assert!(Recorder::create(scratch.path("value.gsd"), Vtk, times()).is_err());
 }
 
-/// The present after pieces of 0.9 is a rounding before a beat, which a clock that begins anew would take for
-/// one on the start of the run.
+/// Pieces of 0.9 end a rounding before a sampling time, which a clock that begins anew would take for
+/// one at the start of the run.
 #[test]
 fn a_kill_between_two_pieces_loses_no_frame() {
     let scratch = Scratch::new("pieces");
@@ -190,7 +190,8 @@ fn a_kill_between_two_pieces_loses_no_frame() {
         for _ in 0..30 {
             run.run_until(run.time() + 0.9, &mut recorder).unwrap();
         }
-        assert_eq!(run.time(), 26.999_999_999_999_986);
+        // A run that ends a rounding before a sample ends at the sample.
+        assert_eq!(run.time(), 27.0);
         drop(recorder);
         let mut recorder = Recorder::append(&path, ByEnding, times).unwrap();
         run.run_until(30.0, &mut recorder).unwrap();
