@@ -390,19 +390,26 @@ fn a_compressed_file_is_one_member_of_the_same_text() {
 #[test]
 fn a_damaged_compressed_file_is_not_gone_on_with() {
     let scratch = Scratch::new("damaged");
+    // Whatever can be unpacked.
     let text = |packed: &[u8]| {
         let mut text = Vec::new();
-        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(packed), &mut text).map(|_| text).ok()
+        let _ = std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(packed), &mut text);
+        text
     };
-    for name in ["a.xyz.gz", "a.dump.gz"] {
+    for (name, head) in [("a.xyz.gz", "Properties="), ("a.dump.gz", "ITEM: TIMESTEP")] {
         let path = scratch.path(name);
         let (sound, _) = recorded(&path);
         for place in (10..sound.len() - 10).step_by(131) {
             let mut bytes = sound.clone();
             bytes[place] ^= 4;
             fs::write(&path, &bytes).unwrap();
-            // Another way to write the same text is no damage: a repetition may count from elsewhere.
-            assert!(append(&path).is_err() || text(&bytes) == text(&sound), "{name}, byte {place}");
+            // Another way to write the same text is no damage: a repetition may count from elsewhere. Damage may
+            // also look like a last frame that was not finished, and the frames before it are then the same.
+            let (right, found) = (text(&sound), text(&bytes));
+            let same = right.iter().zip(&found).take_while(|(one, other)| one == other).count();
+            let begun = String::from_utf8_lossy(&right[..same]).matches(head).count();
+            let is_sound = |recorder: &Recorder| recorder.times().len() < begun || right == found;
+            assert!(append(&path).as_ref().map_or(true, is_sound), "{name}, byte {place}");
             assert!(fs::read(&path).unwrap() == bytes, "{name}, byte {place}");
         }
         fs::write(&path, sound).unwrap();
@@ -514,10 +521,10 @@ fn a_damaged_file_is_left_or_cut_at_a_whole_frame() {
             let mut bytes = whole.clone();
             bytes[place] ^= 0x15;
             fs::write(&path, &bytes).unwrap();
-            // Only a line more or less in the last frame looks like a frame that was not finished.
-            let least = if name.ends_with("gz") { 6 } else { 5 };
+            // A line more or less in the last frame looks like a frame that was not finished, and so does damage
+            // in the last block of a compressed file.
             match append(&path) {
-                Ok(recorder) => assert!((least..=6).contains(&recorder.times().len()), "{name} {place}"),
+                Ok(recorder) => assert!((5..=6).contains(&recorder.times().len()), "{name} {place}"),
                 Err(error) => assert!(!report(&error).is_empty()),
             }
             assert!(fs::read(&path).unwrap() == bytes, "{name} {place}: a look changes nothing");
