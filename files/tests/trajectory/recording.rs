@@ -409,8 +409,10 @@ fn a_damaged_compressed_file_is_not_gone_on_with() {
             let same = right.iter().zip(&found).take_while(|(one, other)| one == other).count();
             let begun = String::from_utf8_lossy(&right[..same]).matches(head).count();
             let is_sound = |recorder: &Recorder| recorder.times().len() < begun || right == found;
-            assert!(append(&path).as_ref().map_or(true, is_sound), "{name}, byte {place}");
-            assert!(fs::read(&path).unwrap() == bytes, "{name}, byte {place}");
+            let opened = append(&path);
+            assert!(opened.as_ref().map_or(true, is_sound), "{name}, byte {place}");
+            // An unfinished end is cut when the file is opened; a file that is refused stays as it is.
+            assert!(opened.is_ok() || fs::read(&path).unwrap() == bytes, "{name}, byte {place}");
         }
         fs::write(&path, sound).unwrap();
         assert_eq!(append(&path).unwrap().times().len(), 6);
@@ -523,11 +525,17 @@ fn a_damaged_file_is_left_or_cut_at_a_whole_frame() {
             fs::write(&path, &bytes).unwrap();
             // A line more or less in the last frame looks like a frame that was not finished, and so does damage
             // in the last block of a compressed file.
-            match append(&path) {
+            let opened = append(&path);
+            match &opened {
                 Ok(recorder) => assert!((5..=6).contains(&recorder.times().len()), "{name} {place}"),
-                Err(error) => assert!(!report(&error).is_empty()),
+                Err(error) => assert!(!report(error).is_empty()),
             }
-            assert!(fs::read(&path).unwrap() == bytes, "{name} {place}: a look changes nothing");
+            // An unfinished end of a compressed file is cut when it is opened.
+            let may_be_cut = name.ends_with("gz") && opened.is_ok();
+            assert!(
+                may_be_cut || fs::read(&path).unwrap() == bytes,
+                "{name} {place}: a look changes nothing"
+            );
         }
     }
 }
