@@ -14,4 +14,4 @@ choose the units: with the diameter and the mass of a disk as 1, all lengths, ma
 """
 
 from ._granular_edmd import *  # noqa: F403
-from ._granular_edmd import __all__, __version__  # noqa: F401
+from ._granular_edmd import __version__ as __version__
