@@ -1,7 +1,7 @@
 //! Ten systems with the parts that users compose, and hashes of their final states.
 //!
-//! The tests of the Python module run the same systems and await the same hashes, from the same file. After an
-//! intended change of results, `GRANULAR_EDMD_BLESS=1` writes the file.
+//! The tests of the Python module run the same systems and await the same hashes, from the same file. After
+//! an intended change of results, `GRANULAR_EDMD_BLESS=1` writes the file.
 
 use std::error::Error;
 use std::fs;

@@ -74,8 +74,8 @@ fn with_walls(container: Container, walls: Option<&Bound<'_, PyDict>>) -> PyResu
 
 /// A box for disks, with parts of any shape in it. It never changes: each method returns another one.
 ///
-/// In `closed` and `open`, the keywords `floor`, `lid`, `left` and `right` give a wall a motion, a `Piston`, a
-/// `Thermal`, a rule or `"absorbing"`, or a list of these.
+/// In `closed` and `open`, the keywords `floor`, `lid`, `left` and `right` give a wall a motion, a `Piston`,
+/// a `Thermal`, a rule or `"absorbing"`, or a list of these.
 #[pyclass(name = "Container", module = "granular_edmd", frozen, from_py_object)]
 #[derive(Clone)]
 pub(crate) struct PyContainer(pub(crate) Container);

@@ -154,8 +154,8 @@ impl Disks {
 impl Disks {
     /// Creates disks from arrays: positions of shape (N, 2), radii and all others of shape (N,).
     ///
-    /// A number in place of an array is the same for all disks. Without them, velocities, angles and spins are
-    /// 0, masses 1, moments of inertia m R²/2 (`inertia_factors` 0.5) and kinds 0.
+    /// A number in place of an array is the same for all disks. Without them, velocities, angles and spins
+    /// are 0, masses 1, moments of inertia m R²/2 (`inertia_factors` 0.5) and kinds 0.
     #[new]
     #[pyo3(signature = (
         positions, radii, *, velocities=None, angles=None, spins=None, masses=None, inertia_factors=None, kinds=None

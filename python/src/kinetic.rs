@@ -43,8 +43,8 @@ fn rule(normal: f64, tangential: f64, friction: f64) -> PyResult<Frictional> {
     Frictional::from_inelasticity(normal, tangential, friction).map_err(invalid)
 }
 
-/// Returns the mean energy change of a collision (energy), in closed form, for `Frictional(normal, tangential,
-/// friction)`.
+/// Returns the mean energy change of a collision (energy), in closed form, for `Frictional(normal,
+/// tangential, friction)`.
 #[pyfunction]
 pub(crate) fn mean_energy_change(
     normal: f64,

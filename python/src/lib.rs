@@ -1,8 +1,8 @@
 //! The extension of the Python package `granular_edmd`: the public parts of the library as classes and
 //! functions.
 //!
-//! Each file is a thin layer over a module of the library. Rules, motions and containers are the library's own
-//! values, so that runs have the same bits as in Rust; errors keep their sentences.
+//! Each file is a thin layer over a module of the library. Rules, motions and containers are the library's
+//! own values, so that runs have the same bits as in Rust; errors keep their sentences.
 
 mod arguments;
 mod boundary;

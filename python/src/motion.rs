@@ -109,8 +109,8 @@ pub(crate) struct PyPiston(pub(crate) Piston);
 impl PyPiston {
     /// Creates a piston.
     ///
-    /// `stops` are its smallest and largest displacement (length), `force` pushes it toward the disks, `spring`
-    /// is a pair (stiffness, center), `start` a pair (displacement, velocity).
+    /// `stops` are its smallest and largest displacement (length), `force` pushes it toward the disks,
+    /// `spring` is a pair (stiffness, center), `start` a pair (displacement, velocity).
     #[new]
     #[pyo3(signature = (mass, stops, *, force=None, spring=None, start=None))]
     fn new(

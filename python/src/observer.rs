@@ -116,14 +116,16 @@ impl PyObserver {
         }
         Ok(units)
     }
-    /// Returns the mean of a column without its first `skip` rows, with an error that accounts for correlation.
+    /// Returns the mean of a column without its first `skip` rows, with an error that accounts for
+    /// correlation.
     #[pyo3(signature = (column, *, skip=0))]
     fn mean(&self, py: Python<'_>, column: &str, skip: usize) -> PyResult<PyEstimate> {
         let numbers: Column<'_> = self.__getitem__(py, column)?.extract()?;
         let rows: Vec<f64> = numbers.as_array().iter().skip(skip).copied().collect();
         averaged(to_array(py, rows).extract()?)
     }
-    /// The results that are single numbers, by name: an `Estimate`, or `None` before there are enough samples.
+    /// The results that are single numbers, by name: an `Estimate`, or `None` before there are enough
+    /// samples.
     #[getter]
     fn results<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let results = PyDict::new(py);

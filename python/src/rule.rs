@@ -20,8 +20,8 @@ pub(crate) type SharedRule = Arc<dyn CollisionRule + Send + Sync>;
 /// The rule of a collision, which decides its impulse.
 ///
 /// `Frictional(0.0, 0.0, 0.03)` and the like create one. Wherever a rule is expected, a function of a
-/// `Contact` can stand, too: it returns the normal impulse (mass length/time), or a pair of the normal and the
-/// tangential impulse. Such a function takes 0.2 to 0.3 µs more for each collision.
+/// `Contact` can stand, too: it returns the normal impulse (mass length/time), or a pair of the normal and
+/// the tangential impulse. Such a function takes 0.2 to 0.3 µs more for each collision.
 #[pyclass(name = "Rule", module = "granular_edmd", frozen)]
 #[derive(Clone)]
 pub(crate) struct PyRule {

@@ -87,15 +87,16 @@ impl PySimulation {
         let run = py.detach(|| builder.build()).map_err(invalid)?;
         Ok(Self { run, rule: rule.0 })
     }
-    /// Runs until an absolute time, and returns why it ended: "time", "collisions", "wall_clock" or "observer".
+    /// Runs until an absolute time, and returns why it ended: "time", "collisions", "wall_clock" or
+    /// "observer".
     ///
     /// `observe` is an observer or a list of them, `drive` a driving. `max_collisions` and `max_seconds` end
     /// the run earlier. `progress` is a function of the time, called about twenty times a second.
     ///
     /// Ctrl-C raises KeyboardInterrupt within 0.1 s, and exceptions in functions in Python come through. In
     /// all cases the next run continues with the bits that this one would have had. Other threads of Python
-    /// work meanwhile, also on other simulations. Functions that the run calls cannot use this simulation: they
-    /// get what they need as an argument.
+    /// work meanwhile, also on other simulations. Functions that the run calls cannot use this simulation:
+    /// they get what they need as an argument.
     #[pyo3(signature = (
         time, *, observe=None, drive=None, max_collisions=None, max_seconds=None, progress=None
     ))]
@@ -271,8 +272,8 @@ impl PySimulation {
         let resume = py.get_type::<Self>().getattr("resume")?;
         Ok((resume, (self.checkpoint(py)?, self.rule.clone(), self.boundary())))
     }
-    /// Returns how deeply a disk of this radius at a point would overlap a disk or a wall (length); 0 if there
-    /// is room.
+    /// Returns how deeply a disk of this radius at a point would overlap a disk or a wall (length); 0 if
+    /// there is room.
     fn overlap(&self, position: Pair, radius: f64) -> PyResult<f64> {
         let disk = Disk::new(vector(position), radius).map_err(invalid)?;
         Ok(self.run.overlap(&disk).map_or(0.0, |overlap| overlap.depth))

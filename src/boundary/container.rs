@@ -17,8 +17,8 @@ use crate::quantity::{accept, positive};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
 
-/// A rectangular container, such as the paper's box, with [parts](super::Part) of any shape in it. Its lower left
-/// corner is at the origin unless it is [shifted](Self::shifted).
+/// A rectangular container, such as the paper's box, with [parts](super::Part) of any shape in it. Its lower
+/// left corner is at the origin unless it is [shifted](Self::shifted).
 ///
 /// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
 /// normal (which points inward), its own rule, a temperature, or a kind. Parts are added, replaced and

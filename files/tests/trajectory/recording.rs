@@ -403,8 +403,9 @@ fn a_damaged_compressed_file_is_not_gone_on_with() {
             let mut bytes = sound.clone();
             bytes[place] ^= 4;
             fs::write(&path, &bytes).unwrap();
-            // Another way to write the same text is no damage: a repetition may count from elsewhere. Damage may
-            // also look like a last frame that was not finished, and the frames before it are then the same.
+            // Another way to write the same text is no damage: a repetition may count from elsewhere. Damage
+            // may also look like a last frame that was not finished, and the frames before it are then the
+            // same.
             let (right, found) = (text(&sound), text(&bytes));
             let same = right.iter().zip(&found).take_while(|(one, other)| one == other).count();
             let begun = String::from_utf8_lossy(&right[..same]).matches(head).count();
@@ -523,8 +524,8 @@ fn a_damaged_file_is_left_or_cut_at_a_whole_frame() {
             let mut bytes = whole.clone();
             bytes[place] ^= 0x15;
             fs::write(&path, &bytes).unwrap();
-            // A line more or less in the last frame looks like a frame that was not finished, and so does damage
-            // in the last block of a compressed file.
+            // A line more or less in the last frame looks like a frame that was not finished, and so does
+            // damage in the last block of a compressed file.
             let opened = append(&path);
             match &opened {
                 Ok(recorder) => assert!((5..=6).contains(&recorder.times().len()), "{name} {place}"),

@@ -78,7 +78,8 @@ impl Observer for OnSamples {
 }
 
 impl Watch for OnSamples {
-    /// Returns the times, and the values as arrays: by key if they are dictionaries, and otherwise as "value".
+    /// Returns the times, and the values as arrays: by key if they are dictionaries, and otherwise as
+    /// "value".
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let Use::Keep { times, values } = &self.answers else {
             return Err(PyTypeError::new_err("this observer has no table"));
@@ -99,10 +100,11 @@ impl Watch for OnSamples {
     }
 }
 
-/// Returns a series: an observable, several in a list, or the values of a function of a `Snapshot`, over time.
+/// Returns a series: an observable, several in a list, or the values of a function of a `Snapshot`, over
+/// time.
 ///
-/// The table of a function has the columns `time` and `value`, or the keys of the dictionaries that it returns.
-/// A sample by a function takes some 10 µs.
+/// The table of a function has the columns `time` and `value`, or the keys of the dictionaries that it
+/// returns. A sample by a function takes some 10 µs.
 #[pyfunction]
 #[pyo3(name = "Series")]
 pub(crate) fn series(observable: Bound<'_, PyAny>, every: Every) -> PyResult<PyObserver> {

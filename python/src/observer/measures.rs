@@ -194,8 +194,8 @@ pub(crate) fn energy_change_profile(
     EnergyChangeProfile::new(bottom, top, layers).map(|profile| sampled(profile, every)).map_err(invalid)
 }
 
-/// Returns an observer of density, velocity and temperature in the cells of a grid over a region, given by its
-/// lower left and its upper right corner (length).
+/// Returns an observer of density, velocity and temperature in the cells of a grid over a region, given by
+/// its lower left and its upper right corner (length).
 #[pyfunction]
 #[pyo3(name = "Fields")]
 pub(crate) fn fields(
