@@ -1,7 +1,8 @@
 //! A boundary.
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallError, WallView,
+    Boundary, Brick, Domain, FirstTouch, Overlap, Probe, Region, Response, Surface, Touch, WallError,
+    WallView,
 };
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
