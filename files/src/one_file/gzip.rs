@@ -22,6 +22,9 @@ const LAST_BLOCK: [u8; 2] = [3, 0];
 /// The last bytes of a sync flush.
 const FLUSHED: [u8; 4] = [0, 0, 255, 255];
 
+/// The bytes of the flush and of the last block, which the checksum and the length follow.
+const WHOLE: [u8; 6] = [0, 0, 255, 255, 3, 0];
+
 /// The state of a member that is being written: the checksum of its data, and whether it has begun.
 #[derive(Debug, Default)]
 pub(super) struct Member {
@@ -76,8 +79,10 @@ pub(super) fn frames(
     loop {
         let start = packed.len();
         if input.read_until(FLUSHED[3], &mut packed)? == 0 {
-            // A process that was killed in the middle of a frame left these bytes.
-            return Ok(frames);
+            // A process that was killed in the middle of a frame left these bytes, unless they end as a whole
+            // frame does: damage may hide the flush from the decompressor.
+            let is_ended = packed.len() >= 14 && packed[packed.len() - 14..].starts_with(&WHOLE);
+            return if is_ended { Err(no_frame("a whole frame", "a damaged one")) } else { Ok(frames) };
         }
         if !goes_on(&mut inflater, &packed[start..], &mut bytes) {
             return check_ending(packed, input, &member.ending()).map(|()| frames);
