@@ -67,9 +67,7 @@ fn cooling_gas() -> Result<Run> {
 }
 
 fn tilted_box() -> Result<Run> {
-    // In Python, each step makes a motion of its own: the factor multiplies the sum, and not both terms.
-    let sum = Combined::new(Sinusoidal::new(0.3, 4.0)?).plus(BiParabolic::new(0.1, 9.0)?)?;
-    let motion = Combined::new(sum).scaled(1.5)?;
+    let motion = Combined::new(Sinusoidal::new(0.3, 4.0)?).plus(BiParabolic::new(0.1, 9.0)?)?.scaled(1.5)?;
     let boundary = Container::closed(20.0, 40.0)?.shaken_vertically(motion)?;
     let disks = warm(&boundary, 100, 0.5)?;
     let mut run = run(Rough::from_restitution(0.9, 0.4)?, boundary, disks, DVec2::new(0.02, -0.1))?;

@@ -54,7 +54,11 @@ impl Combined {
         Self::of(Motion::of(motion))
     }
 
+    /// Creates a sum of a motion, or of the terms of a sum, so that the bits do not depend on the nesting.
     pub(crate) fn of(motion: Motion) -> Self {
+        if let Some(sum) = motion.held().as_any().downcast_ref::<Self>() {
+            return sum.clone();
+        }
         Self { terms: vec![Term { motion, factor: 1.0, start: 0.0, rest_until: None, lead: 0.0 }] }
     }
 

@@ -53,14 +53,18 @@ impl WallMotion for KnownMotion {
     }
 }
 
+impl Motion {
+    /// Returns the motion that a [`KnownMotion`] holds, or this one.
+    pub(super) fn held(&self) -> &Self {
+        self.as_any().downcast_ref().map_or(self, |KnownMotion(motion)| motion)
+    }
+}
+
 #[cfg(feature = "serde")]
 impl Serialize for Motion {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if let Some(KnownMotion(motion)) = self.as_any().downcast_ref() {
-            return motion.serialize(serializer);
-        }
         let own = "only the wall motions of granular-edmd can be serialized";
-        Known::of(self).ok_or_else(|| ser::Error::custom(own))?.serialize(serializer)
+        Known::of(self.held()).ok_or_else(|| ser::Error::custom(own))?.serialize(serializer)
     }
 }
 
