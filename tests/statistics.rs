@@ -1,42 +1,11 @@
 //! Errors of means, against the true scatter over seeds, for series of known correlation.
 
 use granular_edmd::statistics::{BlockedMean, Estimate, Histogram, RunningMean, block_average};
-use rand::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use oracles::Autoregressive;
+use support::cases::few;
 
 /// Number of runs of each series. The scatter over them is known to 8 %.
 const SEEDS: u64 = 80;
-
-/// An autoregressive series of variance 1 and this correlation of neighbors.
-struct Autoregressive {
-    generator: Xoshiro256PlusPlus,
-    correlation: f64,
-    state: f64,
-}
-
-impl Autoregressive {
-    fn new(seed: u64, correlation: f64) -> Self {
-        let mut series = Self { generator: Xoshiro256PlusPlus::seed_from_u64(seed), correlation, state: 0.0 };
-        series.state = series.normal();
-        series
-    }
-
-    /// Returns the sum of 12 uniform numbers.
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-}
-
-impl Iterator for Autoregressive {
-    type Item = f64;
-
-    fn next(&mut self) -> Option<f64> {
-        let kick = self.normal() * (1.0 - self.correlation * self.correlation).sqrt();
-        self.state = self.correlation * self.state + kick;
-        Some(self.state)
-    }
-}
 
 /// Returns the means of the same series under all seeds.
 fn means(series: impl Fn(u64) -> BlockedMean) -> Vec<BlockedMean> {
@@ -60,12 +29,12 @@ fn printed(mean: &BlockedMean) -> f64 {
 /// Returns the share of the series whose error is called converged, and the share of these whose true mean,
 /// 0, lies within two errors.
 fn called_converged(series: impl Fn(u64) -> BlockedMean) -> (f64, f64) {
-    const SERIES: u64 = 1000;
-    let estimates = (0..SERIES).map(|seed| series(seed).estimate()).filter(Estimate::is_converged);
-    let within = |estimate: Estimate| estimate.mean().abs() <= 2.0 * estimate.standard_error();
+    let all: Vec<Estimate> = few(0..1000, 4).map(|seed| series(seed).estimate()).collect();
+    let estimates = all.iter().filter(|estimate| estimate.is_converged());
+    let within = |estimate: &Estimate| estimate.mean().abs() <= 2.0 * estimate.standard_error();
     let called: Vec<bool> = estimates.map(within).collect();
     let share = called.iter().filter(|&&within| within).count() as f64 / called.len() as f64;
-    (called.len() as f64 / SERIES as f64, share)
+    (called.len() as f64 / all.len() as f64, share)
 }
 
 /// Checks the shares of [`called_converged`] for a series of this length in correlated samples.

@@ -274,7 +274,7 @@ fn pairs_of_a_gas_whose_number_grows_are_those_of_an_ideal_gas() -> Result<(), F
     let part = whole.clone().within(Region::new(DVec2::splat(5.0), DVec2::splat(35.0)))?;
     let times = SampleTimes::every(17.0)?;
     let (mut whole, mut part) = (Sampled::new(whole, times), Sampled::new(part, times));
-    run.run_until(20000.0, &mut (&mut whole, &mut part))?;
+    run.run_until(10000.0, &mut (&mut whole, &mut part))?;
     for correlation in [&whole, &part] {
         let mean = correlation.iter().skip(3).map(|(_, value)| value.mean()).sum::<f64>() / 7.0;
         assert!((mean - 1.0).abs() < 0.03, "{mean}");
@@ -288,8 +288,8 @@ fn pairs_of_an_ideal_gas_in_samples_without_disks_and_in_boxes_of_two_sizes() ->
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     let mut mean = |numbers: [usize; 4], sizes: [f64; 2], is_periodic: bool| -> Result<f64, Failure> {
         let mut correlation = PairCorrelation::new(3.0, 3)?;
-        for sample in 0..40_000 {
-            let size = sizes[sample / 20_000];
+        for sample in 0..10_000 {
+            let size = sizes[sample / 5_000];
             let mut place = || random.random_range(0.0..size);
             let disks: Result<Vec<Disk>, _> =
                 (0..numbers[sample % 4]).map(|_| Disk::new(DVec2::new(place(), place()), 1e-6)).collect();

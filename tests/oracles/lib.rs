@@ -1,8 +1,12 @@
-//! Brute force: all pairs of disks, with each image of a periodic domain, and areas by many chords.
+//! Brute force: all pairs of disks, with each image of a periodic domain, areas by many chords, steps along
+//! polynomials, and long random series.
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
+use granular_edmd::roots::first_descent_of_quartic;
+use rand::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Depth of an overlap that is rounding, relative to the distance at which the disks touch, in a domain that
 /// is at most some hundred times as wide.
@@ -73,4 +77,86 @@ pub fn area_between(disk: &Disk, domain: &Domain, low: f64, high: f64) -> f64 {
         }
     }
     area
+}
+
+/// An autoregressive series of variance 1 and this correlation of neighbors.
+pub struct Autoregressive {
+    generator: Xoshiro256PlusPlus,
+    correlation: f64,
+    state: f64,
+}
+
+impl Autoregressive {
+    /// Creates the series of a seed.
+    pub fn new(seed: u64, correlation: f64) -> Self {
+        let mut series = Self { generator: Xoshiro256PlusPlus::seed_from_u64(seed), correlation, state: 0.0 };
+        series.state = series.normal();
+        series
+    }
+
+    /// Returns the sum of 12 uniform numbers.
+    fn normal(&mut self) -> f64 {
+        let mut uniform = || (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+impl Iterator for Autoregressive {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let kick = self.normal() * (1.0 - self.correlation * self.correlation).sqrt();
+        self.state = self.correlation * self.state + kick;
+        Some(self.state)
+    }
+}
+
+/// Returns the value of a polynomial, given by its coefficients from the constant term up.
+fn value(coefficients: &[f64; 5], time: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * time + c)
+}
+
+fn derivative(&[_, c1, c2, c3, c4]: &[f64; 5]) -> [f64; 5] {
+    [c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0]
+}
+
+/// Returns the sum of the magnitudes of all terms at this time. The rounding of the value is a fraction of
+/// it.
+fn size(coefficients: &[f64; 5], time: f64) -> f64 {
+    value(&coefficients.map(f64::abs), time)
+}
+
+/// Steps along the gap and asserts that the answer misses no fall through zero, and that the gap is closed
+/// there.
+///
+/// # Panics
+/// If it misses one, or the gap is open there.
+pub fn check_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64> {
+    let found = first_descent_of_quartic(coefficients, end);
+    let rounding = |time: f64| 1e-12 * size(coefficients, time);
+    let level = coefficients[0].min(0.0);
+    let (mut has_opened, last) = (false, found.unwrap_or(end));
+    for k in 1..4000 {
+        let time = last * f64::from(k) / 4000.0;
+        let gap = value(coefficients, time);
+        has_opened |= gap > rounding(time);
+        let least = if has_opened { 0.0 } else { level };
+        assert!(
+            gap > least - 2.0 * rounding(time),
+            "{coefficients:?}: missed before {time}, found {found:?}"
+        );
+    }
+    if let Some(time) = found {
+        let least = if has_opened { 0.0 } else { level };
+        assert!((0.0..=end).contains(&time), "{coefficients:?}: {time}");
+        assert!(
+            (value(coefficients, time) - least).abs() <= rounding(time),
+            "{coefficients:?}: open at {time}"
+        );
+        // At a double zero the slope is lost to the rounding of the place.
+        let rate = value(&derivative(coefficients), time);
+        let steep = size(&derivative(coefficients), time);
+        assert!(rate <= 1e-6 * steep, "{coefficients:?}: it rises at {time}, by {rate}");
+    }
+    found
 }

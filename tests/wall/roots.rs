@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use oracles::check_quartic;
 use support::cases::config;
 
 #[test]
@@ -40,15 +41,6 @@ proptest! {
     }
 }
 
-/// Returns the value of a polynomial, given by its coefficients from the constant term up.
-fn value(coefficients: &[f64; 5], time: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * time + c)
-}
-
-fn derivative(&[_, c1, c2, c3, c4]: &[f64; 5]) -> [f64; 5] {
-    [c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0]
-}
-
 /// Returns `scale` times the product of `(t - zero)`, and of `(t - zero)² + width²` for each pair of zeros
 /// that are not real.
 fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
@@ -68,44 +60,6 @@ fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
     coefficients
 }
 
-/// Returns the sum of the magnitudes of all terms at this time. The rounding of the value is a fraction of
-/// it.
-fn size(coefficients: &[f64; 5], time: f64) -> f64 {
-    value(&coefficients.map(f64::abs), time)
-}
-
-/// Steps along the gap and asserts that the answer misses no fall through zero, and that the gap is closed
-/// there.
-fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
-    let found = first_descent_of_quartic(coefficients, end);
-    let rounding = |time: f64| 1e-12 * size(coefficients, time);
-    let level = coefficients[0].min(0.0);
-    let (mut has_opened, last) = (false, found.unwrap_or(end));
-    for k in 1..4000 {
-        let time = last * f64::from(k) / 4000.0;
-        let gap = value(coefficients, time);
-        has_opened |= gap > rounding(time);
-        let least = if has_opened { 0.0 } else { level };
-        assert!(
-            gap > least - 2.0 * rounding(time),
-            "{coefficients:?}: missed before {time}, found {found:?}"
-        );
-    }
-    if let Some(time) = found {
-        let least = if has_opened { 0.0 } else { level };
-        assert!((0.0..=end).contains(&time), "{coefficients:?}: {time}");
-        assert!(
-            (value(coefficients, time) - least).abs() <= rounding(time),
-            "{coefficients:?}: open at {time}"
-        );
-        // At a double zero the slope is lost to the rounding of the place.
-        let rate = value(&derivative(coefficients), time);
-        let steep = size(&derivative(coefficients), time);
-        assert!(rate <= 1e-6 * steep, "{coefficients:?}: it rises at {time}, by {rate}");
-    }
-    found
-}
-
 fn between(generator: &mut Xoshiro256PlusPlus, low: f64, high: f64) -> f64 {
     generator.random_range(low..high)
 }
@@ -120,7 +74,7 @@ fn polynomials_of_any_coefficients_descend_where_steps_along_them_find_it() {
             let x = between(&mut generator, -1.0, 1.0);
             spread * x * x * x
         });
-        found += usize::from(compare(&coefficients, between(&mut generator, 0.5, 6.0)).is_some());
+        found += usize::from(check_quartic(&coefficients, between(&mut generator, 0.5, 6.0)).is_some());
     }
     assert!((2000..5500).contains(&found), "{found}");
 }
@@ -150,7 +104,7 @@ fn known_zeros_are_found_in_order() {
                 let (found, expected) = (found.unwrap_or(-1.0), expected.unwrap_or(-1.0));
                 assert!((found - expected).abs() < 1e-7, "{case} {scale} {zeros:?}: {found}, not {expected}");
             }
-            compare(&coefficients, 7.0);
+            check_quartic(&coefficients, 7.0);
         }
     }
 }
@@ -170,7 +124,7 @@ fn flights_in_a_circle_end_at_its_wall() {
             -v.dot(a),
             -0.25 * a.length_squared(),
         ];
-        let time = compare(&gap, 1e3).unwrap();
+        let time = check_quartic(&gap, 1e3).unwrap();
         let place = r + (v + 0.5 * time * a) * time;
         assert!((place.length() - 1.0).abs() < 1e-13, "{case}: {}", place.length());
         // A search that ends at the descent still finds it, up to the rounding of the gap.
