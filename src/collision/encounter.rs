@@ -25,13 +25,11 @@ impl Material {
     /// Returns the properties of a wall with this mass against impulses along its normal. An infinite mass
     /// keeps the motion of the wall unchanged.
     pub(crate) fn of_wall(kind: Kind, radius: f64, mass: f64) -> Self {
-        let inverse_mass = 1.0 / mass;
         Self {
             arm: 0.0,
             radius,
-            inverse_mass,
-            // This is 0. For a constant, the compiler takes a move that callgrind does not know.
-            tangential_compliance: inverse_mass.min(0.0),
+            inverse_mass: 1.0 / mass,
+            tangential_compliance: 0.0,
             spin_response: 0.0,
             inverse_inertia: 0.0,
             kind,

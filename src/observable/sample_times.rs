@@ -80,6 +80,12 @@ pub struct SampleTimes {
     /// The upcoming sampling time, which runs read after each collision.
     #[cfg_attr(feature = "serde", serde(skip))]
     upcoming: f64,
+    /// The first sampling time and the interval, times `places`: whole numbers if both are decimal.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    steps: [f64; 2],
+    /// A power of ten, or 1 for numbers that are not decimal.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    places: f64,
     /// True once a run has started.
     started: bool,
 }
@@ -91,7 +97,7 @@ impl SampleTimes {
     /// If the interval is not finite and positive.
     pub fn every(interval: f64) -> Result<Self, ParameterError> {
         let interval = positive("sampling interval", interval)?;
-        Ok(Self { interval, is_ratio: false, first: None, beat: 1, upcoming: interval, started: false })
+        Ok(Self::new(interval, false, None, 1))
     }
 
     /// Creates a clock whose sampling times are `first`, `first * ratio`, `first * ratio²` and so on, as for
@@ -118,7 +124,7 @@ impl SampleTimes {
     pub fn at_ratio(first: f64, ratio: f64) -> Result<Self, ParameterError> {
         let first = Some(positive("first sampling time", first)?);
         let interval = accept(ratio > 1.0 && ratio <= 1e9, "ratio of sampling times", "in (1, 1e9]", ratio)?;
-        Ok(Self { interval, is_ratio: true, first, beat: 0, upcoming: 0.0, started: false }.at_beat())
+        Ok(Self::new(interval, true, first, 0))
     }
 
     /// Returns the same clock with its first sampling time at this absolute time.
@@ -130,7 +136,7 @@ impl SampleTimes {
             return Self::at_ratio(first, self.interval);
         }
         let first = Some(finite("first sampling time", first)?);
-        Ok(Self { first, beat: 0, started: false, ..self }.at_beat())
+        Ok(Self::new(self.interval, false, first, 0))
     }
 
     /// Returns the interval between two sampling times, or NaN for times at equal ratios.
@@ -156,6 +162,15 @@ impl SampleTimes {
     #[inline]
     pub const fn upcoming(&self) -> f64 {
         self.upcoming
+    }
+
+    fn new(interval: f64, is_ratio: bool, first: Option<f64>, beat: i64) -> Self {
+        let times = [first.unwrap_or(0.0), interval];
+        let is_whole = |places: &f64| times.iter().all(|time| (time * places).round() / places == *time);
+        let decimal = POWERS_OF_TEN.into_iter().find(is_whole);
+        let (steps, places) =
+            decimal.map_or((times, 1.0), |places| (times.map(|time| (time * places).round()), places));
+        Self { interval, is_ratio, first, beat, upcoming: 0.0, steps, places, started: false }.at_beat()
     }
 
     fn at_beat(self) -> Self {
@@ -225,24 +240,15 @@ impl SampleTimes {
     }
 
     fn time_of(&self, beat: i64) -> f64 {
-        let (first, interval, beat_number) = (self.first.unwrap_or(0.0), self.interval, beat as f64);
+        let beat_number = beat as f64;
         if beat == i64::MAX {
             f64::INFINITY
         } else if self.is_ratio {
-            first * libm::pow(interval, beat_number)
-        } else if let Some(scale) = self.decimal_scale() {
-            // Products of whole numbers are exact, so that only the quotient is rounded.
-            ((first * scale).round() + beat_number * (interval * scale).round()) / scale
+            self.first.unwrap_or(0.0) * libm::pow(self.interval, beat_number)
         } else {
-            first + beat_number * interval
+            // Products of whole numbers are exact, so that only the quotient is rounded.
+            (self.steps[0] + beat_number * self.steps[1]) / self.places
         }
-    }
-
-    /// Returns the smallest power of ten that turns the first time and the interval into whole numbers.
-    fn decimal_scale(&self) -> Option<f64> {
-        let times = [self.first.unwrap_or(0.0), self.interval];
-        let is_whole = |scale: &f64| times.iter().all(|time| (time * scale).round() / scale == *time);
-        POWERS_OF_TEN.into_iter().find(is_whole)
     }
 }
 
@@ -255,6 +261,6 @@ crate::gate::from_file! {
         finite("first sampling time", first_time)?;
         let counted = first.is_none() || beat >= 0;
         accept(counted, "number of the next sample", "not negative", beat as f64)?;
-        Ok(Self { first, beat, started, ..clock }.at_beat())
+        Ok(Self { started, ..Self::new(clock.interval, is_ratio, first, beat) })
     }
 }
