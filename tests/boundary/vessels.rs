@@ -86,7 +86,7 @@ fn vessels_with_periodic_sides_keep_the_contract() {
     let sides = Container::closed(12.0, 12.0).unwrap().with_periodic_sides().unwrap();
     let containers = [("sides", sides), ("periodic", Container::periodic(12.0, 12.0).unwrap())];
     check(
-        7,
+        11,
         containers.into_iter().flat_map(|(name, container)| {
             [triangle(), mixed(), triangle().shifted(DVec2::new(6.0, 6.0)).unwrap()]
                 .map(|part| (name, container.clone().with_part("part", part).unwrap()))
@@ -124,7 +124,7 @@ fn vessels_that_move_keep_the_contract() {
     for (name, part) in around {
         vessels.push((name.to_owned(), Container::around([("outside", part.unwrap())]).unwrap()));
     }
-    check(11, vessels);
+    check(17, vessels);
 }
 
 /// A part that is put in late begins where it was built, whatever the time origin is and whenever it is set.

@@ -12,6 +12,7 @@ use granular_edmd::wall::{
     laws as wall_laws,
 };
 use granular_edmd::{Disk, Kind};
+use support::cases::few;
 
 type Failed = Box<dyn std::error::Error>;
 type Rules = Vec<(Box<dyn CollisionRule>, Promises)>;
@@ -127,17 +128,19 @@ fn check_all(seed: u64) -> Result<(), Failed> {
     Ok(())
 }
 
-fn check_seeds(seeds: std::ops::Range<u64>) {
-    let refused: Vec<_> =
-        seeds.filter_map(|seed| Some(format!("seed {seed}: {}", check_all(seed).err()?))).collect();
+fn check_seeds(seeds: impl IntoIterator<Item = u64>) {
+    let refused: Vec<_> = seeds
+        .into_iter()
+        .filter_map(|seed| Some(format!("seed {seed}: {}", check_all(seed).err()?)))
+        .collect();
     assert!(refused.is_empty(), "{} false alarms: {}", refused.len(), refused.join("\n"));
 }
 
 #[test]
 fn no_check_refuses_a_part_of_the_library() {
-    check_seeds(0..60);
+    check_seeds(few(0..60, 5));
     // A tip whose curvature at two steps once agreed by chance.
-    check_seeds(4538..4539);
+    check_seeds([4538]);
 }
 
 /// Some twenty minutes; it says how far it has come.

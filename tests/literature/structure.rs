@@ -65,12 +65,12 @@ fn a_part_of_the_box_has_the_correlation_of_the_whole() -> Outcome {
     let part = Region::new(DVec2::splat(10.0), DVec2::splat(14.0));
     let mut whole = Sampled::new(PairCorrelation::new(3.0, 6)?, times);
     let mut around = Sampled::new(PairCorrelation::new(3.0, 6)?.within(part)?, times);
-    gas.run_until(gas.time() + 4000.0 * times.interval(), &mut (&mut whole, &mut around))?;
-    // The part holds 6 disks on average, so each bin has some 1e5 pairs; blocks of correlated samples and the
-    // scatter of the number of disks leave 1 %.
+    gas.run_until(gas.time() + 1000.0 * times.interval(), &mut (&mut whole, &mut around))?;
+    // The part holds 6 disks on average, so each bin has some 3e4 pairs; blocks of correlated samples and the
+    // scatter of the number of disks leave 2 %.
     for ((distance, whole), (_, part)) in whole.iter().zip(around.iter()).skip(2) {
         let off = part.mean() / whole.mean() - 1.0;
-        assert!(off.abs() < 0.04, "{distance}: {part}, not {whole}");
+        assert!(off.abs() < 0.08, "{distance}: {part}, not {whole}");
     }
     Ok(())
 }

@@ -46,9 +46,9 @@ fn collisions_count_the_digits_of_pi() -> Outcome {
     Ok(())
 }
 
-/// A piston on a spring over a fast disk: nothing is lost in a million blows.
+/// A piston on a spring over a fast disk: nothing is lost in many blows.
 #[test]
-fn energy_is_kept_over_a_million_blows() -> Outcome {
+fn energy_is_kept_over_many_blows() -> Outcome {
     let height = 6.0;
     let piston =
         Piston::new(7.0, [-1.0, 4.0])?.with_force(200.0)?.with_spring(3e4, 1.0)?.with_start(1.0, 0.5)?;
@@ -57,8 +57,8 @@ fn energy_is_kept_over_a_million_blows() -> Outcome {
     let mut run = Simulation::builder(Elastic, container).disks([disk]).gravity(0.1).build()?;
     let before = energy(&run.snapshot(), &piston, height);
     let mut counts = CollisionCounts::default();
-    while counts.collisions_with_wall("lid") < 1_000_000 {
-        run.run(&Limits::collisions(1_000_000), &mut counts)?;
+    while counts.collisions_with_wall("lid") < 200_000 {
+        run.run(&Limits::collisions(200_000), &mut counts)?;
     }
     let blows = counts.collisions_with_wall("lid");
     let change = energy(&run.snapshot(), &piston, height) / before - 1.0;
