@@ -1,5 +1,5 @@
 //! The command line of a study, for any experiment: `new`, `explain`, `check`, `run`, `status`, `tables`,
-//! `trajectory`, `convert`, `replay`, `accept`, `bench` and `completions`.
+//! `trajectory`, `convert`, `replay`, `accept` and `bench`.
 //!
 //! In a custom program, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for the
 //! paper's box.
@@ -103,7 +103,6 @@ pub fn main_from<E: Experiment>(
         Command::Trajectory(wishes) => replay::trajectory::<E>(&wishes),
         Command::Convert(wishes) => convert::convert(&wishes),
         Command::Replay(wishes) => replay::replay::<E>(&wishes),
-        Command::Completions { shell } => plans::completions(&shell),
         Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan, json, quick } => plans::bench::<E>(&plan, json, quick),
     };

@@ -80,12 +80,11 @@ impl Folder {
         self.root.join("complete")
     }
 
-    /// Writes the README if it is missing or cut short, and the provenance if it is missing and the folder
+    /// Writes the README if it is missing, and the provenance if it is missing and the folder
     /// has no records. An edited README stays. The caller holds the lock.
     pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         let path = self.root.join(README);
-        let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
-        if !path.exists() || fs::read(&path).is_ok_and(is_cut) {
+        if !path.exists() {
             write(&path, ABOUT.as_bytes())?;
         }
         if self.provenance().exists() || self.root.join(BLOCKS).exists() {

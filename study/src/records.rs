@@ -5,11 +5,11 @@ use std::ops::Range;
 
 use granular_edmd::statistics::Estimate;
 
-use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
+use super::experiment::record::{Contents, Leg, Record};
 use super::folder::remove;
 use super::plan::ramp::{Bracket, Seen};
 use super::store::{Entry, Head};
-use super::{Experiment, Plan, Study, StudyError};
+use super::{Experiment, Study, StudyError};
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and
 /// different seeds.
@@ -116,16 +116,7 @@ impl<E: Experiment> Study<E> {
     pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
         self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(head.ramp))?;
-        let is_placed = match self.plan.step(head.value) {
-            Some(step) => contents.leg.zip(contents.at) == Some(step),
-            None => contents.at.is_none_or(|at| self.plan.ramp().is_some_and(|ramp| ramp.bisects(at))),
-        };
-        if !is_placed {
-            return Err(self.store.damaged(entry, "its place in the ramp is not the plan's"));
-        }
-        let record = Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents };
-        check_record(&record, &self.plan).map_err(|reason| self.store.damaged(entry, reason))?;
-        Ok(record)
+        Ok(Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents })
     }
 
     /// Iterates over all finished records, ramp by ramp, and reads them one by one.
@@ -199,25 +190,6 @@ impl<E: Experiment> Study<E> {
             .collect::<Result<_, StudyError>>()?;
         Ok(self.plan.brackets(&seen))
     }
-}
-
-/// Checks that a record belongs to its ramp and value in a study, or returns the reason why it does not.
-fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
-    let Contents { origin, outcome, end, measured, state, .. } = &record.contents;
-    let protocol = plan.protocol();
-    let most = protocol.cycles().saturating_mul(origin.value as u64 + 1);
-    check(end.count <= most, "it is longer than the protocol")?;
-    let samples = measured.samples.len() as u64;
-    let is_short = *outcome != Outcome::Completed && samples < protocol.samples();
-    check(samples == protocol.samples() || is_short, "its samples are not as many as in the protocol")?;
-    let is_kept = state.is_some() == plan.keeps_state(origin.value);
-    check(is_kept, "it keeps a state that it should not, or lacks one")?;
-    if let Some(state) = state {
-        let time = end.time(0.0, record.experiment.cycle());
-        check_state(state, time..=time)?;
-        check([state.rule(), state.boundary()] == record.contents.parts, "its state is of other parts")?;
-    }
-    Ok(())
 }
 
 /// Progress of a ramp.

@@ -111,15 +111,6 @@ fn keys_and_columns_are_explained() {
 }
 
 #[test]
-fn completions_and_a_page_of_the_manual_are_printed() {
-    let scratch = Scratch::new("completions");
-    for (shell, word) in [("bash", "complete -F"), ("fish", "complete -c"), ("man", ".TH granular-edmd")] {
-        assert!(said(&scratch.runs(&["completions", shell])).contains(word), "{shell}");
-    }
-    assert_eq!(code(&scratch.runs(&["completions", "tcsh"])), Some(1));
-}
-
-#[test]
 fn a_plan_that_cannot_be_is_refused_with_code_2() {
     let scratch = Scratch::new("refused");
     fs::write(scratch.0.join("plan.toml"), SMALL.replace("\"friction\"", "\"frction\"")).unwrap();

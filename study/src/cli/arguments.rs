@@ -86,11 +86,6 @@ pub(super) enum Command {
     /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
     /// disk, change of energy.
     Replay(Replay),
-    /// Prints completions for a shell, or with `man` a page of the manual.
-    Completions {
-        /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
-        shell: String,
-    },
     /// Allows this program to continue a study that other code began. Each record keeps the mark of the code
     /// that made it.
     Accept {

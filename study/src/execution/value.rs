@@ -14,10 +14,10 @@ use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
-use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
+use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record};
 use crate::plan::ramp::Step;
 use crate::sliced::{self, Riders};
-use crate::{Experiment, Protocol, Run, SavedDriving, Start, Study};
+use crate::{Experiment, Run, SavedDriving, Start, Study};
 
 /// A value to be run.
 pub(crate) struct Value<'a, E: Experiment> {
@@ -139,24 +139,14 @@ impl<'a, E: Experiment> Value<'a, E> {
             (Some(driving), Some(bytes)) => driving.load(bytes).is_ok(),
             (driving, bytes) => driving.is_none() && bytes.is_none(),
         };
-        let loaded = check(is_loaded, "its driving is another").map_err(str::to_owned);
-        let state = loaded.and_then(|()| self.state_of(partial));
-        let (work, run) = state.map_err(|reason| StudyError::damaged(path, reason))?;
+        let (work, state, _) = partial;
+        let run =
+            Self::resume(&state, &self.experiment).ok().filter(|_| is_loaded && work.start == self.start());
+        let run = run.filter(|run| run.gravity() == self.experiment.gravity());
+        let run = run.ok_or_else(|| StudyError::damaged(path, "its state cannot go on"))?;
         let companion = self.companion(run.time(), true)?;
         let riders = Riders { driving, companion, is_under_way: false };
         Ok(Active { value: self, work, run, riders })
-    }
-
-    fn state_of(&self, (work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
-        let protocol = self.study.plan.protocol();
-        work.check(protocol)?;
-        check(work.start == self.start(), "it starts elsewhere")?;
-        let [from, to] = [work.steps, protocol.steps().min(work.steps + 1)]
-            .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
-        check_state(&state, from..=to)?;
-        let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
-        check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
-        Ok((work, run))
     }
 
     /// Returns the time at which the value starts. It continues the count of whole cycles if the length of a
@@ -293,17 +283,5 @@ impl<E: Experiment> Active<'_, E> {
             state,
         };
         Ok(Record { experiment: value.experiment.clone(), contents })
-    }
-}
-
-impl<S, O> Work<S, O> {
-    /// Checks that the work so far fits the protocol.
-    fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
-        check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
-        let (left, found) = (protocol.steps() - self.steps, self.measured.samples.len() as u64);
-        let samples = protocol.samples().saturating_sub(left);
-        // The sample of an unfinished step may have been taken already.
-        let is_taken = found == samples + 1 && (1..=protocol.samples()).contains(&left);
-        check(found == samples || is_taken, "its samples are not as many as its steps")
     }
 }

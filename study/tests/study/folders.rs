@@ -111,23 +111,6 @@ fn a_folder_with_files_of_others_is_refused_and_left_alone() -> Result<(), AnyEr
     Ok(())
 }
 
-/// A README that was cut comes back; one that somebody has edited stays.
-#[test]
-fn a_readme_that_was_cut_comes_back() -> Result<(), AnyError> {
-    let (scratch, study) = done(&small_plan(), "readme");
-    let path = scratch.0.join("README.txt");
-    let whole = fs::read_to_string(&path)?;
-    for left in [0, 10, whole.len() - 1] {
-        fs::write(&path, &whole[..left])?;
-        study.write_tables()?;
-        assert_eq!(fs::read_to_string(&path)?, whole);
-    }
-    fs::write(&path, "mine")?;
-    study.write_tables()?;
-    assert_eq!(fs::read_to_string(&path)?, "mine");
-    Ok(())
-}
-
 #[test]
 fn the_empty_path_is_refused() {
     let there = fs::read_dir(".").unwrap().count();
