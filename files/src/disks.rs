@@ -10,8 +10,8 @@ use super::column::Quantity::{
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
 use super::column::SLOTS;
-use super::found::{RADIUS_IGNORED, Settings};
 use super::table::Table;
+use super::table::{RADIUS_IGNORED, Settings};
 use super::{ReadError, State, table};
 use granular_edmd::boundary::Domain;
 use granular_edmd::{Disk, Kind, ParameterError};

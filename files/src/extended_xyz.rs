@@ -1,6 +1,5 @@
 //! The extended XYZ format, which OVITO reads and from which a run can start.
 
-mod keys;
 mod read;
 
 pub(super) use read::frames;
@@ -9,8 +8,8 @@ use std::io::{self, BufRead, Write};
 
 use granular_edmd::glam::DVec2;
 
+use super::format::{half_turn, numbered, shown_depth, shown_top};
 use super::format::{no_frame, skip_lines, whole_line};
-use super::shown::{half_turn, numbered, shown_depth, shown_top};
 use super::{Frame, FrameFormat};
 use granular_edmd::boundary::Domain;
 use granular_edmd::observable::Snapshot;
@@ -101,7 +100,7 @@ impl FrameFormat for ExtendedXyz {
         let Some(count) = whole_line(input)? else { return Ok(None) };
         let count: usize = count.trim().parse().map_err(|_| no_frame("a number of disks", &count))?;
         let Some(keys) = whole_line(input)? else { return Ok(None) };
-        let time = keys::Keys::parse(&keys, 0)
+        let time = read::Keys::parse(&keys, 0)
             .and_then(|keys| keys.time())
             .ok()
             .flatten()

@@ -10,7 +10,7 @@ pub(super) use read::{frames, frames_of_file, is_gsd};
 use std::io::{self, Write};
 
 use super::Frame;
-use super::shown::{half_turn, numbered, shown_depth, shown_top};
+use super::format::{half_turn, numbered, shown_depth, shown_top};
 use granular_edmd::Disk;
 use granular_edmd::observable::Snapshot;
 

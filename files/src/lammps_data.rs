@@ -1,6 +1,5 @@
 //! Data files of LAMMPS, so that one state can be run in both codes.
 
-mod header;
 mod read;
 
 pub(super) use read::{is_data, table};
@@ -9,7 +8,7 @@ use std::io::{self, Write};
 
 use super::State;
 use super::disks::sphere_mass;
-use super::shown::{numbered, shown_depth, shown_top};
+use super::format::{numbered, shown_depth, shown_top};
 use granular_edmd::Disk;
 
 /// Words in the title that distinguish the files of this crate from other files.

@@ -10,9 +10,9 @@ use granular_edmd::glam::DVec2;
 use super::archive::{Archive, Chunk};
 use crate::ReadError;
 use crate::column::Column;
-use crate::found::{Found, Frames, RADIUS_IGNORED, Settings};
 use crate::lines::{as_whole, checked_box, is_upright};
 use crate::table::Table;
+use crate::table::{Found, Frames, RADIUS_IGNORED, Settings};
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 
