@@ -13,7 +13,7 @@ use granular_edmd::quantity::accept;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::errors::chain;
-use super::experiment::columns::{Column, OF_TABLES, Table, error_names};
+use super::experiment::{Column, OF_TABLES, Table, error_names};
 use super::parameters::{self, Scalar, derived_seed, place, probe, seed_at, whole_name};
 use super::{Experiment, ExperimentError, Leg, PlanError};
 use protocol::Protocol;

@@ -11,7 +11,7 @@ use granular_edmd::speed::Meter;
 
 use super::terminal::{read, say, write_new};
 use super::{End, Failure, LISTED, core_time};
-use crate::experiment::columns::{Meanings, OF_TABLES, find, meanings, of_error};
+use crate::experiment::{Meanings, OF_TABLES, find, meanings, of_error};
 use crate::vibrated_box::{Base, VibratedBox};
 use crate::{
     Axis, Column, Course, Experiment, Plan, PlanError, Protocol, Ramp, StudyError, Table, parameters,
