@@ -2,7 +2,6 @@
 
 mod index;
 mod overlap;
-mod room;
 mod search;
 
 use std::ops::Range;
