@@ -3,7 +3,7 @@
 use std::collections::{HashMap, VecDeque};
 
 use super::Replay;
-use super::steps::{Replayed, Steps};
+use super::{Replayed, Steps};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::Partner;

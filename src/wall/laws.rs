@@ -4,7 +4,7 @@
 //! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
 //! compares two motions.
 
-use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
+use super::motion::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
 use crate::Violation;
 use crate::fingerprint::check_pair;
