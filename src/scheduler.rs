@@ -15,16 +15,14 @@
 
 mod bucket_queue;
 mod by_size;
-mod entry;
 pub mod laws;
 mod tournament_tree;
 
+use crate::forward::forward;
 pub use bucket_queue::BucketQueue;
 pub(crate) use by_size::LARGE_SYSTEM;
 pub use by_size::{BySize, LinearScan};
 pub use tournament_tree::TournamentTree;
-
-use crate::forward::forward;
 
 /// The result of a scheduler without disks.
 ///
@@ -90,8 +88,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scheduler of events",
     label = "this type does not implement `EventScheduler`",
-    note = "the default is `scheduler::BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
-    note = "a custom scheduler implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
+    note = "the default is `BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
+    note = "a custom scheduler implements `reset`, `set` and `earliest`; `laws::check` tests it"
 )]
 pub trait EventScheduler {
     /// Replaces all disks and times by these times, one for each disk.
@@ -126,3 +124,45 @@ forward! { EventScheduler for [&mut T, Box<T>] {
     fn set(&mut self, disk: usize, due: f64);
     fn upcoming(&mut self, disks: &mut Vec<usize>);
 }}
+
+/// A disk with the time at which it is due, ordered by time and then by disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    /// The time as an integer, in the same order.
+    order: u64,
+    disk: usize,
+}
+
+const SIGN: u64 = 1 << 63;
+
+impl Default for Entry {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl Entry {
+    /// The entry of no disk, which comes after all others.
+    const EMPTY: Self = Self { order: u64::MAX - 1, disk: usize::MAX };
+
+    #[inline]
+    fn new(disk: usize, due: f64) -> Self {
+        // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow
+        // with the float, and the bits of a negative one with its magnitude. For a negative float, all bits
+        // are flipped; for a positive one, only the sign.
+        let bits = (due + 0.0).to_bits();
+        Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
+    }
+
+    #[inline]
+    fn due(self) -> f64 {
+        f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
+    }
+
+    /// Returns the result of [`EventScheduler::earliest`](EventScheduler::earliest) if this entry is
+    /// the first.
+    #[inline]
+    fn answer(self) -> (usize, f64) {
+        if self == Self::EMPTY { NOTHING_DUE } else { (self.disk, self.due()) }
+    }
+}

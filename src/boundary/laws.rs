@@ -19,8 +19,8 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{Boundary, Domain, Region};
+use crate::error::require;
 use crate::random::uniform;
-use crate::violation::require;
 use crate::{Flight, Kind, Violation};
 use area::check_areas;
 use flight::check_flights;

@@ -1,8 +1,8 @@
 //! The scheduler for many disks: a calendar that is turned page by page, of piles of disks.
 
+use super::Entry;
 use super::EventScheduler;
-use super::entry::Entry;
-use crate::prefetch::prefetch;
+use crate::instructions::prefetch;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

@@ -6,9 +6,9 @@
 
 use super::{EventScheduler, LinearScan, NOTHING_DUE};
 use crate::Violation;
+use crate::error::require;
 use crate::random::uniform;
 use crate::scheduler::LARGE_SYSTEM;
-use crate::violation::require;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::fmt;

@@ -5,7 +5,7 @@ mod wide;
 
 use super::EventScheduler;
 use crate::instructions::{Instructions, Level};
-use crate::scheduler::entry::Entry;
+use crate::scheduler::Entry;
 use std::hint::select_unpredictable;
 use wide::Wide;
 

@@ -7,8 +7,8 @@
 use super::motion::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
 use crate::Violation;
+use crate::error::require;
 use crate::fingerprint::check_pair;
-use crate::violation::require;
 use std::iter::successors;
 
 /// Number of samples in a piece.

@@ -2,8 +2,8 @@
 //! jumps.
 
 use super::{AccelerationBounds, Fixed, Stroke, WallMotion, WallState};
+use crate::error::require;
 use crate::forward::forward;
-use crate::violation::require;
 use crate::{Fingerprint, Violation};
 use std::any::Any;
 use std::fmt;

@@ -12,7 +12,7 @@ use glam::DVec2;
 use super::Random;
 use super::trial::{Gap, PART, Trial};
 use crate::boundary::{Boundary, Domain, Region};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Kind, Violation};
 
 /// Smallest and largest number of halvings of a region that a wall crosses.

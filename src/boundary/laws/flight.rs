@@ -7,7 +7,7 @@ use super::surface::{check_surface, in_words, is_same};
 use super::trial::{PART, Trial, restarted};
 use super::{LATEST, SMALLEST};
 use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Flight, Violation};
 
 /// Number of samples along a flight.

@@ -8,8 +8,8 @@ use super::surface::in_words;
 use super::trial::{PART, Trial};
 use super::{KINDS, Random};
 use crate::boundary::{Boundary, FirstTouch, Region};
+use crate::error::require;
 use crate::fingerprint::check_pair;
-use crate::violation::require;
 use crate::{Flight, Kind, Violation};
 
 /// Number of flights on which two boundaries are compared.

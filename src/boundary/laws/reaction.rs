@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::surface::in_words;
 use super::trial::{PART, Trial};
 use crate::boundary::{Boundary, Impact, Reaction, Region, Surface, Touch};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Flight, Violation};
 
 /// Speeds that the tested impacts give to a wall, in units of the typical speed.

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::trial::{PART, Trial};
 use crate::boundary::{Boundary, Response, Surface, Touch};
 use crate::collision::laws::hostile_contacts;
-use crate::violation::require;
+use crate::error::require;
 use crate::{Fingerprint, Violation};
 
 /// Distance that the disk is moved for the gradient of the gap, and largest reach of a gap, both relative to

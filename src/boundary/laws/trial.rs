@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::boundary::{Boundary, Domain, FirstTouch, Probe, Region, Touch};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Flight, Kind, Violation};
 
 pub(super) const PART: &str = "boundary";

@@ -2,7 +2,7 @@
 
 use super::crowd::Crowds;
 use crate::disk::MOST_DISKS;
-use crate::prefetch::prefetch;
+use crate::instructions::prefetch;
 
 /// Number of disks for which a block has room.
 pub(super) const SLOTS: usize = 4;
