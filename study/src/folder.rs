@@ -243,14 +243,14 @@ pub(super) fn if_there<T>(
 }
 
 /// Returns the files in a folder. The list is empty if the folder does not exist.
-pub(super) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
+fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
     let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
     files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))
 }
 
 /// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
 /// be locked.
-pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
+fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
     let mut files = files_in(folder)?;
     files.retain(|file| is_temporary(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
     files.iter().try_for_each(|file| remove(&file.path()))

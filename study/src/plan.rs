@@ -156,7 +156,7 @@ impl<E: Experiment> Plan<E> {
     }
 
     /// Returns the number of points of the grid.
-    pub fn point_count(&self) -> usize {
+    pub(super) fn point_count(&self) -> usize {
         self.parts.sweep.iter().map(Axis::len).product()
     }
 

@@ -143,22 +143,8 @@ impl<E: Experiment> Study<E> {
         error.into_iter().map(Err).chain(self.store.of(ramps).map(|entry| self.read(&entry)))
     }
 
-    /// Returns a value at a point of the grid, with all its finished repeats, or `None` if no repeat is
-    /// finished.
-    ///
-    /// # Errors
-    /// If there is no such point, or if a record cannot be read, is damaged, or comes from another study or
-    /// other code.
-    pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        self.store.refresh()?;
-        self.known_point(index, value)
-    }
-
+    /// Returns a value at a point of the grid, with all its finished repeats, if there are any.
     fn known_point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        let count = self.plan.point_count();
-        if index >= count {
-            return Err(StudyError::Absent { what: "point", index, count });
-        }
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
         let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
@@ -208,15 +194,6 @@ pub enum RampStatus {
 }
 
 impl<E: Experiment> Study<E> {
-    /// Returns the progress of a ramp.
-    ///
-    /// # Errors
-    /// If there is no such ramp, or the folder cannot be read.
-    pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
-        self.check_ramp(ramp)?;
-        Ok(self.all_status()?[ramp])
-    }
-
     /// Returns the progress of all ramps.
     ///
     /// # Errors

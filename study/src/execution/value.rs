@@ -194,7 +194,7 @@ impl<E: Experiment> Active<'_, E> {
     /// whether the step is done; if not, the next call continues the step, with the same bits. The error is
     /// the outcome of a value that ends early.
     pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
-        let ended = self.advance(slice, f64::INFINITY, u64::MAX);
+        let ended = self.advance(slice, f64::INFINITY);
         let time = self.run.time();
         match ended {
             Ok(RunEnd::Time) => Ok(true),
@@ -216,10 +216,10 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     /// Runs the next step to its end, and takes its sample on the way if the step has one. The time `until`
-    /// and the number of collisions `most` in the value may end the run earlier.
-    fn advance(&mut self, slice: Duration, until: f64, most: u64) -> Result<RunEnd, RunError> {
+    /// may end the run earlier.
+    fn advance(&mut self, slice: Duration, until: f64) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
-        let (most, before) = (most.min(protocol.most_collisions.unwrap_or(u64::MAX)), self.work.counters);
+        let (most, before) = (protocol.most_collisions.unwrap_or(u64::MAX), self.work.counters);
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
         let [sample_time, end] =
             [end - (1.0 - protocol.phase), end].map(|cycles| self.work.start.time(cycles, cycle));
