@@ -30,16 +30,6 @@ pub(crate) enum Level {
     Avx512,
 }
 
-impl Level {
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Built => "the build's instructions",
-            Self::Avx2 => "AVX2",
-            Self::Avx512 => "AVX-512",
-        }
-    }
-}
-
 impl Instructions {
     /// The instructions of all processors for which the crate is built.
     pub(crate) const BUILT: Self = Self(Level::Built);

@@ -47,5 +47,5 @@ mod report;
 mod states;
 
 pub use comparison::{Comparison, Finding, Quartiles, measure};
-pub use report::{Circumstances, Meter, RunReport};
+pub use report::{Meter, RunReport};
 pub use states::{PaperBox, StateError, dense, dilute};

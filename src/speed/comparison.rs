@@ -155,11 +155,6 @@ impl Comparison {
         self.nanoseconds
     }
 
-    /// Returns the number of events for each collision, in the first run and in the other.
-    pub const fn events_per_collision(&self) -> [f64; 2] {
-        self.events
-    }
-
     /// Returns whether 1 is outside the [interval](Self::interval), and on which side.
     pub fn finding(&self) -> Finding {
         match self.interval {

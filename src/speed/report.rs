@@ -1,4 +1,4 @@
-//! The report of a run: how fast it was, what it did, and on which machine. Time is processor time: other
+//! The report of a run: how fast it was, and what it did. Time is processor time: other
 //! work on the machine does not count.
 
 use std::time::{Duration, Instant};
@@ -7,7 +7,6 @@ use std::{fmt, fs};
 use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::instructions::Instructions;
 use crate::scheduler::EventScheduler;
 use crate::simulation::Counters;
 
@@ -56,7 +55,6 @@ impl Meter {
             events_per_second: counters.events() as f64 / seconds,
             events_per_collision: counters.events() as f64 / counters.disk_collisions as f64,
             counters,
-            circumstances: Circumstances::present(),
         }
     }
 }
@@ -86,18 +84,16 @@ pub struct RunReport {
     pub events_per_collision: f64,
     /// Events by kind.
     pub counters: Counters,
-    /// Machine and build.
-    pub circumstances: Circumstances,
 }
 
 impl fmt::Display for RunReport {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { disks, seconds, counters, circumstances, .. } = self;
+        let Self { disks, seconds, counters, .. } = self;
         let per_collision = |events: u64| events as f64 / counters.disk_collisions as f64;
         let (million, nanoseconds) = (1e-6 * self.collisions_per_second, self.nanoseconds_per_collision);
         writeln!(formatter, "{disks} disks, {:.6} units of time in {seconds:.3} s", self.simulated_time)?;
         writeln!(formatter, "{million:.3} million collisions a second, {nanoseconds:.1} ns each")?;
-        writeln!(
+        write!(
             formatter,
             "{:.3} million events a second; with each collision {:.3} with walls, {:.3} passages, \
              {:.3} predicted anew, {:.3} horizons",
@@ -106,58 +102,6 @@ impl fmt::Display for RunReport {
             per_collision(counters.cell_crossings),
             per_collision(counters.repredictions),
             per_collision(counters.horizons),
-        )?;
-        write!(formatter, "{circumstances}")
-    }
-}
-
-/// The machine and the build of a measurement. Times from different machines or builds cannot be compared.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-#[non_exhaustive]
-pub struct Circumstances {
-    /// Name of the processor, if the system reports it.
-    pub processor: String,
-    /// Number of processors.
-    pub processors: usize,
-    /// Operating system and architecture.
-    pub system: String,
-    /// Number of processes that ran or waited in the last minute, this one among them; unknown if empty.
-    pub load: String,
-    /// Version of this crate.
-    pub version: String,
-    /// Optimization and vector instructions with which the crate was compiled, and the instructions that it
-    /// chooses on this processor.
-    pub build: String,
-}
-
-impl Circumstances {
-    /// Returns the present circumstances.
-    pub fn present() -> Self {
-        let known = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let name = known.lines().find(|line| line.starts_with("model name"));
-        let name = name.and_then(|line| line.split_once(':')).map_or("unknown", |(_, name)| name.trim());
-        let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
-        let optimized = if cfg!(debug_assertions) { "with debug assertions" } else { "release" };
-        let wide = if cfg!(target_feature = "avx2") { "native AVX2" } else { "no flags" };
-        Self {
-            processor: name.to_owned(),
-            processors: std::thread::available_parallelism().map_or(1, usize::from),
-            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            load: load.split_whitespace().next().unwrap_or_default().to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            build: format!("{optimized}, {wide}, runs with {}", Instructions::detected().level().name()),
-        }
-    }
-}
-
-impl fmt::Display for Circumstances {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { processor, processors, system, load, version, build } = self;
-        let load = if load.is_empty() { "unknown" } else { load };
-        write!(
-            formatter,
-            "{processor}, {processors} processors, load {load}; {system}; granular-edmd {version}, {build}"
         )
     }
 }
