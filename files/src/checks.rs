@@ -59,7 +59,7 @@ pub(super) struct Overlap {
     pub(super) count: usize,
     /// True if all overlaps are counted. If very many disks lie at one place, there are too many overlaps to
     /// count.
-    pub(super) is_counted: bool,
+    is_counted: bool,
 }
 
 /// Largest number of overlaps per disk that are counted. Disks that overlap only a little have at most three

@@ -60,7 +60,7 @@ pub fn friction_of_largest_loss(rule: &Frictional, gas: &Maxwellian) -> Option<f
 }
 
 /// Returns the friction with the largest loss of disks without inelasticity; 0 if there is none.
-pub(super) fn largest_loss_of_friction(mass_ratio: f64, slip_ratio: f64) -> f64 {
+fn largest_loss_of_friction(mass_ratio: f64, slip_ratio: f64) -> f64 {
     friction_at(Slope::new(1.0, 0.0).root().unwrap_or(0.0), slip_ratio, mass_ratio)
 }
 

@@ -12,9 +12,8 @@ use crate::{Disk, Kind, ParameterError};
 /// only disks of the kind, too. Collisions keep the indices of the whole run, which are not those of these
 /// snapshots: [`Collision::ids`] name the same disks in both.
 ///
-/// In a collision with a disk of another kind, only one disk of the kind takes part. A rate per disk, such as
-/// [`rate_per_disk`](super::CollisionCounts::rate_per_disk), counts both partners as disks of the kind, and
-/// is then too high. Instead, add up the collisions [between](super::BetweenKinds) each pair of kinds, and
+/// In a collision with a disk of another kind, only one disk of the kind takes part, so a rate per disk that
+/// counts both partners is too high. Instead, add up the collisions [between](super::BetweenKinds) each pair of kinds, and
 /// count two disks of the kind for a collision within it, and one for a collision with another kind.
 ///
 /// ```

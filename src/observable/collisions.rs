@@ -14,10 +14,9 @@ use crate::statistics::Histogram;
 /// let counts = CollisionCounts::default();
 /// assert_eq!(counts.disk_collisions() + counts.wall_collisions(), 0);
 /// assert_eq!(counts.collisions_with_wall("lid"), 0);
-/// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct CollisionCounts {
     disks: u64,
     walls: ByWall<u64>,
@@ -65,16 +64,6 @@ impl CollisionCounts {
         }
     }
 
-    /// Returns the rate of disk–disk collisions per disk, if all counted collisions happened within this
-    /// duration.
-    ///
-    /// Each collision counts once for each partner. Do not use this method within an
-    /// [`OfKind`](super::OfKind): a collision with another kind has only one partner of the kind, but would
-    /// count as two.
-    pub fn rate_per_disk(&self, disks: usize, duration: f64) -> f64 {
-        2.0 * self.disks as f64 / (disks as f64 * duration)
-    }
-
     /// Forgets all collisions so far.
     pub fn clear(&mut self) {
         *self = Self::default();
@@ -119,21 +108,6 @@ impl Table for CollisionCounts {
         let counts = partners.chain(regimes).chain(self.touched().map(|(_, count)| count));
         let row = counts.map(|count| count as f64).collect();
         Box::new(std::iter::once(row))
-    }
-}
-
-crate::gate::from_file! {
-    CollisionCounts {
-        disks: u64, walls: ByWall<u64>, sticking: u64, sliding: u64, contact_duration: u64,
-        elastic_below: u64, least_rebound: u64
-     } => {
-        // The sum has 128 bits, so that sums of forged counts do not wrap.
-        let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
-        let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
-        let regimes = sum(&[sticking, sliding, contact_duration, elastic_below, least_rebound]);
-        let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
-        crate::quantity::accept(fits, "number of collisions", "at least the sum over all regimes", all as f64)?;
-        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below, least_rebound })
     }
 }
 

@@ -176,7 +176,7 @@ impl<V> Lags<V> {
     }
 
     /// Forgets the samples, so that the next sample is a new origin.
-    pub(super) fn forget_samples(&mut self) {
+    fn forget_samples(&mut self) {
         self.past.clear();
     }
 
@@ -187,7 +187,7 @@ impl<V> Lags<V> {
 }
 
 /// Returns the unwrapped positions of all disks.
-pub(super) fn places_in(snapshot: &Snapshot<'_>) -> PerDisk<DVec2> {
+fn places_in(snapshot: &Snapshot<'_>) -> PerDisk<DVec2> {
     let domain = snapshot.domain();
     PerDisk::of(snapshot.disks(), |disk| domain.unwrapped(disk))
 }

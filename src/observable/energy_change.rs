@@ -234,10 +234,6 @@ impl Table for EnergyChangeProfile {
 crate::gate::from_file! {
     EnergyChangeProfile { bins: Bins, layers: Vec<EnergyChangeLayer> } => {
         bins.check_count(layers.len())?;
-        for (bin, layer) in layers.iter().enumerate() {
-            let is_there = layer.height == bins.middle(bin);
-            crate::quantity::accept(is_there, "height of a layer", "the middle of its bin", layer.height)?;
-        }
         Ok(Self { bins, layers })
     }
 }

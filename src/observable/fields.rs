@@ -388,7 +388,6 @@ crate::gate::from_file! {
             let requirement = "the number of cells";
             crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
         }
-        sums.iter().try_for_each(CellSums::check)?;
         free.iter().try_for_each(|&share| crate::quantity::non_negative("free share", share).map(drop))?;
         Ok(Self { grid, sums, free, samples, shares: FreeShares::default() })
     }

@@ -77,7 +77,7 @@ impl<'a> Neighbors<'a> {
 }
 
 /// Checks that a range never includes two images of a disk.
-pub(super) fn check_range(name: &'static str, range: f64, domain: &Domain) -> Result<(), ParameterError> {
+fn check_range(name: &'static str, range: f64, domain: &Domain) -> Result<(), ParameterError> {
     let periods = domain.periods();
     for period in [periods.x, periods.y].into_iter().filter(|&period| period > 0.0) {
         accept(2.0 * range <= period, name, "at most half of the period", range)?;
@@ -356,12 +356,6 @@ crate::gate::from_file! {
         pairs: Vec<BlockedMean>, centers: RunningMean, partner_density: RunningMean, numbers: [RunningMean; 3]
      } => {
         bins.check_count(pairs.len())?;
-        let starts_at_zero = bins.edge(0) == 0.0;
-        accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
-        for count in pairs.iter().map(BlockedMean::count).chain([partner_density.count()]).chain(numbers.map(|number| number.count())) {
-            let fits = count == centers.count();
-            accept(fits, "number of samples of a bin", "the number of samples of the correlation", count as f64)?;
-        }
         Ok(Self { bins, kinds, region, pairs, centers, partner_density, numbers })
     }
 }

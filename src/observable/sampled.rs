@@ -166,7 +166,7 @@ impl<A: Accumulator> Observer for Sampled<A> {
 #[cfg_attr(
     feature = "serde",
     serde(
-        try_from = "serial::Raw<Q, Q::Value>",
+        deny_unknown_fields,
         bound(
             serialize = "Q: serde::Serialize, Q::Value: serde::Serialize",
             deserialize = "Q: serde::Deserialize<'de>, Q::Value: serde::Deserialize<'de>"
@@ -263,33 +263,5 @@ impl<Q: Observable> Observer for Series<Q> {
         self.times.push(snapshot.time());
         self.values.push(self.observable.measure(snapshot));
         self.sample_times.advance_past(snapshot.time());
-    }
-}
-
-#[cfg(feature = "serde")]
-mod serial {
-    use super::{Observable, SampleTimes, Series, System};
-    use crate::ParameterError;
-    use crate::quantity::{accept, finite};
-
-    #[derive(serde::Deserialize)]
-    #[serde(deny_unknown_fields, rename = "Series")]
-    pub(super) struct Raw<Q, V> {
-        observable: Q,
-        sample_times: SampleTimes,
-        times: Vec<f64>,
-        values: Vec<V>,
-    }
-
-    impl<Q: Observable> TryFrom<Raw<Q, Q::Value>> for Series<Q> {
-        type Error = ParameterError;
-
-        fn try_from(raw: Raw<Q, Q::Value>) -> Result<Self, ParameterError> {
-            let Raw { observable, sample_times, times, values } = raw;
-            let count = values.len() as f64;
-            accept(values.len() == times.len(), "number of values", "the number of times", count)?;
-            times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
-            Ok(Self { observable, sample_times, times, values, system: System::NONE })
-        }
     }
 }

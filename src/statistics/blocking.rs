@@ -114,7 +114,7 @@ impl BlockError {
 /// Returns the error from the smallest blocks beyond which the error no longer grows, and the same error
 /// raised by the share that [`EXCESS`] gives. Returns `None` if the error cannot be trusted. The levels are
 /// for sizes 1, 2, 4, ….
-pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {
+fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];
     // The error is compared with the errors from blocks half and a quarter as large. The longer of two
@@ -172,7 +172,6 @@ fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Vec<Level>"))]
 // Blocks of one number, of two, of four, …, for all sizes of which there is at least one block.
 pub struct BlockedMean(Vec<Level>);
 
@@ -266,29 +265,5 @@ impl FromIterator<f64> for BlockedMean {
         let mut mean = Self::default();
         mean.extend(values);
         mean
-    }
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Vec<Level>> for BlockedMean {
-    type Error = crate::ParameterError;
-
-    fn try_from(levels: Vec<Level>) -> Result<Self, Self::Error> {
-        use crate::quantity::{accept, finite};
-        let mut expected = levels.first().map_or(0, |level| level.blocks.count());
-        for Level { blocks, waiting } in &levels {
-            let count = blocks.count();
-            accept(
-                count == expected && count > 0,
-                "number of blocks",
-                "half of the smaller ones",
-                count as f64,
-            )?;
-            accept(waiting.is_some() == (count % 2 == 1), "odd block", "waiting for the next", count as f64)?;
-            finite("block", waiting.unwrap_or(0.0))?;
-            expected = count / 2;
-        }
-        accept(expected == 0, "number of blocks", "half of the smaller ones", 0.0)?;
-        Ok(Self(levels))
     }
 }

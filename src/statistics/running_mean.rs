@@ -8,7 +8,7 @@ use super::Estimate;
 /// The deviations are taken from the mean so far. The difference of a sum of squares and a squared sum would
 /// lose the digits of a small variance about a large mean.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(crate) struct Moments {
     pub(crate) weight: f64,
     pub(crate) mean: f64,
@@ -28,25 +28,6 @@ impl Moments {
     }
 }
 
-#[cfg(feature = "serde")]
-impl Moments {
-    /// Returns these moments, or an error if no set of numbers can have them.
-    pub(super) fn checked(self) -> Result<Self, crate::ParameterError> {
-        use crate::quantity::{accept, finite, non_negative};
-        let Self { weight, mean, squares } = self;
-        non_negative("weight of a mean", weight)?;
-        finite("mean", mean)?;
-        non_negative("sum of squared deviations", squares)?;
-        accept(weight > 0.0 || mean == 0.0, "mean of no numbers", "0", mean)?;
-        accept(weight > 0.0 || squares == 0.0, "sum of squared deviations of no numbers", "0", squares)?;
-        Ok(self)
-    }
-}
-
-crate::gate::from_file! {
-    Moments { weight: f64, mean: f64, squares: f64 } => Self { weight, mean, squares }.checked()
-}
-
 /// The mean, variance and standard error of numbers that come one by one (Welford 1962).
 ///
 /// The standard error assumes independent numbers. It is too small for correlated numbers, such as the
@@ -60,7 +41,8 @@ crate::gate::from_file! {
 /// assert!((mean.standard_error() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-15);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "RawRunningMean"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "RawRunningMean", into = "RawRunningMean"))]
 pub struct RunningMean(Moments);
 
 impl RunningMean {
@@ -123,8 +105,8 @@ impl FromIterator<f64> for RunningMean {
 
 /// The form of the mean in files.
 #[cfg(feature = "serde")]
-#[derive(serde::Serialize)]
-#[serde(rename = "RunningMean")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "RunningMean")]
 struct RawRunningMean {
     count: u64,
     mean: f64,
@@ -138,12 +120,9 @@ impl From<RunningMean> for RawRunningMean {
     }
 }
 
-crate::gate::from_file! {
-    RunningMean { count: u64, mean: f64, squares: f64 } => {
-        use crate::quantity::accept;
-        // Counts are kept as floating-point numbers, which are exact up to 2^53.
-        accept(count <= 1 << 53, "number of samples", "at most 2^53", count as f64)?;
-        accept(count != 1 || squares == 0.0, "sum of squared deviations of one number", "0", squares)?;
-        Moments { weight: count as f64, mean, squares }.checked().map(Self)
+#[cfg(feature = "serde")]
+impl From<RawRunningMean> for RunningMean {
+    fn from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Self {
+        Self(Moments { weight: count as f64, mean, squares })
     }
 }

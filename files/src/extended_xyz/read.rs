@@ -61,7 +61,7 @@ impl<'a> Keys<'a> {
     }
 
     /// Returns whether the frame names its columns.
-    pub(super) fn has_properties(&self) -> bool {
+    fn has_properties(&self) -> bool {
         matches!(self.value(&["Properties"]), Ok(Some(_)))
     }
 

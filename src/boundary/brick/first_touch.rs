@@ -119,7 +119,7 @@ impl Brick {
     }
 
     /// Returns the distance from the line or the circle on which the brick lies.
-    pub(super) fn distance_from_line(&self, place: DVec2) -> f64 {
+    fn distance_from_line(&self, place: DVec2) -> f64 {
         match self.shape {
             Shape::Segment(segment) => segment.direction.perp_dot(place - segment.from).abs(),
             Shape::Arc(arc) => (place.distance(arc.center) - arc.radius).abs(),

@@ -167,7 +167,7 @@ impl Container {
     }
 
     /// Makes a rectangle periodic where the container has no walls.
-    pub(super) fn with_sides(&self, domain: Domain) -> Domain {
+    fn with_sides(&self, domain: Domain) -> Domain {
         let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };
         if self.index(Wall::Floor).is_none() { domain.with_periodic_ends() } else { domain }
     }
