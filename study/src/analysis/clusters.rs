@@ -191,7 +191,7 @@ pub(crate) fn distinct_clusters(points: &[DVec2], noise: f64, seed: u64) -> Resu
 ///
 /// # Errors
 /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in magnitude.
-fn k_means(
+pub(crate) fn k_means(
     points: &[DVec2],
     clusters: usize,
     restarts: usize,

@@ -67,11 +67,13 @@ impl<'a, E: Experiment> Value<'a, E> {
         if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
-            let missing = self.study.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
-            let work = self.work(&run, self.study.plan.protocol().steps() - missing, measured);
-            match self.go_on((work, state, driving), self.study.folder()) {
-                Err(StudyError::Damaged { .. }) => {}
-                made => return made,
+            let (protocol, found) = (self.study.plan.protocol(), measured.samples.len() as u64);
+            if let Some(missing) = protocol.samples().checked_sub(found) {
+                let work = self.work(&run, protocol.steps() - missing, measured);
+                match self.go_on((work, state, driving), self.study.folder()) {
+                    Err(StudyError::Damaged { .. }) => {}
+                    made => return made,
+                }
             }
         }
         let mut active = self.begin_alone(run)?;

@@ -5,7 +5,7 @@ use std::fs;
 use granular_edmd_study::vibrated_box::VibratedBox;
 use granular_edmd_study::{Control, Plan, Protocol, Study, StudyError};
 
-use crate::support::{AnyError, Scratch, TEMPORARY, contents, done, small_box, small_plan};
+use crate::support::{AnyError, Scratch, TEMPORARY, contents, small_box, small_plan};
 use support::report::report;
 
 #[test]
