@@ -1,9 +1,11 @@
 //! One grain: a disk that moves and rotates.
 
+use std::fmt;
+
+use glam::DVec2;
+
 use crate::ParameterError;
 use crate::quantity::{accept, finite, positive};
-use glam::DVec2;
-use std::fmt;
 
 /// Range of a radius, a mass or a temperature. Products and quotients of a few of them stay finite and
 /// normal.

@@ -1,8 +1,9 @@
 //! The errors of an unusable parameter, and of a part that breaks the contract of its trait.
 
-use glam::DVec2;
 use std::borrow::Cow;
 use std::fmt;
+
+use glam::DVec2;
 use thiserror::Error;
 
 /// The error of a parameter outside the range in which it has a meaning.

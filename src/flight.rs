@@ -1,9 +1,10 @@
 //! Gravity, and free flight of a disk between two events.
 
+use glam::DVec2;
+
 use crate::disk::bounded;
 use crate::quantity::accept;
 use crate::{Kind, ParameterError};
-use glam::DVec2;
 
 /// Gravity: the constant acceleration of all disks in free flight.
 ///

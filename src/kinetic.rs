@@ -32,15 +32,14 @@
 //! # Ok::<(), granular_edmd::ParameterError>(())
 //! ```
 
-mod direct_simulation;
 mod iso_line;
 mod maxwellian;
-mod monte_carlo;
+mod sampling;
 
-pub use direct_simulation::DirectSimulation;
 pub use iso_line::friction_of_largest_loss;
 pub use iso_line::{IsoLine, Piece};
 pub use maxwellian::Maxwellian;
 pub use maxwellian::{effective_inelasticity, frictionless_energy_change};
 pub use maxwellian::{mean_energy_change, sticking_fraction};
-pub use monte_carlo::MonteCarlo;
+pub use sampling::DirectSimulation;
+pub use sampling::MonteCarlo;

@@ -1,11 +1,13 @@
 //! Checks of the disks of a file: against each other, for overlaps, and against their box.
 
-use super::table::Settings;
-use super::{ReadError, State};
+use std::collections::HashMap;
+
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
-use std::collections::HashMap;
+
+use super::table::Settings;
+use super::{ReadError, State};
 
 /// Disks of similar size, in squares a little wider than the largest disk.
 ///

@@ -6,14 +6,14 @@ pub(super) use read::frames;
 
 use std::io::{self, BufRead, Write};
 
+use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
+use granular_edmd::observable::Snapshot;
+use granular_edmd::{Disk, Gravity};
 
 use super::format::{half_turn, numbered, shown_depth, shown_top};
 use super::format::{no_frame, skip_lines, whole_line};
 use super::{Frame, FrameFormat};
-use granular_edmd::boundary::Domain;
-use granular_edmd::observable::Snapshot;
-use granular_edmd::{Disk, Gravity};
 
 /// The extended XYZ format: a number of disks, a line of keys, and a line for each disk.
 ///

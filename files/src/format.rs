@@ -1,11 +1,13 @@
 //! Frames of a trajectory, the trait of the formats that write them one after another, and what formats
 //! show of disks.
 
-use super::lines::LONGEST;
+use std::io::{self, BufRead, Read, Write};
+
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::observable::Snapshot;
-use std::io::{self, BufRead, Read, Write};
+
+use super::lines::LONGEST;
 
 /// Returns the disks with their ids, or with the ids 1, 2, 3, … if some have no id, because they do not come
 /// from a simulation.

@@ -9,10 +9,11 @@ pub(super) use read::{frames, frames_of_file, is_gsd};
 
 use std::io::{self, Write};
 
-use super::Frame;
-use super::format::{half_turn, numbered, shown_depth, shown_top};
 use granular_edmd::Disk;
 use granular_edmd::observable::Snapshot;
+
+use super::Frame;
+use super::format::{half_turn, numbered, shown_depth, shown_top};
 
 /// The number of rows of a chunk.
 #[derive(Debug, Clone, Copy)]

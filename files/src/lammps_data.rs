@@ -6,10 +6,11 @@ pub(super) use read::{is_data, table};
 
 use std::io::{self, Write};
 
+use granular_edmd::Disk;
+
 use super::State;
 use super::disks::sphere_mass;
 use super::format::{numbered, shown_depth, shown_top};
-use granular_edmd::Disk;
 
 /// Words in the title that distinguish the files of this crate from other files.
 const WRITER: &str = "written by granular-edmd";

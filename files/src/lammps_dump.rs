@@ -1,14 +1,16 @@
 //! Dumps of LAMMPS.
 
+use std::io::{self, BufRead, Write};
+
+use granular_edmd::Disk;
+use granular_edmd::boundary::Domain;
+
 use super::format::{no_frame, numbered, shown_depth, shown_top, skip_lines, whole_line};
 use super::{Frame, FrameFormat};
 use crate::ReadError;
 use crate::column::Quantity;
 use crate::lines::{Input, Text, as_whole, checked_box, finite, is_upright, number, whole};
 use crate::table::{Found, Table};
-use granular_edmd::Disk;
-use granular_edmd::boundary::Domain;
-use std::io::{self, BufRead, Write};
 
 /// The dump format of LAMMPS, as `dump custom` writes it.
 ///

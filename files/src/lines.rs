@@ -3,8 +3,9 @@
 use std::io::{BufRead, Read};
 use std::str::FromStr;
 
-use super::ReadError;
 use granular_edmd::boundary::Domain;
+
+use super::ReadError;
 
 /// Largest number of bytes of a line. No line of a file of disks is nearly as long, but a small compressed
 /// file can expand to one that fills the memory.

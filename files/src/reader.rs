@@ -1,15 +1,17 @@
 //! The reader of files of disks, which recognizes a format by the contents.
 
-use super::lines::Input;
-use super::table::{Found, Frames, Settings};
-use super::{ReadError, State, csv, disks, extended_xyz, gsd, lammps_data, lammps_dump};
-use granular_edmd::ParameterError;
-use granular_edmd::quantity::{accept, non_negative, positive};
 use std::collections::VecDeque;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::Path;
+
+use granular_edmd::ParameterError;
+use granular_edmd::quantity::{accept, non_negative, positive};
+
+use super::lines::Input;
+use super::table::{Found, Frames, Settings};
+use super::{ReadError, State, csv, disks, extended_xyz, gsd, lammps_data, lammps_dump};
 
 /// Number of bytes by which the format is recognized.
 const HEAD: u64 = 1 << 14;

@@ -1,11 +1,13 @@
 //! The formats of recordings, and the observer that records a run.
 
-use super::recording::{Recording, Start};
-use super::{ExtendedXyz, Frame, FrameFormat, LammpsDump, RecordError, gsd, one_file, vtk};
-use granular_edmd::observable::{Observer, ObserverError, SampleTimes, Snapshot, Verdict};
 use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
+
+use granular_edmd::observable::{Observer, ObserverError, SampleTimes, Snapshot, Verdict};
+
+use super::recording::{Recording, Start};
+use super::{ExtendedXyz, Frame, FrameFormat, LammpsDump, RecordError, gsd, one_file, vtk};
 
 /// The format of a recording.
 ///

@@ -1,12 +1,14 @@
 //! The contents of a file: columns and rows of disks, with the box, the time and gravity; and frames that
 //! were found in a file.
 
+use std::collections::HashMap;
+
+use granular_edmd::Gravity;
+use granular_edmd::boundary::Domain;
+
 use super::ReadError;
 use super::column::{Column, Quantity, settle};
 use super::lines::{LARGEST_ID, Text, as_whole, number, whole};
-use granular_edmd::Gravity;
-use granular_edmd::boundary::Domain;
-use std::collections::HashMap;
 
 /// A frame of a file, in the same form for all formats.
 ///

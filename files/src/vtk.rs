@@ -1,17 +1,19 @@
 //! Files for ParaView: XML with base64, and a series of them.
 
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use granular_edmd::Disk;
+use granular_edmd::boundary::Domain;
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::Snapshot;
+
 use super::State;
 use super::format::{numbered, shown_top};
 use crate::format::no_frame;
 use crate::recording::{Growing, Layout, Recording, Start};
 use crate::{Frame, RecordError};
-use granular_edmd::Disk;
-use granular_edmd::boundary::Domain;
-use granular_edmd::glam::DVec2;
-use granular_edmd::observable::Snapshot;
-use std::fs::{self, File};
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
 
 impl State {
     /// Writes the disks as VTK's `PolyData`, a `.vtp` file for ParaView with a point for each disk.

@@ -10,12 +10,12 @@ mod shapes;
 pub(super) use path::Path;
 
 use glam::DVec2;
+use shapes::Arc;
+use shapes::Segment;
 
 use super::Region;
 use super::area::Curve;
 use crate::Fingerprint;
-use shapes::Arc;
-use shapes::Segment;
 
 /// Length by which bricks reach beyond their ends, relative to their coordinates and sizes. Without it,
 /// rounding could leave a hole between two bricks that meet.

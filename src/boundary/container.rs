@@ -3,6 +3,8 @@
 mod answers;
 mod parts;
 
+use glam::DVec2;
+
 use super::domain::finite_point;
 use super::parts::Parts;
 use super::plane::Plane;
@@ -13,7 +15,6 @@ use crate::collision::CollisionRule;
 use crate::quantity::{accept, finite, positive};
 use crate::wall::{Combined, Motion, Piston, Stroke, WallMotion};
 use crate::{Kind, ParameterError};
-use glam::DVec2;
 
 /// A rectangular container, such as the paper's box, with [parts](super::Part) of any shape in it. Its lower
 /// left corner is at the origin unless it is [shifted](Self::shifted).

@@ -1,10 +1,12 @@
 //! Rectangles in which the centers of disks can be, and the checks of points and directions.
 
+use std::fmt;
+
+use glam::DVec2;
+
 use crate::error::Readable;
 use crate::quantity::positive;
 use crate::{Disk, ParameterError};
-use glam::DVec2;
-use std::fmt;
 
 /// Returns the unit vector at this angle from the `x` axis.
 pub(crate) fn direction(angle: f64) -> DVec2 {

@@ -14,17 +14,17 @@ mod trial;
 
 pub use pair::check_fingerprints;
 
+use area::check_areas;
+use flight::check_flights;
 use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
+use trial::{PART, Trial};
 
 use super::{Boundary, Domain, Region};
 use crate::error::require;
 use crate::random::uniform;
 use crate::{Flight, Kind, Violation};
-use area::check_areas;
-use flight::check_flights;
-use trial::{PART, Trial};
 
 /// Number of disks that fly in the check.
 const DISKS: usize = 400;

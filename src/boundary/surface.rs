@@ -1,14 +1,16 @@
 //! Surfaces of walls: their normals, their velocities, and their responses to a touch, also in owned form.
 
+use std::fmt;
+use std::sync::Arc;
+
+use glam::DVec2;
+
 use crate::collision::CollisionRule;
 #[cfg(feature = "serde")]
 use crate::collision::KnownRule;
 use crate::collision::laws::hostile_contacts;
 use crate::quantity::positive;
 use crate::{Fingerprint, Kind, ParameterError};
-use glam::DVec2;
-use std::fmt;
-use std::sync::Arc;
 
 /// The surface of a wall at the point of a touch.
 ///

@@ -1,9 +1,10 @@
 //! Queries to a boundary about one position at one time, touches of walls, and the reactions of walls that
 //! have a mass.
 
+use glam::DVec2;
+
 use crate::wall::FirstTouch;
 use crate::{Disk, Kind};
-use glam::DVec2;
 
 /// A disk at a position and a time, with which a boundary is queried.
 ///

@@ -1,9 +1,11 @@
 //! Names of a container's walls, and errors of walls and parts.
 
+use std::fmt;
+
+use thiserror::Error;
+
 use crate::error::Rounded;
 use crate::{ParameterError, Violation};
-use std::fmt;
-use thiserror::Error;
 
 /// A wall of a [`Container`](super::Container).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

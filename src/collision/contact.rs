@@ -1,7 +1,8 @@
 //! Contacts, in the form that rules receive, and impulses, the results of rules.
 
-use crate::Kind;
 use std::fmt;
+
+use crate::Kind;
 
 /// A contact of two surfaces: their closing and slip speeds, the masses that resist, and the kinds and radii
 /// of the partners.

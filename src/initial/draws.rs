@@ -1,11 +1,12 @@
 //! Radii drawn from distributions, and the velocities of a gas.
 
+use glam::DVec2;
+
 use crate::disk::LEAST_THERMAL;
 use crate::quantity::{accept, non_negative, positive};
 use crate::random::{Stream, generator, normal, uniform};
 use crate::simulation::drift_of;
 use crate::{Disk, ParameterError};
-use glam::DVec2;
 
 /// Largest distance from the median of log-normal radii, in standard deviations. The normal numbers that are
 /// made from doubles never reach this distance.

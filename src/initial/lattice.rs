@@ -1,10 +1,11 @@
 //! Placement of disks on a lattice, or in rows if their sizes differ.
 
+use glam::DVec2;
+
 use super::{CLOSE, PlacementError, check_periods, countable, room, spacings};
 use crate::boundary::{Boundary, Domain, Probe};
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
-use glam::DVec2;
 
 /// Number of consecutive rows without a free site after which the search ends. Walls may cover the floor, and
 /// under an open top there is no last row.

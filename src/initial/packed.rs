@@ -2,6 +2,11 @@
 
 mod enclosure;
 
+use std::f64::consts::PI;
+
+use enclosure::Enclosure;
+use glam::DVec2;
+
 use super::{PlacementError, countable};
 use crate::boundary::{Boundary, Domain, Probe, Squares};
 use crate::collision::Elastic;
@@ -10,9 +15,6 @@ use crate::observable::{Collision, stop_when};
 use crate::quantity::accept;
 use crate::random::{Stream, derived_seed};
 use crate::{Disk, ParameterError, Simulation};
-use enclosure::Enclosure;
-use glam::DVec2;
-use std::f64::consts::PI;
 
 /// Number of growth steps with too little change after which the disks count as jammed.
 const PATIENCE: usize = 100;

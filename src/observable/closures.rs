@@ -1,11 +1,12 @@
 //! Closures as observables and observers, also as observers that stop a run.
 
+use std::ops::ControlFlow;
+
 use super::{
     Accumulator, Collision, Named, Observable, Observer, ObserverError, SampleTimes, Sampled, Snapshot,
     Verdict,
 };
 use crate::ParameterError;
-use std::ops::ControlFlow;
 
 /// A closure that measures a snapshot; made by [`measured_by`].
 #[derive(Debug, Clone, Copy)]

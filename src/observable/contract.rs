@@ -1,12 +1,14 @@
 //! The traits [`Observable`] and [`Observer`], the promises of both sides of each trait, and the collisions
 //! that observers see.
 
+use std::ops::ControlFlow;
+
+use glam::DVec2;
+use thiserror::Error;
+
 use super::Snapshot;
 use crate::collision::{Contact, Impulse};
 use crate::{Disk, ParameterError};
-use glam::DVec2;
-use std::ops::ControlFlow;
-use thiserror::Error;
 
 /// The partner of a disk in a collision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,14 +1,16 @@
 //! Correlations in time: means over pairs of samples by the time between them, displacements, and functions
 //! of values of disks.
 
+use std::collections::VecDeque;
+
+use glam::DVec2;
+
 use super::table::{Table, headings, row};
 use super::{Heading, Observable, Observer, ObserverError, SampleTimes, Snapshot};
 use crate::disk::numbered;
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
 use crate::{Disk, ParameterError};
-use glam::DVec2;
-use std::collections::VecDeque;
 
 /// A value for each disk of a snapshot.
 ///

@@ -1,5 +1,9 @@
 //! Profiles of the packing fraction by height, and density, flow and temperatures on a grid.
 
+use std::f64::consts::PI;
+
+use glam::DVec2;
+
 use super::free_shares::{FreeShares, check_area};
 use super::grid::{CellSums, check_heights};
 use super::table::{ENERGY, Table, headings};
@@ -7,8 +11,6 @@ use super::{Accumulator, Grid, Heading, Snapshot};
 use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::statistics::Bins;
-use glam::DVec2;
-use std::f64::consts::PI;
 
 /// The bin with the largest packing fraction, and the smallest packing fraction below it; made by
 /// [`HeightProfile::densest_layer`].

@@ -1,10 +1,12 @@
 //! Mechanics of the whole system: its center of mass, the energies per disk, and walls with a mass.
 
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
 use super::{Heading, Observable, Snapshot, Tabular};
 use crate::Disk;
 use crate::boundary::direction;
-use glam::DVec2;
-use std::f64::consts::TAU;
 
 /// The position of the center of mass, or NaN without disks.
 ///

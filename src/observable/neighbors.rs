@@ -1,5 +1,9 @@
 //! The neighbors of disks, and the pair correlation function.
 
+use std::f64::consts::PI;
+
+use glam::DVec2;
+
 use super::grid::{checked_region, holds, inside};
 use super::table::{Table, headings, row};
 use super::{Accumulator, Heading, Snapshot};
@@ -7,8 +11,6 @@ use crate::boundary::{Domain, Region, Squares};
 use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
-use glam::DVec2;
-use std::f64::consts::PI;
 
 /// A search for disks near each other in a snapshot; made by [`Snapshot::neighbors`].
 pub struct Neighbors<'a> {

@@ -1,10 +1,12 @@
 //! Order: the order parameters of convection rolls, and the hexatic order of dense layers.
 
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
 use super::{Heading, Observable, Snapshot, Tabular};
 use crate::ParameterError;
 use crate::quantity::positive;
-use glam::DVec2;
-use std::f64::consts::TAU;
 
 /// The order parameters Ψ1 of one convection roll and Ψ2 of two.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

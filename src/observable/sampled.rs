@@ -1,11 +1,12 @@
 //! Series of the values of an observable, and accumulators, with the clock that both have.
 
+use std::ops::{Deref, DerefMut};
+
 use super::stretch::System;
 use super::{Collision, Observable, Observer, ObserverError, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
-use std::ops::{Deref, DerefMut};
 
 /// A measurement that accumulates snapshots.
 ///

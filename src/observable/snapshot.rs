@@ -1,12 +1,14 @@
 //! Snapshots: the state of a run at one time, with marks by which observers recognize a system and its
 //! walls.
 
-use crate::boundary::{Boundary, Domain, Probe, Region, Wall, WallView};
-use crate::{Disk, Gravity};
-use glam::DVec2;
 use std::cell::OnceCell;
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec2;
+
+use crate::boundary::{Boundary, Domain, Probe, Region, Wall, WallView};
+use crate::{Disk, Gravity};
 
 /// A mark that is unique in this process; 0 until it is assigned.
 ///

@@ -1,8 +1,9 @@
 //! Tables of measurements as text, and observables with names for their numbers.
 
+use std::io::{self, Write};
+
 use super::{Observable, Series, Snapshot};
 use crate::statistics::{Estimate, Histogram};
-use std::io::{self, Write};
 
 /// The name and the unit of a column.
 #[derive(Debug, Clone, PartialEq, Eq)]

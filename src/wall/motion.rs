@@ -1,14 +1,15 @@
 //! Motions in owned form, forwarding, and checks: finite numbers, pieces that advance, and whether a motion
 //! jumps.
 
-use super::{AccelerationBounds, Fixed, Stroke, WallMotion, WallState};
-use crate::error::require;
-use crate::forward::forward;
-use crate::{Fingerprint, Violation};
 use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
+
+use super::{AccelerationBounds, Fixed, Stroke, WallMotion, WallState};
+use crate::error::require;
+use crate::forward::forward;
+use crate::{Fingerprint, Violation};
 
 forward! { WallMotion for [&T, Box<T>, Arc<T>] {
     fn state(&self, phase: f64) -> WallState;

@@ -1,9 +1,10 @@
 //! Fixed walls and periodic motions: bi-parabolic (the paper's), harmonic, triangular, sawtooth.
 
+use std::f64::consts::TAU;
+
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::quantity::{finite, positive};
 use crate::{Fingerprint, ParameterError};
-use std::f64::consts::TAU;
 
 /// The motion of a wall that stays at its position.
 ///

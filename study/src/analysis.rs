@@ -25,13 +25,16 @@
 
 mod clusters;
 
-use self::clusters::distinct_clusters;
 pub use clusters::{Cluster, Clusters};
+
+use std::fmt;
+
 use granular_edmd::ParameterError;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{ConvectionOrder, DenseLayer};
 use granular_edmd::quantity::{accept, finite, non_negative, positive};
-use std::fmt;
+
+use self::clusters::distinct_clusters;
 
 /// The motion of the disks in one cluster of the plane of Ψ₁ and Ψ₂ (paper, section III).
 ///

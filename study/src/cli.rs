@@ -39,6 +39,8 @@ mod plans;
 mod replay;
 mod terminal;
 
+pub use plans::example;
+
 use std::error::Error;
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -46,14 +48,13 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
+use arguments::{Arguments, Command, Manner};
 use clap::Parser;
 use serde_json::json;
+use terminal::{STOP, Watch, listen, read, say};
 
 use super::errors::{PlanError, StudyError, chain};
 use super::{Control, Experiment, Plan, Progress, RampStatus, Record, Study};
-use arguments::{Arguments, Command, Manner};
-pub use plans::example;
-use terminal::{STOP, Watch, listen, read, say};
 
 /// Largest number of failed values that `status` prints, and of ramps that `check` prints; the JSON of
 /// `status` contains all.

@@ -3,10 +3,9 @@
 
 pub(super) mod record;
 
-use super::ExperimentError;
-use super::sliced::{SavedDriving, Start};
-use crate::Record;
-use crate::parameters::Scalar;
+use std::fmt;
+use std::sync::LazyLock;
+
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::observable::{Heading, Observer, Snapshot};
@@ -15,8 +14,11 @@ use granular_edmd::statistics::Estimate;
 use granular_edmd::{Disk, Fingerprint, Gravity, Simulation};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fmt;
-use std::sync::LazyLock;
+
+use super::ExperimentError;
+use super::sliced::{SavedDriving, Start};
+use crate::Record;
+use crate::parameters::Scalar;
 
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;

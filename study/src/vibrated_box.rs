@@ -4,10 +4,8 @@
 //! the measured quantities. A [`Record`] of the box has additional methods for the flow: order parameters,
 //! densest layer, energy change and noise.
 
-use super::analysis::StateCriteria;
-use super::experiment::{Meanings, meanings};
-use super::{Column, Experiment, ExperimentError, Record, Table};
-use crate::analysis::thermal_noise;
+use std::sync::LazyLock;
+
 use granular_edmd::boundary::{Container, Thermal, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Frictional, KnownRule};
 use granular_edmd::observable::{
@@ -18,7 +16,11 @@ use granular_edmd::quantity::accept;
 use granular_edmd::statistics::{BlockedMean, Estimate};
 use granular_edmd::wall::{BiParabolic, Sinusoidal, WallMotion};
 use granular_edmd::{Disk, Fingerprint, Gravity, ParameterError, initial};
-use std::sync::LazyLock;
+
+use super::analysis::StateCriteria;
+use super::experiment::{Meanings, meanings};
+use super::{Column, Experiment, ExperimentError, Record, Table};
+use crate::analysis::thermal_noise;
 
 /// The meanings of the parameters and of the columns of the tables.
 static MEANINGS: Meanings = LazyLock::new(|| meanings(include_str!("vibrated_box/meanings.txt")));

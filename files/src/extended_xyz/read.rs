@@ -1,14 +1,16 @@
 //! Reads extended XYZ: the keys of a frame, and its rows.
 
+use std::collections::BTreeSet;
+use std::io::BufRead;
+
+use granular_edmd::Gravity;
+use granular_edmd::boundary::Domain;
+use granular_edmd::glam::DVec2;
+
 use crate::ReadError;
 use crate::column::{Column, Quantity, plain};
 use crate::lines::{Input, Text, checked_box, finite, is_upright, number};
 use crate::table::{Found, Table};
-use granular_edmd::Gravity;
-use granular_edmd::boundary::Domain;
-use granular_edmd::glam::DVec2;
-use std::collections::BTreeSet;
-use std::io::BufRead;
 
 /// Largest number of columns of a disk. Without a limit, a few characters in a file could ask for any number
 /// of columns.

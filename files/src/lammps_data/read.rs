@@ -1,11 +1,13 @@
 //! Reads data files of LAMMPS: the header, and the sections.
 
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use granular_edmd::boundary::Domain;
+
 use crate::ReadError;
 use crate::lines::{Lines, Text, checked_box, finite, is_upright, whole};
 use crate::table::Table;
-use granular_edmd::boundary::Domain;
-use std::cmp::Ordering;
-use std::collections::HashMap;
 
 /// The values of the header that the reader needs.
 #[derive(Debug, Default)]

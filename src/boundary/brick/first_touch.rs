@@ -1,12 +1,13 @@
 //! The first touch of a brick, also while it moves in a strip.
 
+use glam::DVec2;
+
 use super::path::Path;
 use super::shapes::Arc;
 use super::{Brick, Shape, Side};
 use crate::Flight;
 use crate::boundary::Region;
 use crate::roots::first_descent_of_quartic;
-use glam::DVec2;
 
 impl Brick {
     /// Returns the first time, from the start of a flight to `until`, at which the disk touches the brick and

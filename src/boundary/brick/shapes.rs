@@ -1,11 +1,13 @@
 //! Straight bricks, and round ones: circles, arcs and points.
 
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
 use super::path::{Beside, Path};
 use super::{MARGIN, Side, Sight};
 use crate::boundary::Region;
 use crate::boundary::domain::direction;
-use glam::DVec2;
-use std::f64::consts::TAU;
 
 /// A straight brick. Its left side is on the left of its direction.
 #[derive(Debug, Clone, Copy, PartialEq)]

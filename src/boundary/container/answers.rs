@@ -1,5 +1,7 @@
 //! A container as a boundary, and the room between its walls.
 
+use glam::DVec2;
+
 use super::Container;
 use crate::boundary::plane::Plane;
 use crate::boundary::{
@@ -8,7 +10,6 @@ use crate::boundary::{
 use crate::quantity::accept;
 use crate::wall::{Motion, Stroke};
 use crate::{Fingerprint, Flight, ParameterError};
-use glam::DVec2;
 
 impl Boundary for Container {
     fn domain(&self) -> Domain {

@@ -1,5 +1,9 @@
 //! The shapes of parts: their constructors, the sides of polygons, and corners, where bricks end.
 
+use std::collections::HashMap;
+
+use glam::DVec2;
+
 use super::{Part, Travel};
 use crate::boundary::WallError;
 use crate::boundary::brick::Brick;
@@ -7,8 +11,6 @@ use crate::boundary::domain::finite_point;
 use crate::boundary::surface::Conduct;
 use crate::quantity::accept;
 use crate::{Disk, Kind};
-use glam::DVec2;
-use std::collections::HashMap;
 
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.

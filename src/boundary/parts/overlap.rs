@@ -6,12 +6,13 @@
 //! the part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away,
 //! a table decides: it lists, for each cell of the index, the parts that fill the cell.
 
+use glam::DVec2;
+
 use super::index::{Entry, Index};
 use super::{Parts, Placed};
 use crate::boundary::area::{Curve, Field, meet};
 use crate::boundary::part::Sighted;
 use crate::boundary::{Overlap, Probe, Region};
-use glam::DVec2;
 
 impl Parts {
     /// Returns the wall of a part that a disk penetrates most deeply, and the depth.
