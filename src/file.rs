@@ -20,14 +20,10 @@
 //! ```
 
 #[cfg(feature = "serde")]
-mod seal;
-#[cfg(feature = "serde")]
-mod whole;
+mod sealed;
 
 #[cfg(feature = "serde")]
-pub use seal::{Damage, Seal};
-#[cfg(feature = "serde")]
-pub use whole::{Draft, is_temporary, unique_name, write_whole};
+pub use sealed::{Damage, Draft, Seal, is_temporary, unique_name, write_whole};
 
 use std::fs::{File, TryLockError};
 use std::io;

@@ -9,7 +9,7 @@ use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 
-use super::archive::{Archive, Chunk};
+use super::{Archive, Chunk};
 use crate::ReadError;
 use crate::column::Column;
 use crate::lines::{as_whole, checked_box, is_upright};

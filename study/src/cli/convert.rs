@@ -9,8 +9,7 @@ use granular_edmd::{Disk, ParameterError};
 use granular_edmd_files::{ByEnding, ExtendedXyz, Frame, FrameFormat, LammpsDump, Reader, Recorder, State};
 
 use super::arguments::Convert;
-use super::terminal::{tell, write_new};
-use super::{End, Failure, PlanError};
+use super::{End, Failure, PlanError, tell, write_new};
 
 impl Convert {
     fn reader(&self) -> Result<Reader, ParameterError> {

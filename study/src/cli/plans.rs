@@ -9,8 +9,7 @@ use std::time::Duration;
 use granular_edmd::simulation::Limits;
 use granular_edmd::speed::Meter;
 
-use super::terminal::{read, say, write_new};
-use super::{End, Failure, LISTED, core_time};
+use super::{End, Failure, LISTED, core_time, read, say, write_new};
 use crate::experiment::{Meanings, OF_TABLES, find, meanings, of_error};
 use crate::vibrated_box::{Base, VibratedBox};
 use crate::{

@@ -20,8 +20,7 @@ use granular_edmd_files::{ByEnding, Reader, Recorder};
 
 use super::arguments::{Place, Replay, Trajectory};
 use super::convert::Ending;
-use super::terminal::{Watch, end_at_once, read, say, tell, wrote};
-use super::{End, Failure, chain};
+use super::{End, Failure, Watch, chain, end_at_once, read, say, tell, wrote};
 use crate::execution::value::play::{Found, Pause, Player};
 use crate::{Experiment, ExperimentError, Plan, PlanError, Progress, Run, Scalar, Study, StudyError};
 
