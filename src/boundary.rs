@@ -29,45 +29,40 @@
 
 mod area;
 mod brick;
-mod conduct;
 mod container;
 mod domain;
-mod error;
-mod forward;
 pub mod laws;
 mod part;
 mod parts;
 mod plane;
-mod probe;
-mod reaction;
 mod squares;
 mod surface;
 mod touch;
-mod vector;
 mod view;
 mod wall;
 
 pub use brick::Brick;
 #[doc(alias("vessel", "silo", "hopper", "hourglass", "obstacles"))]
 pub use container::Container;
+pub(crate) use domain::direction;
 pub use domain::{Domain, Region};
-pub use error::WallError;
 pub use part::Part;
-pub use probe::{Overlap, Probe};
-pub use reaction::{Impact, Reaction};
 pub(crate) use squares::Squares;
 #[doc(alias("thermostat", "heat bath"))]
 pub use surface::Thermal;
 pub use surface::{Response, Surface};
 pub use touch::Touch;
-pub(crate) use vector::direction;
+pub use touch::{Impact, Reaction};
+pub use touch::{Overlap, Probe};
 pub use view::WallView;
 pub use wall::Wall;
+pub use wall::WallError;
 
 pub use crate::wall::FirstTouch;
 
 use glam::DVec2;
 
+use crate::forward::forward;
 use crate::quantity::accept;
 use crate::{Fingerprint, Flight, ParameterError};
 
@@ -370,3 +365,23 @@ pub trait Boundary {
         None
     }
 }
+
+forward! { Boundary for [&mut T, Box<T>] {
+    fn domain(&self) -> Domain;
+    fn interior(&self) -> Domain;
+    fn wall_count(&self) -> usize;
+    fn wall(&self, wall: usize, time: f64) -> WallView<'_>;
+    fn may_touch(&self, region: &Region, radius: f64) -> bool;
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
+    fn overlap(&self, probe: &Probe) -> Option<Overlap>;
+    fn tight_fit(&self, radius: f64) -> Option<usize>;
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64>;
+    fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool;
+    fn state(&self) -> Vec<f64>;
+    fn fingerprint(&self) -> Option<Fingerprint>;
+    mut
+    fn react(&mut self, impact: &Impact) -> Reaction;
+    fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError>;
+    fn set_time_origin(&mut self, origin: f64);
+}}

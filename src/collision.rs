@@ -50,7 +50,6 @@
 mod contact;
 mod encounter;
 mod frictional;
-mod impulse;
 mod inelasticity;
 mod known;
 pub mod laws;
@@ -58,10 +57,10 @@ mod remedies;
 mod without_friction;
 
 pub use contact::Contact;
+pub use contact::{Impulse, Regime};
 pub(crate) use encounter::{Body, Material, after, collide_after, collide_bodies, contact_of, momentum};
 pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
 pub use frictional::{Friction, Frictional, SpeedDependent};
-pub use impulse::{Impulse, Regime};
 pub use known::{FromFn, KnownRule, RulesByKind, from_fn};
 pub use remedies::{ContactDuration, ElasticBelow, LeastRebound, RollingFriction, TangentialResponse};
 pub use without_friction::{Elastic, Rough, Smooth};

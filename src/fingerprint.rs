@@ -4,7 +4,7 @@ use std::any::type_name;
 use std::fmt;
 
 use crate::Violation;
-use crate::violation::require;
+use crate::error::require;
 
 /// Identity of a part of a simulation: equal for parts made alike, different for parts that act differently.
 ///

@@ -20,19 +20,17 @@
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. They therefore work in
 //! a boundary of any shape, even if it leaves only some of its interior free.
 
+mod draws;
 mod lattice;
 mod packed;
-mod radii;
-mod rows;
 mod scattered;
-mod velocities;
 
+pub use draws::{Radii, disks_from_radii};
+pub use draws::{with_maxwellian_velocities, without_drift};
+pub use lattice::placed_in_rows;
 pub use lattice::{even_lattice, lattice, triangular_lattice};
 pub use packed::packed_mix;
-pub use radii::{Radii, disks_from_radii};
-pub use rows::placed_in_rows;
 pub use scattered::{scattered, scattered_mix};
-pub use velocities::{with_maxwellian_velocities, without_drift};
 
 use glam::DVec2;
 use thiserror::Error;

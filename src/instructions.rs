@@ -30,16 +30,6 @@ pub(crate) enum Level {
     Avx512,
 }
 
-impl Level {
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Built => "the build's instructions",
-            Self::Avx2 => "AVX2",
-            Self::Avx512 => "AVX-512",
-        }
-    }
-}
-
 impl Instructions {
     /// The instructions of all processors for which the crate is built.
     pub(crate) const BUILT: Self = Self(Level::Built);
@@ -182,3 +172,24 @@ macro_rules! compiled_for_each {
 }
 
 pub(crate) use compiled_for_each;
+
+/// Asks the processor to fetch the cache line of an element. Nothing happens if there is no such element.
+///
+/// In a system larger than the caches, each event touches dozens of lines that no cache holds. Waiting for
+/// them one by one takes most of the time of a run. Lines that are requested some events ahead arrive in
+/// time, side by side.
+#[inline(always)]
+#[allow(unsafe_code)]
+pub(crate) fn prefetch<T>(slice: &[T], index: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(element) = slice.get(index) {
+        // SAFETY: a prefetch reads and writes nothing that the program can see, and the address belongs to a
+        // live element. SSE is part of every x86-64 processor.
+        unsafe {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(element).cast());
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (slice, index);
+}

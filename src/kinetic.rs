@@ -32,20 +32,14 @@
 //! # Ok::<(), granular_edmd::ParameterError>(())
 //! ```
 
-mod bisection;
-mod closed_form;
-mod direct_simulation;
-mod effective_inelasticity;
 mod iso_line;
-mod largest_loss;
 mod maxwellian;
-mod monte_carlo;
-mod stick_slip;
+mod sampling;
 
-pub use closed_form::{mean_energy_change, sticking_fraction};
-pub use direct_simulation::DirectSimulation;
-pub use effective_inelasticity::{effective_inelasticity, frictionless_energy_change};
+pub use iso_line::friction_of_largest_loss;
 pub use iso_line::{IsoLine, Piece};
-pub use largest_loss::friction_of_largest_loss;
 pub use maxwellian::Maxwellian;
-pub use monte_carlo::MonteCarlo;
+pub use maxwellian::{effective_inelasticity, frictionless_energy_change};
+pub use maxwellian::{mean_energy_change, sticking_fraction};
+pub use sampling::DirectSimulation;
+pub use sampling::MonteCarlo;

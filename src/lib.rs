@@ -87,14 +87,11 @@ mod fingerprint;
 mod flight;
 mod forward;
 mod gate;
-mod gravity;
 pub mod guide;
 pub mod initial;
 mod instructions;
-mod kind;
 pub mod kinetic;
 pub mod observable;
-mod prefetch;
 pub mod prelude;
 pub mod quantity;
 pub mod random;
@@ -106,7 +103,6 @@ pub mod speed;
 pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;
-mod violation;
 pub mod wall;
 
 /// Version number of the results.
@@ -117,11 +113,11 @@ pub mod wall;
 pub const RESULTS: u32 = 2;
 
 pub use disk::Disk;
+pub use disk::Kind;
 pub use error::ParameterError;
+pub use error::Violation;
 pub use fingerprint::Fingerprint;
 pub use flight::Flight;
+pub use flight::Gravity;
 pub use glam;
-pub use gravity::Gravity;
-pub use kind::Kind;
 pub use simulation::Simulation;
-pub use violation::Violation;

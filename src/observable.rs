@@ -102,106 +102,88 @@
 //! formats may lose bits: JSON has no NaN, and its reader must round correctly (serde_json's
 //! `float_roundtrip`).
 
+mod adaptors;
 mod arrivals;
-mod by_collisions;
-mod by_kind;
 mod by_wall;
-mod center_of_mass;
 mod closures;
-mod collision_counts;
-mod collision_event;
-mod collision_histograms;
+mod collisions;
 mod compose;
 mod contract;
+mod correlation;
 mod crossings;
-mod energies;
 mod energy_change;
-mod energy_change_profile;
 mod fields;
 mod free_shares;
-mod free_wall;
 mod grid;
-mod height_profile;
-mod hexatic_order;
-mod lags;
 pub mod laws;
-mod marks;
-mod mean_squared_displacement;
+mod mechanics;
 mod neighbors;
-mod order_parameters;
-mod pair_correlation;
-mod per_disk;
+mod order;
 mod sample_times;
 mod sampled;
-mod series;
 mod snapshot;
-mod stop;
 mod stress;
 mod stretch;
-mod system;
 mod table;
-mod tabular;
 mod temperatures;
-mod temperatures_about_flow;
-mod time_correlation;
 mod velocity_distribution;
 mod wall_stress;
 
+pub use adaptors::ByCollisions;
+pub use adaptors::{BetweenKinds, OfKind};
 #[doc(alias("flow", "flux", "discharge"))]
 pub use arrivals::Arrivals;
-pub use by_collisions::ByCollisions;
-pub use by_kind::{BetweenKinds, OfKind};
-pub use center_of_mass::CenterOfMass;
 pub use closures::{MeasuredBy, OnCollision, OnSample, measured_by, on_collision, on_sample};
+pub use closures::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 #[doc(alias("collision rate", "collision frequency"))]
-pub use collision_counts::CollisionCounts;
-pub use collision_event::{Collision, Partner};
-pub use collision_histograms::CollisionHistograms;
+pub use collisions::CollisionCounts;
+pub use collisions::CollisionHistograms;
 #[doc(alias("compute", "measurement"))]
 pub use contract::Observable;
 #[doc(alias("callback", "hook", "fix"))]
 pub use contract::Observer;
+pub use contract::{Collision, Partner};
 pub use contract::{ObserverError, Verdict};
+#[doc(alias("MSD", "mean squared", "diffusion"))]
+pub use correlation::MeanSquaredDisplacement;
+pub use correlation::PerDisk;
+#[doc(alias("autocorrelation", "VACF"))]
+pub use correlation::{InnerProduct, TimeCorrelation, Velocities};
 #[doc(alias("counter", "flux", "throughput"))]
 pub use crossings::Crossings;
-pub use energies::{Energies, EnergyPerDisk};
 #[doc(alias("dissipation", "energy loss", "dE"))]
 pub use energy_change::EnergyChange;
-pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
+pub use energy_change::{EnergyChangeLayer, EnergyChangeProfile};
+#[doc(alias("density profile", "volume fraction"))]
+pub use fields::{DenseLayer, HeightProfile};
 #[doc(alias("density", "velocity field", "coarse-graining"))]
 pub use fields::{FieldCell, Fields};
-#[doc(alias("piston"))]
-pub use free_wall::{FreeWall, FreeWallMotion};
 pub use grid::Grid;
-#[doc(alias("density profile", "volume fraction"))]
-pub use height_profile::{DenseLayer, HeightProfile};
-#[doc(alias("psi6", "bond order", "hexagonal order"))]
-pub use hexatic_order::{Hexatic, HexaticOrder};
-pub(crate) use marks::Mark;
-#[doc(alias("MSD", "mean squared", "diffusion"))]
-pub use mean_squared_displacement::MeanSquaredDisplacement;
+pub use mechanics::CenterOfMass;
+pub use mechanics::{Energies, EnergyPerDisk};
+#[doc(alias("piston"))]
+pub use mechanics::{FreeWall, FreeWallMotion};
+#[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
+pub use neighbors::PairCorrelation;
 #[doc(alias("coordination number", "contacts"))]
 pub use neighbors::{Neighbor, Neighbors};
 #[doc(alias("convection", "psi", "Ψ1", "Ψ2"))]
-pub use order_parameters::{ConvectionOrder, OrderParameters};
-#[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
-pub use pair_correlation::PairCorrelation;
-pub use per_disk::PerDisk;
+pub use order::{ConvectionOrder, OrderParameters};
+#[doc(alias("psi6", "bond order", "hexagonal order"))]
+pub use order::{Hexatic, HexaticOrder};
 pub use sample_times::SampleTimes;
+pub use sampled::Series;
 pub use sampled::{Accumulator, Sampled};
-pub use series::Series;
+pub(crate) use snapshot::Mark;
 pub(crate) use snapshot::Moving;
 pub use snapshot::Snapshot;
-pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 #[doc(alias("pressure", "pressure tensor", "virial"))]
 pub use stress::{Stress, StressTensor};
 pub use table::Table;
-pub use tabular::{Heading, Named, Tabular};
+pub use table::{Heading, Named, Tabular};
+pub use temperatures::TemperaturesAboutFlow;
 #[doc(alias("granular temperature"))]
 pub use temperatures::{Temperature, Temperatures};
-pub use temperatures_about_flow::TemperaturesAboutFlow;
-#[doc(alias("autocorrelation", "VACF"))]
-pub use time_correlation::{InnerProduct, TimeCorrelation, Velocities};
 #[doc(alias("velocity distribution", "Sonine", "kurtosis", "Maxwellian"))]
 pub use velocity_distribution::VelocityDistribution;
 #[doc(alias("pressure", "wall force"))]

@@ -26,15 +26,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod differences;
-mod steps;
-
-pub use differences::{Differences, OtherPartner, TooFarApart};
-pub use steps::{Replayed, Steps};
+use std::collections::{HashMap, VecDeque};
 
 use crate::ParameterError;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::observable::{Collision, Partner, on_collision};
 use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
@@ -249,5 +246,193 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         let partners = Self::other_partners(pairs[0], end, failed)?;
         let apart = Self::first_apart(pairs, tolerance)?;
         Ok(Some(Differences { partners, apart }))
+    }
+}
+
+/// A collision that was played back.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Replayed {
+    /// Number of the collision, counted from 1.
+    pub number: u64,
+    /// Id of the disk whose event it was.
+    pub id: u64,
+    /// Id of the other disk; `None` if the partner is a wall.
+    pub partner_id: Option<u64>,
+    /// The collision. Its indices are the indices at that time.
+    pub collision: Collision,
+}
+
+/// A run that advances by one collision at a time, and identifies the disks of each collision by their ids.
+///
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::replay::Steps;
+///
+/// let container = Container::closed(12.0, 12.0)?;
+/// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 40, 0.5)?, 1.0, 1)?;
+/// let mut steps = Steps::new(Simulation::builder(Elastic, container).disks(disks).build()?);
+/// let first = steps.next(5.0)?.ok_or("no collision until 5")?;
+/// assert_eq!((first.number, first.collision.time), (1, steps.run().time()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Steps<R, B, S> {
+    run: Simulation<R, B, S>,
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
+    /// Creates the steps of this run.
+    pub const fn new(run: Simulation<R, B, S>) -> Self {
+        Self { run }
+    }
+
+    /// Returns the run after the last step.
+    pub const fn run(&self) -> &Simulation<R, B, S> {
+        &self.run
+    }
+
+    /// Advances to the next collision, or to the absolute time `end` if no collision happens up to and
+    /// including that time; the result is then `None`.
+    ///
+    /// # Errors
+    /// The same as for [`Simulation::step_until`].
+    pub fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
+        let mut last = None;
+        self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
+        Ok(last.map(|collision| {
+            let [id, partner] = collision.ids;
+            let partner_id = matches!(collision.partner, Partner::Disk(_)).then_some(partner);
+            Replayed { number: self.run.counters().collisions(), id, partner_id, collision }
+        }))
+    }
+}
+
+/// Number of halvings of the interval in which two runs diverge.
+const HALVINGS: u32 = 40;
+
+/// The first differences of two runs.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Differences {
+    /// The first collision in which a disk meets different partners in the two runs; `None` if all partners
+    /// are the same.
+    pub partners: Option<OtherPartner>,
+    /// The first time at which a disk is farther from its position in the other run than the tolerance;
+    /// `None` if no disk is farther away than that at the end of any interval.
+    pub apart: Option<TooFarApart>,
+}
+
+/// The n-th collision of a disk in one run, and its n-th collision in the other.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct OtherPartner {
+    /// Id of the disk.
+    pub id: u64,
+    /// The collisions.
+    pub collisions: [Replayed; 2],
+}
+
+/// A disk that is far from its position in the other run.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TooFarApart {
+    /// Id of the disk.
+    pub id: u64,
+    /// Absolute time.
+    pub time: f64,
+    /// Distance between the two positions.
+    pub distance: f64,
+}
+
+/// A pair of states at the same time.
+type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
+
+impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
+    /// Compares the partners of each disk, taking collisions from both runs alternately. A run that `failed`
+    /// ends at its error.
+    fn other_partners(
+        pair: Pair<'_, R, B, S>,
+        end: f64,
+        failed: [bool; 2],
+    ) -> Result<Option<OtherPartner>, RunError> {
+        let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
+        // For each disk, the collisions of the run that is ahead, and the number of this run.
+        let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
+        let mut are_over = [false; 2];
+        while are_over != [true; 2] {
+            for (which, run) in runs.iter_mut().enumerate() {
+                if are_over[which] {
+                    continue;
+                }
+                let next = match run.next(end) {
+                    Err(_) if failed[which] => None,
+                    next => next?,
+                };
+                let Some(collision) = next else {
+                    are_over[which] = true;
+                    continue;
+                };
+                for id in [Some(collision.id), collision.partner_id].into_iter().flatten() {
+                    let (leader, waiting) = ahead.entry(id).or_default();
+                    if waiting.is_empty() || *leader == which {
+                        *leader = which;
+                        waiting.push_back(collision.clone());
+                    } else if let Some(other) = waiting.pop_front()
+                        && partner_of(&other, id) != partner_of(&collision, id)
+                    {
+                        let mut collisions = [other, collision];
+                        collisions.rotate_left(1 - which);
+                        return Ok(Some(OtherPartner { id, collisions }));
+                    }
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Finds the first interval at whose end a disk is too far away, and halves it again and again.
+    fn first_apart(pairs: &[Pair<'_, R, B, S>], tolerance: f64) -> Result<Option<TooFarApart>, RunError> {
+        if let Some(apart) = pairs.first().and_then(|&start| Self::farthest(start, tolerance)) {
+            return Ok(Some(apart));
+        }
+        let found =
+            pairs.windows(2).find_map(|window| Some((window[0], Self::farthest(window[1], tolerance)?)));
+        let Some((start, mut apart)) = found else { return Ok(None) };
+        let mut near = (start.0.clone(), start.1.clone());
+        for _ in 0..HALVINGS {
+            let time = near.0.time() + 0.5 * (apart.time - near.0.time());
+            let mut middle = near.clone();
+            middle.0.run_until(time, &mut ())?;
+            middle.1.run_until(time, &mut ())?;
+            match Self::farthest((&middle.0, &middle.1), tolerance) {
+                Some(earlier) => apart = earlier,
+                None => near = middle,
+            }
+        }
+        Ok(Some(apart))
+    }
+
+    /// Returns the disk that is farthest from its position in the other run, if the distance exceeds the
+    /// tolerance.
+    fn farthest((first, second): Pair<'_, R, B, S>, tolerance: f64) -> Option<TooFarApart> {
+        let domain = first.boundary().domain();
+        let others: HashMap<u64, _> =
+            second.disks().iter().map(|disk| (disk.id(), disk.position())).collect();
+        let apart = |disk: &crate::Disk| {
+            let distance = domain.separation(disk.position(), *others.get(&disk.id())?).length();
+            Some(TooFarApart { id: disk.id(), time: first.time(), distance })
+        };
+        let all = first.disks();
+        let far = all.iter().filter_map(apart).filter(|apart| apart.distance > tolerance);
+        far.max_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+}
+
+/// Returns the partner with which this disk collided: the id of a disk, or else a wall.
+fn partner_of(replayed: &Replayed, id: u64) -> (Option<u64>, Option<Partner>) {
+    match replayed.partner_id {
+        Some(partner) => (Some(if partner == id { replayed.id } else { partner }), None),
+        None => (None, Some(replayed.collision.partner)),
     }
 }

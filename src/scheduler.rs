@@ -14,17 +14,12 @@
 //! A custom scheduler implements [`EventScheduler`], and [`laws::check`] tests it in one line.
 
 mod bucket_queue;
-mod by_size;
-mod entry;
 pub mod laws;
 mod tournament_tree;
 
-pub use bucket_queue::BucketQueue;
-pub(crate) use by_size::LARGE_SYSTEM;
-pub use by_size::{BySize, LinearScan};
-pub use tournament_tree::TournamentTree;
-
 use crate::forward::forward;
+pub use bucket_queue::BucketQueue;
+pub use tournament_tree::TournamentTree;
 
 /// The result of a scheduler without disks.
 ///
@@ -90,8 +85,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scheduler of events",
     label = "this type does not implement `EventScheduler`",
-    note = "the default is `scheduler::BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
-    note = "a custom scheduler implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
+    note = "the default is `BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
+    note = "a custom scheduler implements `reset`, `set` and `earliest`; `laws::check` tests it"
 )]
 pub trait EventScheduler {
     /// Replaces all disks and times by these times, one for each disk.
@@ -126,3 +121,143 @@ forward! { EventScheduler for [&mut T, Box<T>] {
     fn set(&mut self, disk: usize, due: f64);
     fn upcoming(&mut self, disks: &mut Vec<usize>);
 }}
+
+/// A disk with the time at which it is due, ordered by time and then by disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    /// The time as an integer, in the same order.
+    order: u64,
+    disk: usize,
+}
+
+const SIGN: u64 = 1 << 63;
+
+impl Default for Entry {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl Entry {
+    /// The entry of no disk, which comes after all others.
+    const EMPTY: Self = Self { order: u64::MAX - 1, disk: usize::MAX };
+
+    #[inline]
+    fn new(disk: usize, due: f64) -> Self {
+        // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow
+        // with the float, and the bits of a negative one with its magnitude. For a negative float, all bits
+        // are flipped; for a positive one, only the sign.
+        let bits = (due + 0.0).to_bits();
+        Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
+    }
+
+    #[inline]
+    fn due(self) -> f64 {
+        f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
+    }
+
+    /// Returns the result of [`EventScheduler::earliest`](EventScheduler::earliest) if this entry is
+    /// the first.
+    #[inline]
+    fn answer(self) -> (usize, f64) {
+        if self == Self::EMPTY { NOTHING_DUE } else { (self.disk, self.due()) }
+    }
+}
+
+/// The simplest scheduler, which searches all times for the earliest at each call.
+///
+/// It is slow and obviously right, so all other schedulers are tested against it.
+#[derive(Debug, Clone, Default)]
+pub struct LinearScan {
+    due: Vec<f64>,
+}
+
+impl LinearScan {
+    /// Creates a scheduler without disks.
+    pub const fn new() -> Self {
+        Self { due: Vec::new() }
+    }
+}
+
+impl EventScheduler for LinearScan {
+    fn reset(&mut self, due: &[f64]) {
+        self.due.clear();
+        self.due.extend_from_slice(due);
+    }
+
+    fn set(&mut self, disk: usize, due: f64) {
+        self.due[disk] = due;
+    }
+
+    fn earliest(&self) -> (usize, f64) {
+        let mut first = NOTHING_DUE;
+        for (disk, &due) in self.due.iter().enumerate() {
+            // An infinite time is not before the time of `NOTHING_DUE`, but its disk exists.
+            if due < first.1 || first.0 == usize::MAX {
+                first = (disk, due);
+            }
+        }
+        first
+    }
+}
+
+/// Number of disks beyond which the system no longer fits into the caches.
+///
+/// Above this number, events wait for memory, and work that saves memory accesses pays off: a calendar that
+/// is turned page by page ([`BucketQueue`]), and early requests for the data of the next events. Below this
+/// number, the same work is a loss. The number comes from the program `scaling` in `tools`. The optimum is
+/// flat, so one number serves both kinds of work.
+pub(crate) const LARGE_SYSTEM: usize = 30_000;
+
+/// A [`TournamentTree`] for fewer than 30 000 disks, and otherwise a [`BucketQueue`].
+///
+/// ```
+/// use granular_edmd::scheduler::{BySize, EventScheduler};
+///
+/// let mut scheduler = BySize::default();
+/// scheduler.reset(&vec![1.0; 100_000]);
+/// scheduler.set(70_000, 0.5);
+/// assert_eq!(scheduler.earliest(), (70_000, 0.5));
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct BySize {
+    tree: TournamentTree,
+    queue: BucketQueue,
+    /// True if the queue is in use and the tree is empty; false if the tree is in use and the queue is empty.
+    is_large: bool,
+}
+
+impl BySize {
+    /// Creates a scheduler without disks.
+    pub const fn new() -> Self {
+        Self { tree: TournamentTree::new(), queue: BucketQueue::new(), is_large: false }
+    }
+}
+
+impl EventScheduler for BySize {
+    fn reset(&mut self, due: &[f64]) {
+        let is_large = due.len() >= LARGE_SYSTEM;
+        if is_large != self.is_large {
+            *self = Self { is_large, ..Self::new() };
+        }
+        if is_large { self.queue.reset(due) } else { self.tree.reset(due) }
+    }
+
+    // In builds with debug assertions, unoptimized tests call the optimized copy of this crate.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn set(&mut self, disk: usize, due: f64) {
+        if self.is_large { self.queue.set(disk, due) } else { self.tree.set(disk, due) }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn earliest(&self) -> (usize, f64) {
+        if self.is_large { self.queue.earliest() } else { self.tree.earliest() }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline)]
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
+        if self.is_large {
+            self.queue.upcoming(disks);
+        }
+    }
+}

@@ -24,14 +24,12 @@
 //! assert!(estimate.standard_error() > 3.0 * mean.ungrouped().standard_error());
 //! ```
 
-mod blocking;
 mod estimate;
 mod histogram;
-mod running_mean;
+mod means;
 
-pub use blocking::{BlockedMean, block_average};
 pub use estimate::Estimate;
 pub(crate) use histogram::Bins;
 pub use histogram::{Histogram, HistogramBin};
-pub(crate) use running_mean::Moments;
-pub use running_mean::RunningMean;
+pub(crate) use means::Moments;
+pub use means::{BlockedMean, RunningMean, block_average};

@@ -39,7 +39,6 @@
 //! for an example, and [`laws`] for a check of a custom motion.
 
 mod combined;
-mod finite;
 mod first_touch;
 mod known;
 pub mod laws;
@@ -49,12 +48,12 @@ mod piston;
 mod tabulated;
 
 pub use combined::Combined;
-pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use known::KnownMotion;
 #[cfg(feature = "serde")]
 pub(crate) use known::motion_or_piston;
 pub(crate) use motion::Motion;
+pub use motion::check_finite;
 pub use oscillation::{BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular};
 pub use piston::Piston;
 pub(crate) use piston::Stroke;
@@ -224,7 +223,7 @@ pub trait WallMotion {
     ///
     /// The default examines the first period, or the first thousand pieces if these end earlier.
     fn jumps(&self) -> bool {
-        finite::seen_to_jump(self)
+        motion::seen_to_jump(self)
     }
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.

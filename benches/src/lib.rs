@@ -21,6 +21,15 @@ pub fn report(outcome: Outcome<()>) -> ExitCode {
     }
 }
 
+/// Returns the processor, the system and the load of the machine.
+pub fn machine() -> String {
+    let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let name = name.map_or("unknown processor", |(_, name)| name);
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{name}, {processors} processors, load {}; {}", load(), std::env::consts::OS)
+}
+
 /// Prints how this program was compiled, and how busy the machine is.
 pub fn print_circumstances() {
     let wide = if cfg!(target_feature = "avx2") {

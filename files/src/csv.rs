@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 
 use super::column::{Column, FRAMES, TIMES, name_and_unit, plain};
-use super::found::{Found, Settings, TORN};
+use super::format::numbered;
 use super::lines::{Lines, Text, as_whole, finite, lossy};
-use super::shown::numbered;
 use super::table::Table;
+use super::table::{Found, Settings, TORN};
 use super::{ReadError, State};
 
 /// Units that need no conversion; `sigma` is the reduced unit of length of many programs.

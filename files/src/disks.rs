@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
+use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
+use granular_edmd::{Disk, Kind, ParameterError};
 
 use super::checks::{IMAGES, number, settle};
 use super::column::Quantity::{
@@ -10,11 +12,9 @@ use super::column::Quantity::{
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
 use super::column::SLOTS;
-use super::found::{RADIUS_IGNORED, Settings};
 use super::table::Table;
+use super::table::{RADIUS_IGNORED, Settings};
 use super::{ReadError, State, table};
-use granular_edmd::boundary::Domain;
-use granular_edmd::{Disk, Kind, ParameterError};
 
 /// Largest relative difference of two columns that hold the same quantity in few digits.
 const ALIKE: f64 = 1e-4;

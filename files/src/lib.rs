@@ -86,21 +86,16 @@ mod csv;
 mod disks;
 mod errors;
 mod extended_xyz;
-mod file_format;
 mod format;
-mod found;
 mod gsd;
 pub mod guide;
 mod lammps_data;
 mod lammps_dump;
 mod lines;
 mod one_file;
-mod overlap;
 mod reader;
 mod recorder;
 mod recording;
-mod shown;
-mod source;
 mod state;
 mod table;
 mod vtk;
@@ -108,8 +103,6 @@ mod vtk;
 pub use errors::{ReadError, RecordError};
 #[doc(alias = "OVITO")]
 pub use extended_xyz::ExtendedXyz;
-#[doc(alias("OVITO", "freud", "ParaView"))]
-pub use file_format::{ByEnding, Format, Gsd, Vtk};
 pub use format::{Frame, FrameFormat};
 #[doc(alias("OVITO", "VMD"))]
 pub use lammps_dump::LammpsDump;
@@ -117,4 +110,6 @@ pub use lammps_dump::LammpsDump;
 pub use reader::{Reader, States};
 #[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
+#[doc(alias("OVITO", "freud", "ParaView"))]
+pub use recorder::{ByEnding, Format, Gsd, Vtk};
 pub use state::State;

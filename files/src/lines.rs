@@ -3,8 +3,9 @@
 use std::io::{BufRead, Read};
 use std::str::FromStr;
 
-use super::ReadError;
 use granular_edmd::boundary::Domain;
+
+use super::ReadError;
 
 /// Largest number of bytes of a line. No line of a file of disks is nearly as long, but a small compressed
 /// file can expand to one that fills the memory.
@@ -34,7 +35,7 @@ impl<R: BufRead> Input<R> {
     }
 
     /// Adds the next line to a text, and returns false at the end of the input.
-    pub(super) fn copy(&mut self, text: &mut Text) -> Result<bool, ReadError> {
+    fn copy(&mut self, text: &mut Text) -> Result<bool, ReadError> {
         let (line, start) = (self.line + 1, text.bytes.len());
         let read = self.input.by_ref().take(LONGEST).read_until(b'\n', &mut text.bytes);
         let length = read.map_err(|cause| ReadError::Io { line, cause })?;

@@ -1,9 +1,10 @@
 //! The state in a file.
 
-use super::errors::rounded;
 use granular_edmd::boundary::Domain;
 use granular_edmd::observable::Snapshot;
 use granular_edmd::{Disk, Gravity};
+
+use super::errors::rounded;
 
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///

@@ -1,23 +1,21 @@
 //! Bricks: the shapes of which parts are built, and the first touch of a disk with a brick.
 
-mod arc;
 mod constructors;
 mod first_touch;
 mod path;
-mod segment;
 #[cfg(feature = "serde")]
 mod serialized;
-mod strip;
+mod shapes;
 
 pub(super) use path::Path;
 
 use glam::DVec2;
+use shapes::Arc;
+use shapes::Segment;
 
 use super::Region;
 use super::area::Curve;
 use crate::Fingerprint;
-use arc::Arc;
-use segment::Segment;
 
 /// Length by which bricks reach beyond their ends, relative to their coordinates and sizes. Without it,
 /// rounding could leave a hole between two bricks that meet.

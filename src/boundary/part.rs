@@ -1,9 +1,7 @@
 //! Parts: bricks that share a rule, a motion and a surface.
 
-mod constructors;
-mod corners;
 mod motion;
-mod polygon;
+mod shapes;
 mod travel;
 
 use travel::Along;
@@ -12,7 +10,7 @@ pub(super) use travel::{Phase, Pose, Travel, Turning};
 use glam::DVec2;
 
 use super::brick::{Brick, Nearest};
-use super::conduct::Conduct;
+use super::surface::Conduct;
 use super::{Region, Surface, Thermal, WallError};
 use crate::collision::CollisionRule;
 use crate::quantity::finite;
@@ -231,7 +229,7 @@ impl Part {
 
     /// Returns whether all borders between free and occupied regions lie on bricks.
     pub(super) fn is_closed(&self) -> bool {
-        corners::are_closed(&self.bricks)
+        shapes::are_closed(&self.bricks)
     }
 
     pub(super) fn travel(&self) -> &Travel {

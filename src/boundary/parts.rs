@@ -2,17 +2,17 @@
 
 mod index;
 mod overlap;
-mod room;
 mod search;
 
 use std::ops::Range;
+
+use index::Index;
 
 use super::brick::Brick;
 use super::part::{Part, Phase};
 use super::{Domain, Impact, Region, WallView};
 use crate::ParameterError;
 use crate::wall::Stroke;
-use index::Index;
 
 /// Relative difference below which the radii of a disk and a hollow count as equal.
 const TIGHT: f64 = 1e-9;

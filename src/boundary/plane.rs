@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::conduct::Conduct;
+use super::surface::Conduct;
 use super::surface::Surface;
 use super::{Region, Wall, WallError, WallView};
 use crate::wall::{Approach, FirstTouch, Motion, Stroke, first_touch};

@@ -1,8 +1,9 @@
 //! Conversions between moving bodies and contacts, and single collisions outside a simulation.
 
+use glam::DVec2;
+
 use super::{CollisionRule, Contact, Impulse};
 use crate::{Disk, Kind};
-use glam::DVec2;
 
 /// The constant properties of a body in a collision: its kind, its size, and its resistance to impulses.
 #[derive(Debug, Clone, Copy, PartialEq)]

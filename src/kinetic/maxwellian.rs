@@ -1,9 +1,53 @@
-//! The Maxwellian gas whose collisions are averaged.
+//! The Maxwellian gas whose collisions are averaged, with the mean energy change as a formula.
 
-use crate::collision::Contact;
+use crate::collision::{Contact, Frictional, Smooth};
 use crate::disk::{SCALE, scale};
-use crate::quantity::accept;
+use crate::quantity::{accept, positive};
 use crate::{Disk, Kind, ParameterError};
+
+/// The sine and cosine of the half angle α of the sticking sector.
+///
+/// In the scaled speeds $`x = v_n/\sqrt S`$, $`z = v_t/\sqrt V`$, a collision sticks for
+/// $`|z| < x\tan\alpha`$. The vector (x cos φ, x sin φ, z) is isotropic, so $`\sin\alpha`$ is the probability
+/// of sticking.
+///
+/// Formulas use $`s = \sin\alpha`$ and $`k = \cos\alpha`$ side by side. At large friction $`s`$ rounds to 1
+/// and $`1 - s`$ would have no digits left; $`k^2/(1 + s)`$ is the same number with all its digits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StickSlip {
+    pub(super) sine: f64,
+    pub(super) cosine: f64,
+}
+
+impl StickSlip {
+    /// Creates the sector with tan α = κ·(opposite/adjacent). If `adjacent` is zero and κ is not, all
+    /// collisions stick.
+    #[inline]
+    pub(super) fn new(friction: f64, opposite: f64, adjacent: f64) -> Self {
+        if friction == 0.0 {
+            return Self { sine: 0.0, cosine: 1.0 };
+        }
+        // Only the ratio of the sides matters. Friction above 1 divides one side instead of multiplying the
+        // other, so that neither side overflows at any friction.
+        let (opposite, adjacent) =
+            if friction > 1.0 { (opposite, adjacent / friction) } else { (opposite * friction, adjacent) };
+        let hypotenuse = libm::hypot(opposite, adjacent);
+        Self { sine: opposite / hypotenuse, cosine: adjacent / hypotenuse }
+    }
+
+    /// Returns ⟨v_t²; stick⟩/V = s³.
+    #[inline]
+    pub(super) fn sticking_slip(self) -> f64 {
+        self.sine * self.sine * self.sine
+    }
+
+    /// Returns ⟨v_n²; slide⟩/(S k²) = (1 − s)²(2 + s)/k² = k²(2 + s)/(1 + s)².
+    #[inline]
+    pub(super) fn sliding_closing(self) -> f64 {
+        let above = 1.0 + self.sine;
+        self.cosine * self.cosine * (2.0 + self.sine) / (above * above)
+    }
+}
 
 /// A gas of disks with Maxwellian velocities and spins, described by the collisions of two of its disks.
 ///
@@ -176,4 +220,117 @@ crate::gate::from_file! {
             .with_rotational_temperature(rotational_temperature)?
             .with_partners(&partner(0)?, &partner(1)?))
     }
+}
+
+/// Returns the exact mean energy change per collision of the paper's rule in a Maxwellian gas.
+///
+/// ```math
+/// \frac{\langle dE\rangle}{T} = -4q_n p - \frac2\lambda\,q_t(1-q_t)\,w^2 s^3 - 2\kappa_d p\,w\,k^3
+/// + 2\kappa_d^2p^2\lambda\,(1-s)^2(2+s)
+/// ```
+///
+/// with $`p = 1-q_n`$, $`\lambda = \mu/\mu_t`$, $`w^2 = 1+(\lambda-1)T_r/T`$, and the sticking probability
+/// $`s = \sin\alpha`$, $`k = \cos\alpha`$, $`\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)`$. The result
+/// is an energy, in the units of the temperature. The paper computes this average by Monte Carlo only (Fig.
+/// 1). At zero friction the average is the paper's Eq. (8). The derivation is in `docs/physics-kinetic.md`.
+///
+/// Masses enter through $`\lambda`$ alone, which is 3 for homogeneous disks of any masses. Therefore, Fig. 1
+/// of the paper holds for any mixture at equal temperatures.
+///
+/// ```
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
+/// let gas = Maxwellian::new(1.0)?;
+/// let rule = Frictional::from_inelasticity(0.0, 0.0, 0.3)?;
+/// assert!((mean_energy_change(&rule, &gas) + 0.34014).abs() < 1e-5);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[inline]
+pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
+    let (mass_ratio, slip_ratio_squared) = (gas.mass_ratio(), gas.slip_ratio_squared());
+    let (normal, tangential) = (rule.normal_inelasticity(), rule.tangential_inelasticity());
+    let sector = sector(rule, gas);
+    // Friction can grow without bound, and the cosine of the sector then falls as the inverse of the
+    // friction. Only their product stays finite.
+    let friction = rule.dynamic_friction() * sector.cosine * (1.0 - normal);
+    let sticking = tangential * (1.0 - tangential) * slip_ratio_squared / mass_ratio * sector.sticking_slip();
+    let sliding = friction
+        * (slip_ratio_squared.sqrt() * sector.cosine * sector.cosine
+            - friction * mass_ratio * sector.sliding_closing());
+    -gas.translational_temperature() * (4.0 * normal * (1.0 - normal) + 2.0 * (sticking + sliding))
+}
+
+/// Returns the fraction of collisions that stick, under the paper's rule in a Maxwellian gas.
+///
+/// The fraction is $`s = \sin\alpha`$ with $`\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)`$ (see
+/// [`mean_energy_change`]).
+///
+/// ```
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
+/// let rule = Frictional::from_inelasticity(0.05, 0.05, 0.3)?;
+/// let fraction = sticking_fraction(&rule, &Maxwellian::new(1.0)?);
+/// assert!((fraction - 0.4611).abs() < 1e-4);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn sticking_fraction(rule: &Frictional, gas: &Maxwellian) -> f64 {
+    sector(rule, gas).sine
+}
+
+#[inline]
+fn sector(rule: &Frictional, gas: &Maxwellian) -> StickSlip {
+    let opposite = gas.mass_ratio() * (1.0 - rule.normal_inelasticity());
+    let adjacent = (1.0 - rule.tangential_inelasticity()) * gas.slip_ratio_squared().sqrt();
+    StickSlip::new(rule.static_friction(), opposite, adjacent)
+}
+
+/// Returns the effective normal inelasticity: the inelasticity of smooth disks that lose the same energy per
+/// collision.
+///
+/// The effective inelasticity is the paper's Eq. (9),
+///
+/// ```math
+/// q_\text{eff} = \tfrac12\left(1 - \sqrt{1 + \langle dE\rangle/T}\right),
+/// ```
+///
+/// in `[0, 1/2]`, for a mean energy change in $`[-T, 0]`$, with $`T`$ the translational temperature. No gas
+/// of smooth disks is outside that range: with restitution zero they lose exactly $`T`$, and they never gain
+/// energy. Disks with friction can lose more, and a Monte Carlo mean can exceed zero within its error. The
+/// function refuses such values instead of clipping them.
+///
+/// # Errors
+/// If the temperature is not positive, or the mean energy change is not in $`[-T, 0]`$.
+///
+/// ```
+/// use granular_edmd::kinetic::effective_inelasticity;
+/// assert!((effective_inelasticity(-0.290, 1.0)? - 0.079).abs() < 5e-4); // paper, Table I
+/// let error = effective_inelasticity(-1.02, 1.0).unwrap_err();
+/// assert_eq!(error.to_string(), "mean energy change per temperature must be in [-1, 0], but is -1.02");
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn effective_inelasticity(mean_energy_change: f64, temperature: f64) -> Result<f64, ParameterError> {
+    let change = mean_energy_change / positive("temperature", temperature)?;
+    accept((-1.0..=0.0).contains(&change), "mean energy change per temperature", "in [-1, 0]", change)?;
+    // This is (1 - root)/2, with numerator and denominator multiplied by (1 + root). At small losses the root
+    // is close to 1, and the difference would keep few digits.
+    Ok(0.5 * change.abs() / (1.0 + (1.0 + change).sqrt()))
+}
+
+/// Returns the mean energy change per collision without friction, the inverse of [`effective_inelasticity`].
+///
+/// The energy change is $`\langle dE\rangle = -4q_n(1-q_n)T`$ (paper, Eq. (8)).
+///
+/// # Errors
+/// If the inelasticity is not in `[0, 1/2]`, or the temperature is not positive.
+///
+/// ```
+/// use granular_edmd::kinetic::{effective_inelasticity, frictionless_energy_change};
+/// let change = frictionless_energy_change(0.1, 2.0)?;
+/// assert!((change + 0.72).abs() < 1e-15);
+/// assert!((effective_inelasticity(change, 2.0)? - 0.1).abs() < 1e-15);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn frictionless_energy_change(inelasticity: f64, temperature: f64) -> Result<f64, ParameterError> {
+    let inelasticity = Smooth::from_inelasticity(inelasticity)?.normal_inelasticity();
+    Ok(-4.0 * inelasticity * (1.0 - inelasticity) * positive("temperature", temperature)?)
 }

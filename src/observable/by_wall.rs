@@ -1,7 +1,7 @@
 //! Values of walls and parts, by name.
 
 use super::Snapshot;
-use super::marks::Mark;
+use super::snapshot::Mark;
 use crate::ParameterError;
 use crate::boundary::WallView;
 

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Snapshot;
-use super::marks::Mark;
+use super::snapshot::Mark;
 use crate::ParameterError;
 use crate::boundary::Region;
 use crate::quantity::accept;

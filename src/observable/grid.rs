@@ -183,18 +183,6 @@ impl CellSums {
     pub(super) const fn flow(&self) -> DVec2 {
         DVec2::new(self.velocity[0].mean, self.velocity[1].mean)
     }
-
-    /// Checks that the sums from a file are sums over possible disks.
-    #[cfg(feature = "serde")]
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
-        crate::quantity::non_negative("area of the disks in a cell", self.area)?;
-        let weights =
-            [self.area, self.velocity[0].weight, self.velocity[1].weight, self.angular_velocity.weight];
-        let sound = weights.into_iter().all(|weight| (weight > 0.0) == (self.count > 0));
-        let requirement = "0 if and only if their area and mass are";
-        accept(sound, "number of disks in a cell", requirement, self.count as f64)?;
-        Ok(())
-    }
 }
 
 crate::gate::from_file! {

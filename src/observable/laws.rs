@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::{Collision, Observer, Partner, Snapshot};
 use crate::boundary::Domain;
 use crate::collision::{Contact, Impulse, Regime};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Disk, ParameterError, Violation};
 
 const PART: &str = "observer";

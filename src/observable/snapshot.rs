@@ -1,13 +1,47 @@
-//! Snapshots: the state of a run at one time.
+//! Snapshots: the state of a run at one time, with marks by which observers recognize a system and its
+//! walls.
 
 use std::cell::OnceCell;
 use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec2;
 
-use super::marks::Mark;
 use crate::boundary::{Boundary, Domain, Probe, Region, Wall, WallView};
 use crate::{Disk, Gravity};
+
+/// A mark that is unique in this process; 0 until it is assigned.
+///
+/// It is not written to files, and measurements that differ only in marks compare equal.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Mark(usize);
+
+impl Mark {
+    /// No mark.
+    pub(super) const NONE: Self = Self(0);
+
+    /// Returns a new mark.
+    pub(crate) fn new() -> Self {
+        static NEXT: AtomicUsize = AtomicUsize::new(1);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+
+    /// Returns whether both marks are assigned and equal.
+    pub(super) const fn is_same(self, other: Self) -> bool {
+        self.0 == other.0 && self.0 != 0
+    }
+
+    /// Returns whether both marks are assigned and different.
+    pub(super) const fn is_other(self, other: Self) -> bool {
+        self.0 != other.0 && self.0 != 0 && other.0 != 0
+    }
+}
+
+impl PartialEq for Mark {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
 
 /// The state of a run at one time: the disks as copies, the walls, gravity.
 ///

@@ -1,10 +1,11 @@
 //! The scheduler for many disks: a calendar that is turned page by page, of piles of disks.
 
-use super::EventScheduler;
-use super::entry::Entry;
-use crate::prefetch::prefetch;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+use super::Entry;
+use super::EventScheduler;
+use crate::instructions::prefetch;
 
 /// Number of events that are due within the time of one bucket. At this number, there are few buckets, and
 /// the last entries of all of them stay in the caches.

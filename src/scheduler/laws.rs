@@ -4,14 +4,16 @@
 //! separately, against the plain [`LinearScan`], with scripts of operations that look random and are the same
 //! on every run.
 
-use super::{EventScheduler, LinearScan, NOTHING_DUE};
-use crate::Violation;
-use crate::random::uniform;
-use crate::scheduler::LARGE_SYSTEM;
-use crate::violation::require;
+use std::fmt;
+
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use std::fmt;
+
+use super::{EventScheduler, LinearScan, NOTHING_DUE};
+use crate::Violation;
+use crate::error::require;
+use crate::random::uniform;
+use crate::scheduler::LARGE_SYSTEM;
 
 const PART: &str = "scheduler";
 

@@ -3,11 +3,13 @@
 mod earliest;
 mod wide;
 
+use std::hint::select_unpredictable;
+
+use wide::Wide;
+
 use super::EventScheduler;
 use crate::instructions::{Instructions, Level};
-use crate::scheduler::entry::Entry;
-use std::hint::select_unpredictable;
-use wide::Wide;
+use crate::scheduler::Entry;
 
 /// A tournament: the earliest disk of each match enters the next round, until one disk is left.
 ///

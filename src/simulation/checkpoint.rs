@@ -162,11 +162,6 @@ impl Checkpoint {
         self.0.clock.time()
     }
 
-    /// Returns the number of disks.
-    pub fn disk_count(&self) -> usize {
-        self.0.trajectories.len()
-    }
-
     /// Returns the fingerprint of the run's rule, or `None` if the rule gives none.
     pub const fn rule(&self) -> Option<Fingerprint> {
         self.0.rule

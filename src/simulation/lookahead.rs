@@ -2,7 +2,7 @@
 
 use super::cells::Cells;
 use super::state::Bodies;
-use crate::prefetch::prefetch;
+use crate::instructions::prefetch;
 use crate::scheduler::EventScheduler;
 
 /// Number of disks that are named as upcoming between two steps of a request: first the disk is requested,

@@ -134,7 +134,7 @@ impl Estimate {
     }
 
     /// Returns whether the error assumes independent samples.
-    pub const fn assumes_independence(&self) -> bool {
+    const fn assumes_independence(&self) -> bool {
         matches!(self.basis, Basis::Independent)
     }
 

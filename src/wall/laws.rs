@@ -4,12 +4,13 @@
 //! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
 //! compares two motions.
 
-use super::finite::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
+use std::iter::successors;
+
+use super::motion::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
 use crate::Violation;
+use crate::error::require;
 use crate::fingerprint::check_pair;
-use crate::violation::require;
-use std::iter::successors;
 
 /// Number of samples in a piece.
 const SAMPLES: u32 = 512;

@@ -1,12 +1,15 @@
-//! Motions in owned form, and forwarding: a boxed or borrowed motion is a motion, too.
+//! Motions in owned form, forwarding, and checks: finite numbers, pieces that advance, and whether a motion
+//! jumps.
 
-use super::{AccelerationBounds, Fixed, Stroke, WallMotion, WallState, check_finite};
-use crate::forward::forward;
-use crate::{Fingerprint, Violation};
 use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
+
+use super::{AccelerationBounds, Fixed, Stroke, WallMotion, WallState};
+use crate::error::require;
+use crate::forward::forward;
+use crate::{Fingerprint, Violation};
 
 forward! { WallMotion for [&T, Box<T>, Arc<T>] {
     fn state(&self, phase: f64) -> WallState;
@@ -80,4 +83,137 @@ impl fmt::Debug for Motion {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_struct("Motion").field("reach", &self.reach()).finish_non_exhaustive()
     }
+}
+
+pub(super) const PART: &str = "wall motion";
+
+/// Number of pieces in a row that together must advance by more than rounding.
+const PIECES_IN_A_ROW: u32 = 8;
+
+/// Phases at which a motion without a period is tested.
+const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
+
+/// Checks that a motion gives finite numbers and that its pieces advance.
+///
+/// Every run depends on both.
+///
+/// The check tries phases in the first period, or between 0 and a million for a motion without a period.
+///
+/// # Errors
+/// The first violation that the check finds.
+///
+/// ```
+/// use granular_edmd::wall::{AccelerationBounds, Fixed, WallMotion, WallState, check_finite};
+///
+/// /// A motion that divides zero by zero.
+/// struct Torn;
+///
+/// impl WallMotion for Torn {
+///     fn state(&self, phase: f64) -> WallState {
+///         WallState::new(phase.sin() / phase, 0.0)
+///     }
+///     fn acceleration(&self, _: f64) -> AccelerationBounds {
+///         AccelerationBounds::new(f64::INFINITY, -1.0, 1.0)
+///     }
+///     fn reach(&self) -> (f64, f64) {
+///         (-1.0, 1.0)
+///     }
+/// }
+///
+/// assert_eq!(check_finite(&Fixed), Ok(()));
+/// assert_eq!(check_finite(&Torn).unwrap_err().found(), "at phase 0.0 its displacement is NaN");
+/// ```
+pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation> {
+    check_constants(motion)?;
+    match motion.period() {
+        Some(period) => (0..64).try_for_each(|k| row_of_pieces(motion, period * f64::from(k) / 64.0)),
+        None => PROBES.iter().try_for_each(|&phase| row_of_pieces(motion, phase)),
+    }
+}
+
+/// Checks the reach and the period, and returns the reach.
+pub(super) fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Violation> {
+    let (low, high) = motion.reach();
+    let is_ordered = low.is_finite() && high.is_finite() && low <= high;
+    require!(PART, "reach", is_ordered; "its reach from {low:?} to {high:?} must be finite and in order");
+    let period = motion.period().unwrap_or(1.0);
+    let is_possible = period.is_finite() && period > 0.0;
+    require!(PART, "period", is_possible; "its period must be finite and positive, but is {period:?}");
+    Ok((low, high))
+}
+
+/// Follows some pieces from this phase on, and also checks the middle of each piece.
+pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), Violation> {
+    let mut phase = start;
+    for _ in 0..PIECES_IN_A_ROW {
+        finite_state(motion, phase)?;
+        let until = finite_bounds(motion, phase)?.until;
+        if until == f64::INFINITY {
+            return Ok(());
+        }
+        finite_state(motion, phase + 0.5 * (until - phase))?;
+        phase = until;
+    }
+    // The row must advance by more than two floating-point numbers for each piece. No search can follow
+    // shorter pieces.
+    let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
+    let sentence = "pieces of its motion lead only from phase";
+    require!(PART, "pieces", phase > least;
+        "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short");
+    Ok(())
+}
+
+pub(super) fn finite_state<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<WallState, Violation> {
+    let state = motion.state(phase);
+    finite("displacement", state.displacement, phase)?;
+    finite("velocity", state.velocity, phase)?;
+    Ok(state)
+}
+
+/// Returns the bounds at this phase, if they are finite, in order, and hold for some time.
+pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
+    motion: &M,
+    phase: f64,
+) -> Result<AccelerationBounds, Violation> {
+    let bounds = motion.acceleration(phase);
+    finite("lower bound of the acceleration", bounds.min, phase)?;
+    finite("upper bound of the acceleration", bounds.max, phase)?;
+    let AccelerationBounds { until, min, max } = bounds;
+    let sentence = "its lower bound of the acceleration";
+    require!(PART, "bounds", min <= max;
+        "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}");
+    let sentence = "the piece of its motion from phase";
+    require!(PART, "pieces", until > phase; "{sentence} {phase:?} on ends at {until:?}, which is not later");
+    Ok(bounds)
+}
+
+fn finite(quantity: &str, value: f64, phase: f64) -> Result<(), Violation> {
+    require!(PART, "finite", value.is_finite(); "at phase {phase:?} its {quantity} is {value:?}");
+    Ok(())
+}
+
+/// Returns whether the motion jumps at the end of a piece: its displacement then differs from the value to
+/// which its velocity shortly before the end leads.
+pub(super) fn seen_to_jump<M: WallMotion + ?Sized>(motion: &M) -> bool {
+    const PIECES: usize = 1000;
+    let (low, high) = motion.reach();
+    let end = motion.period().unwrap_or(f64::INFINITY);
+    let mut phase = 0.0;
+    for _ in 0..PIECES {
+        let until = motion.acceleration(phase).until;
+        if !(until.is_finite() && until > phase) {
+            return false;
+        }
+        let just_before = until - 1e-6 * (until - phase);
+        let (before, after) = (motion.state(just_before), motion.state(until));
+        let expected = before.displacement + (until - just_before) * before.velocity;
+        if (after.displacement - expected).abs() > 1e-6 * (high - low) {
+            return true;
+        }
+        if until >= end {
+            return false;
+        }
+        phase = until;
+    }
+    false
 }

@@ -1,9 +1,10 @@
 //! Fixed walls and periodic motions: bi-parabolic (the paper's), harmonic, triangular, sawtooth.
 
+use std::f64::consts::TAU;
+
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::quantity::{finite, positive};
 use crate::{Fingerprint, ParameterError};
-use std::f64::consts::TAU;
 
 /// The motion of a wall that stays at its position.
 ///
@@ -55,7 +56,7 @@ pub(super) fn stroke(phase: f64, length: f64, amplitude: f64, returns: bool) -> 
 }
 
 /// Returns bounds of zero acceleration, which hold until the stroke ends.
-pub(super) fn steady(phase: f64, length: f64) -> AccelerationBounds {
+fn steady(phase: f64, length: f64) -> AccelerationBounds {
     AccelerationBounds::new(centered(phase, length).1, 0.0, 0.0)
 }
 
@@ -64,7 +65,7 @@ pub(super) fn steady(phase: f64, length: f64) -> AccelerationBounds {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Oscillation {
     pub(super) amplitude: f64,
-    pub(super) angular_frequency: f64,
+    angular_frequency: f64,
 }
 
 impl Oscillation {
@@ -104,7 +105,7 @@ pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
 
 /// Returns whether a piece number is even.
 #[inline]
-pub(super) fn is_even(number: f64) -> bool {
+fn is_even(number: f64) -> bool {
     (0.5 * number).floor() * 2.0 == number
 }
 

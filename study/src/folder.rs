@@ -80,12 +80,11 @@ impl Folder {
         self.root.join("complete")
     }
 
-    /// Writes the README if it is missing or cut short, and the provenance if it is missing and the folder
+    /// Writes the README if it is missing, and the provenance if it is missing and the folder
     /// has no records. An edited README stays. The caller holds the lock.
     pub(super) fn put(&self, provenance: &str) -> Result<(), StudyError> {
         let path = self.root.join(README);
-        let is_cut = |found: Vec<u8>| found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found);
-        if !path.exists() || fs::read(&path).is_ok_and(is_cut) {
+        if !path.exists() {
             write(&path, ABOUT.as_bytes())?;
         }
         if self.provenance().exists() || self.root.join(BLOCKS).exists() {
@@ -244,14 +243,14 @@ pub(super) fn if_there<T>(
 }
 
 /// Returns the files in a folder. The list is empty if the folder does not exist.
-pub(super) fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
+fn files_in(folder: &Path) -> Result<Vec<DirEntry>, StudyError> {
     let files = if_there("read", folder, fs::read_dir(folder))?.into_iter().flatten();
     files.collect::<io::Result<_>>().map_err(StudyError::io("read", folder))
 }
 
 /// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
 /// be locked.
-pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
+fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
     let mut files = files_in(folder)?;
     files.retain(|file| is_temporary(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
     files.iter().try_for_each(|file| remove(&file.path()))

@@ -75,8 +75,8 @@ pub mod vibrated_box;
 
 pub use errors::{Difference, ExperimentError, PlanError, StudyError};
 pub use execution::{Control, Progress, Summary};
-pub use experiment::columns::{Column, Table};
 pub use experiment::record::{Leg, Outcome, Record};
+pub use experiment::{Column, Table};
 pub use experiment::{Experiment, Run};
 pub use parameters::Scalar;
 pub use plan::Plan;

@@ -10,15 +10,15 @@ use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::observable::Heading;
 use granular_edmd::quantity::accept;
-use serde::{Deserialize, Serialize, Serializer};
-
-use super::errors::chain;
-use super::experiment::columns::{Column, OF_TABLES, Table, error_names};
-use super::parameters::{self, Scalar, derived_seed, place, probe, seed_at, whole_name};
-use super::{Experiment, ExperimentError, Leg, PlanError};
 use protocol::Protocol;
 use ramp::Ramp;
+use serde::{Deserialize, Serialize, Serializer};
 use values::{Axis, tried};
+
+use super::errors::chain;
+use super::experiment::{Column, OF_TABLES, Table, error_names};
+use super::parameters::{self, Scalar, derived_seed, place, probe, seed_at, whole_name};
+use super::{Experiment, ExperimentError, Leg, PlanError};
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
@@ -156,7 +156,7 @@ impl<E: Experiment> Plan<E> {
     }
 
     /// Returns the number of points of the grid.
-    pub fn point_count(&self) -> usize {
+    pub(super) fn point_count(&self) -> usize {
         self.parts.sweep.iter().map(Axis::len).product()
     }
 

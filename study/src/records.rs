@@ -5,11 +5,11 @@ use std::ops::Range;
 
 use granular_edmd::statistics::Estimate;
 
-use super::experiment::record::{Contents, Leg, Outcome, Record, check, check_state};
+use super::experiment::record::{Contents, Leg, Record};
 use super::folder::remove;
 use super::plan::ramp::{Bracket, Seen};
 use super::store::{Entry, Head};
-use super::{Experiment, Plan, Study, StudyError};
+use super::{Experiment, Study, StudyError};
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and
 /// different seeds.
@@ -116,16 +116,7 @@ impl<E: Experiment> Study<E> {
     pub(super) fn read_unproven(&self, entry: &Entry) -> Result<Record<E>, StudyError> {
         let (head, contents) = (entry.head(), self.store.read::<Contents<_, _>>(entry)?);
         self.check_origin(&contents.origin, head.ramp, head.value, &self.store.log_of(head.ramp))?;
-        let is_placed = match self.plan.step(head.value) {
-            Some(step) => contents.leg.zip(contents.at) == Some(step),
-            None => contents.at.is_none_or(|at| self.plan.ramp().is_some_and(|ramp| ramp.bisects(at))),
-        };
-        if !is_placed {
-            return Err(self.store.damaged(entry, "its place in the ramp is not the plan's"));
-        }
-        let record = Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents };
-        check_record(&record, &self.plan).map_err(|reason| self.store.damaged(entry, reason))?;
-        Ok(record)
+        Ok(Record { experiment: self.plan.experiment_at(head.ramp, contents.at)?, contents })
     }
 
     /// Iterates over all finished records, ramp by ramp, and reads them one by one.
@@ -152,22 +143,8 @@ impl<E: Experiment> Study<E> {
         error.into_iter().map(Err).chain(self.store.of(ramps).map(|entry| self.read(&entry)))
     }
 
-    /// Returns a value at a point of the grid, with all its finished repeats, or `None` if no repeat is
-    /// finished.
-    ///
-    /// # Errors
-    /// If there is no such point, or if a record cannot be read, is damaged, or comes from another study or
-    /// other code.
-    pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        self.store.refresh()?;
-        self.known_point(index, value)
-    }
-
+    /// Returns a value at a point of the grid, with all its finished repeats, if there are any.
     fn known_point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
-        let count = self.plan.point_count();
-        if index >= count {
-            return Err(StudyError::Absent { what: "point", index, count });
-        }
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
         let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
@@ -201,25 +178,6 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Checks that a record belongs to its ramp and value in a study, or returns the reason why it does not.
-fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
-    let Contents { origin, outcome, end, measured, state, .. } = &record.contents;
-    let protocol = plan.protocol();
-    let most = protocol.cycles().saturating_mul(origin.value as u64 + 1);
-    check(end.count <= most, "it is longer than the protocol")?;
-    let samples = measured.samples.len() as u64;
-    let is_short = *outcome != Outcome::Completed && samples < protocol.samples();
-    check(samples == protocol.samples() || is_short, "its samples are not as many as in the protocol")?;
-    let is_kept = state.is_some() == plan.keeps_state(origin.value);
-    check(is_kept, "it keeps a state that it should not, or lacks one")?;
-    if let Some(state) = state {
-        let time = end.time(0.0, record.experiment.cycle());
-        check_state(state, time..=time)?;
-        check([state.rule(), state.boundary()] == record.contents.parts, "its state is of other parts")?;
-    }
-    Ok(())
-}
-
 /// Progress of a ramp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -236,15 +194,6 @@ pub enum RampStatus {
 }
 
 impl<E: Experiment> Study<E> {
-    /// Returns the progress of a ramp.
-    ///
-    /// # Errors
-    /// If there is no such ramp, or the folder cannot be read.
-    pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
-        self.check_ramp(ramp)?;
-        Ok(self.all_status()?[ramp])
-    }
-
     /// Returns the progress of all ramps.
     ///
     /// # Errors

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use granular_edmd::file::Seal;
+use log::{HEAD, Log, Piece};
 use serde::de::DeserializeOwned;
 
 use super::StudyError;
 use super::folder::{BLOCKS, decoded, try_lock};
-use log::{HEAD, Log, Piece};
 
 /// Mark of a log of records, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANSTUD", 7);

@@ -7,8 +7,8 @@ use granular_edmd::file::Draft;
 use granular_edmd::observable::Heading;
 use granular_edmd::statistics::Estimate;
 
-use super::experiment::columns::{Column, Kind, OF_TABLES, Table, find, of_error};
 use super::experiment::record::Leg;
+use super::experiment::{Column, Kind, OF_TABLES, Table, find, of_error};
 use super::folder::create;
 use super::parameters::Scalar;
 use super::plan::ramp::Bracket;

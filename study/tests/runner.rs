@@ -111,15 +111,6 @@ fn keys_and_columns_are_explained() {
 }
 
 #[test]
-fn completions_and_a_page_of_the_manual_are_printed() {
-    let scratch = Scratch::new("completions");
-    for (shell, word) in [("bash", "complete -F"), ("fish", "complete -c"), ("man", ".TH granular-edmd")] {
-        assert!(said(&scratch.runs(&["completions", shell])).contains(word), "{shell}");
-    }
-    assert_eq!(code(&scratch.runs(&["completions", "tcsh"])), Some(1));
-}
-
-#[test]
 fn a_plan_that_cannot_be_is_refused_with_code_2() {
     let scratch = Scratch::new("refused");
     fs::write(scratch.0.join("plan.toml"), SMALL.replace("\"friction\"", "\"frction\"")).unwrap();
@@ -443,8 +434,7 @@ fn lines(output: &Output) -> Vec<String> {
     String::from_utf8_lossy(&output.stdout).lines().skip(1).map(str::to_owned).collect()
 }
 
-/// Each value of a ramp is made again from its start, with as many collisions as it had, and any collision
-/// again from the state before it.
+/// Each value of a ramp is made again from its start, with as many collisions as it had.
 #[test]
 fn a_value_is_played_back_and_any_collision_of_it() {
     let scratch = Scratch::new("replay");
@@ -485,18 +475,6 @@ fn a_value_is_played_back_and_any_collision_of_it() {
     assert_eq!(lines(&of(&["--from", &from, "--until", &until, "--out", "window.csv"])), [""; 0]);
     let window = fs::read_to_string(scratch.0.join("window.csv")).unwrap();
     assert_eq!(window.lines().skip(1).collect::<Vec<_>>(), all[101..=120]);
-    // From the state before a collision, it comes next, and all is as it was.
-    assert_eq!(lines(&of(&["--before", "51", "--out", "before.checkpoint"])), [""; 0]);
-    let rest = ["replay", "study", "--ramp", "1", "--start", "before.checkpoint", "--from", "-1"];
-    assert_eq!(lines(&scratch.runs(&[rest.as_slice(), &["--until", &until]].concat())), all[50..=120]);
-    assert_eq!(lines(&scratch.runs(&rest)), all[50..]);
-    for name in ["before.xyz", "before.csv", "before.data"] {
-        assert_eq!(code(&of(&["--before", "51", "--out", name])), Some(0));
-        let rest = lines(&of(&["--start", name, "--from", "-1"]));
-        // Only the first one has the time, and so the phase of the base.
-        let is_next = [2, 3, 4].iter().all(|&place| cell(&rest[0], place) == cell(&all[50], place));
-        assert!(is_next || name != "before.xyz", "{rest:?}");
-    }
 }
 
 /// A run that ended with an error is played back up to it, and compared up to it.
@@ -519,11 +497,6 @@ fn the_collisions_before_an_error_are_played_back() {
         note.contains("the run ended: the run stalled at time ") && note.contains("with the wall \"floor\"")
     );
     assert!(lines.iter().any(|line| line.split(',').nth(2) == Some(id)), "{told}");
-    // The next one would be the collision that did not come.
-    let number: u64 = lines[2].split(',').next().unwrap().parse().unwrap();
-    let before = |number: u64| scratch.runs(&["replay", "plan.toml", "--before", &number.to_string()]);
-    assert!([number, number + 1].iter().all(|&number| code(&before(number)) == Some(0)));
-    assert!(code(&before(number + 2)) == Some(1) && said(&before(number + 2)).contains("stalled"));
 }
 
 /// Wishes that no run can grant are refused by name, and no file is left or overwritten.
@@ -538,8 +511,6 @@ fn wishes_that_cannot_be_are_refused() {
         (&["--from", "nan"], 2, "no time is after NaN"),
         (&["--until", "1e6"], 2, "it cannot go until 1000000"),
         (&["--until", "-1"], 2, "it cannot go until -1"),
-        (&["--before", "0"], 2, "the first collision of this run has the number 1, not 0"),
-        (&["--before", "1000000"], 1, "there is no collision 1000000 until"),
         (&["--ramp", "4"], 2, "index of a ramp must be below the number of ramps, but is 4"),
         (&["--value", "1"], 2, "index of a value"),
         (&["--start", "none.xyz"], 1, "cannot open none.xyz"),

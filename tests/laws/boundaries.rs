@@ -8,8 +8,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Piston, Sinusoidal};
 use granular_edmd::{Disk, Fingerprint, Flight, Kind, ParameterError};
 
-use crate::Half::{Blind, Honest, Informed, Survivor};
-use crate::{Fault, judge, one_in};
+use crate::{Fault, blind, honest, informed, judge, one_in, survivor};
 
 /// A search for the first touch of the honest boundary, changed.
 type Search = dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>;
@@ -237,41 +236,27 @@ fn sprung() -> Altered {
 
 fn surfaces() -> Vec<Fault<Altered>> {
     vec![
-        Fault(
-            Blind,
+        blind(
             "the floor is faster than its geometry by 1e-5",
             shaken().surface(|surface, _, _| surface.velocity *= 1.0 + 1e-5),
         ),
-        Fault(
-            Informed,
+        informed(
             "the floor is faster near the right side, by 1e-4",
             shaken().surface(|surface, position, _| {
                 surface.velocity.y += if position.x > 9.0 { 1e-4 } else { 0.0 };
             }),
         ),
-        Fault(
-            Blind,
-            "the bar turns about the corner of the box",
-            stirred().surface(|surface, position, _| {
-                if surface.velocity != DVec2::ZERO {
-                    surface.velocity = 0.7 * position.perp();
-                }
-            }),
-        ),
-        Fault(
-            Survivor,
+        survivor(
             "the floor forgets that it slides",
             sliding().surface(|surface, _, _| surface.velocity.x = 0.0),
         ),
-        Fault(
-            Blind,
+        blind(
             "the normal of a dish is turned by 1e-5",
             dish().surface(|surface, _, _| {
                 surface.normal = DVec2::from_angle(1e-5).rotate(surface.normal);
             }),
         ),
-        Fault(
-            Informed,
+        informed(
             "the normals of a peg are those of an oval",
             board().surface(|surface, position, _| {
                 if surface.radius.is_finite() {
@@ -279,38 +264,25 @@ fn surfaces() -> Vec<Fault<Altered>> {
                 }
             }),
         ),
-        Fault(
-            Blind,
+        blind(
             "the normal is longer than 1 by 1e-6",
             dish().surface(|surface, _, _| surface.normal *= 1.0 + 1e-6),
         ),
-        Fault(
-            Informed,
-            "the velocity is not a number where the floor turns",
-            shaken().surface(|surface, _, _| {
-                surface.velocity.y +=
-                    if surface.velocity.y.abs() < 0.05 && surface.normal.y > 0.5 { f64::NAN } else { 0.0 };
-            }),
-        ),
-        Fault(
-            Blind,
+        blind(
             "the hollow dish has a positive radius",
             dish().surface(|surface, _, _| surface.radius *= -1.0),
         ),
-        Fault(
-            Informed,
+        informed(
             "straight walls have a radius of 1000",
             shaken().surface(|surface, _, _| {
                 surface.radius = surface.radius.min(1e3);
             }),
         ),
-        Fault(
-            Blind,
+        blind(
             "a turning bar has no angular velocity",
             stirred().surface(|surface, _, _| surface.angular_velocity = 0.0),
         ),
-        Fault(
-            Informed,
+        informed(
             "a sliding floor turns near its right end",
             sliding().surface(|surface, position, _| {
                 surface.angular_velocity = if position.x > 9.0 { 0.01 } else { 0.0 };
@@ -322,59 +294,24 @@ fn surfaces() -> Vec<Fault<Altered>> {
 fn touches() -> Vec<Fault<Altered>> {
     let [often, last] = [one_in(5), one_in(11)];
     vec![
-        Fault(
-            Blind,
+        blind(
             "flights that begin at a speed of 0.9 to 1.2 touch nothing",
             shaken().missing(|flight, _| (0.9..1.2).contains(&flight.velocity(flight.time()).length())),
         ),
-        Fault(
-            Informed,
+        informed(
             "the right side ends at a height of 11.4",
             shaken().missing(|flight, touch| {
                 let place = flight.position(touch.time);
                 place.x > 9.4 && place.y > 11.4
             }),
         ),
-        Fault(
-            Informed,
-            "a pull to the side is forgotten",
-            shaken().touch(|honest, flight, until| {
-                let (start, pull) = (flight.time(), DVec2::new(0.0, flight.acceleration().y));
-                let (place, velocity) = (flight.position(start), flight.velocity(start));
-                let down = Flight::new(start, place, velocity, pull, flight.radius());
-                honest.first_touch(&down.with_kind(flight.kind()), until)
-            }),
-        ),
-        Fault(Blind, "touches are early by 1e-5 of the radius", shaken().late(-1e-5)),
-        Fault(Survivor, "touches are early by 1e-9 of the radius", shaken().late(-1e-9)),
-        Fault(Blind, "touches are late by 1e-5 of the radius", dish().late(1e-5)),
-        Fault(
-            Informed,
-            "the time of a touch is in single precision",
-            shaken().touch(|honest, flight, until| {
-                honest
-                    .first_touch(flight, until)
-                    .map(|touch| Touch::new(f64::from(touch.time as f32), touch.wall))
-            }),
-        ),
-        Fault(
-            Blind,
+        blind("touches are early by 1e-5 of the radius", shaken().late(-1e-5)),
+        survivor("touches are early by 1e-9 of the radius", shaken().late(-1e-9)),
+        blind(
             "a touch after the end of the search is reported",
             shaken().touch(|honest, flight, until| honest.first_touch(flight, until + 1.0)),
         ),
-        Fault(
-            Informed,
-            "a search shorter than 1e-3 finds nothing",
-            shaken().touch(|honest, flight, until| {
-                if until - flight.time() < 1e-3 {
-                    FirstTouch::NONE
-                } else {
-                    honest.first_touch(flight, until)
-                }
-            }),
-        ),
-        Fault(
-            Blind,
+        blind(
             "a disk that overlaps and leaves touches at once",
             shaken().touch(|honest, flight, until| {
                 let probe = Probe::new(flight.position(flight.time()), flight.radius(), flight.time());
@@ -383,29 +320,21 @@ fn touches() -> Vec<Fault<Altered>> {
                 touch.unwrap_or_else(|| honest.first_touch(flight, until))
             }),
         ),
-        Fault(Blind, "walls are counted from 1", shaken().renamed(|wall| wall + 1)),
-        Fault(Informed, "the two sides are exchanged", shaken().renamed(|wall| [0, 2, 1, 3][wall.min(3)])),
-        Fault(
-            Blind,
+        blind("walls are counted from 1", shaken().renamed(|wall| wall + 1)),
+        informed("the two sides are exchanged", shaken().renamed(|wall| [0, 2, 1, 3][wall.min(3)])),
+        blind(
             "a search comes no further than its start",
             shaken().touch(|_, flight, _| FirstTouch::NotBefore(flight.time())),
         ),
-        Fault(Blind, "one touch in five is missed", shaken().missing(move |_, _| often())),
-        Fault(
-            Informed,
+        blind("one touch in five is missed", shaken().missing(move |_, _| often())),
+        informed(
             "one touch in eleven is later by the last bit",
             shaken().touch(move |honest, flight, until| {
                 let time = |time: f64| if last() { time.next_up().min(until) } else { time };
                 honest.first_touch(flight, until).map(|touch| Touch::new(time(touch.time), touch.wall))
             }),
         ),
-        Fault(
-            Blind,
-            "kind 1 passes the peg, but overlaps it",
-            board().missing(|flight, touch| touch.wall >= 4 && flight.kind() == Kind::new(1)),
-        ),
-        Fault(
-            Informed,
+        informed(
             "the peg is missed by disks smaller than 0.4",
             board().missing(|flight, touch| touch.wall >= 4 && flight.radius() < 0.4),
         ),
@@ -414,45 +343,27 @@ fn touches() -> Vec<Fault<Altered>> {
 
 fn overlaps_and_areas() -> Vec<Fault<Altered>> {
     vec![
-        Fault(
-            Blind,
+        blind(
             "an overlap is too deep by 1e-3 of itself",
             dish().overlap(|honest, probe| {
                 honest.overlap(probe).map(|found| Overlap::new(found.with, 1.001 * found.depth))
             }),
         ),
-        Fault(
-            Informed,
-            "overlaps deeper than 0.01 are twice as deep",
-            shaken().overlap(|honest, probe| {
-                let depth = |depth: f64| if depth > 0.01 { 2.0 * depth } else { depth };
-                honest.overlap(probe).map(|found| Overlap::new(found.with, depth(found.depth)))
-            }),
-        ),
-        Fault(
-            Informed,
+        informed(
             "kind 2 overlaps no lid",
             shaken().overlap(|honest, probe| {
                 honest.overlap(probe).filter(|found| probe.kind() != Kind::new(2) || found.with != 3)
             }),
         ),
-        Fault(
-            Blind,
+        blind(
             "the left half of a peg on the seam is forgotten",
             torus().overlap(|honest, probe| honest.overlap(probe).filter(|_| probe.position().x < 5.0)),
         ),
-        Fault(
-            Blind,
+        blind(
             "the free area is too large by a hundredth",
             Altered::new(resting()).area(|area, _, _| 1.01 * area),
         ),
-        Fault(
-            Informed,
-            "disks below 0.2 have an area that is larger by 1e-4",
-            Altered::new(resting()).area(|area, _, radius| if radius < 0.2 { 1.0001 * area } else { area }),
-        ),
-        Fault(
-            Informed,
+        informed(
             "regions that begin left of the box have a hundredth more",
             Altered::new(resting()).area(
                 |area, region, _| {
@@ -460,23 +371,14 @@ fn overlaps_and_areas() -> Vec<Fault<Altered>> {
                 },
             ),
         ),
-        Fault(
-            Blind,
+        blind(
             "a region is touched where its middle is",
             shaken().may_touch(|honest, region, radius| {
                 let middle = 0.5 * (region.min + region.max);
                 honest.may_touch(&Region::new(middle, middle), radius)
             }),
         ),
-        Fault(
-            Informed,
-            "a region without an area is free",
-            shaken().may_touch(|honest, region, radius| {
-                (region.max - region.min).max_element() > 1e-6 && honest.may_touch(region, radius)
-            }),
-        ),
-        Fault(
-            Informed,
+        informed(
             "a region that reaches to infinity is free",
             shaken().may_touch(|honest, region, radius| {
                 region.min.is_finite() && region.max.is_finite() && honest.may_touch(region, radius)
@@ -487,8 +389,7 @@ fn overlaps_and_areas() -> Vec<Fault<Altered>> {
 
 fn frames() -> Vec<Fault<Altered>> {
     vec![
-        Fault(
-            Blind,
+        blind(
             "the domain follows the floor",
             Altered {
                 domain: |since, domain| {
@@ -497,38 +398,28 @@ fn frames() -> Vec<Fault<Altered>> {
                 ..shaken()
             },
         ),
-        Fault(
-            Blind,
+        blind(
             "the domain leaves out the centers of small disks",
             Altered { domain: |_, domain| Domain::new(1.0, 9.0, domain.bottom, domain.top), ..shaken() },
         ),
-        Fault(
-            Blind,
+        blind(
             "the interior reaches beyond the domain",
             Altered {
                 interior: |inside| Domain::new(inside.left, inside.right + 2.0, inside.bottom, inside.top),
                 ..shaken()
             },
         ),
-        Fault(
-            Informed,
-            "the right edge of the domain is not a number",
-            Altered { domain: |_, domain| Domain::new(domain.left, f64::NAN, 0.0, domain.top), ..shaken() },
-        ),
-        Fault(
-            Blind,
+        blind(
             "a wall is added at later origins",
             Altered { walls: |since, count| if since > 0.0 { count + 1 } else { count }, ..shaken() },
         ),
-        Fault(Blind, "the whole box is full", shaken().overlap(|_, _| Some(Overlap::new(0, 1.0)))),
-        Fault(Blind, "the origin is forgotten", Altered { origin: |_| 0.0, ..shaken() }),
-        Fault(
-            Informed,
+        blind("the whole box is full", shaken().overlap(|_, _| Some(Overlap::new(0, 1.0)))),
+        blind("the origin is forgotten", Altered { origin: |_| 0.0, ..shaken() }),
+        informed(
             "origins above 1100 are forgotten",
             Altered { origin: |origin| if origin > 1100.0 { 0.0 } else { origin }, ..shaken() },
         ),
-        Fault(
-            Informed,
+        informed(
             "the kind of walls depends on the offset",
             shaken().surface(|surface, _, time| {
                 surface.kind = Kind::new((time as u16) % 2);
@@ -542,13 +433,11 @@ fn reactions() -> Vec<Fault<Altered>> {
         Impact::new(impact.wall, by * impact.impulse, impact.point, impact.time)
     }
     vec![
-        Fault(
-            Blind,
+        blind(
             "the lid takes an impulse that is too large by 1e-6",
             sprung().react(|honest, impact| honest.react(&scaled(impact, 1.0 + 1e-6))),
         ),
-        Fault(
-            Informed,
+        informed(
             "the lid forgets weak blows",
             sprung().react(
                 |honest, impact| {
@@ -556,16 +445,14 @@ fn reactions() -> Vec<Fault<Altered>> {
                 },
             ),
         ),
-        Fault(
-            Blind,
+        blind(
             "the lid does not say that it moves",
             sprung().react(|honest, impact| {
                 let _ = honest.react(impact);
                 Reaction::None
             }),
         ),
-        Fault(
-            Informed,
+        informed(
             "the lid jumps at each blow",
             sprung().react(|honest, impact| {
                 let reaction = honest.react(impact);
@@ -575,48 +462,33 @@ fn reactions() -> Vec<Fault<Altered>> {
                 reaction
             }),
         ),
-        Fault(
-            Blind,
+        blind(
             "the lid reacts, but its surface has an infinite mass",
             sprung().surface(|surface, _, _| surface.mass = f64::INFINITY),
         ),
-        Fault(
-            Informed,
-            "a blow on the floor moves the lid",
-            sprung()
-                .react(|honest, impact| honest.react(&Impact::new(3, DVec2::Y, impact.point, impact.time))),
-        ),
-        Fault(Blind, "the lid meets nobody after a blow", Altered { may_meet: |_, _| false, ..sprung() }),
-        Fault(
-            Informed,
+        blind("the lid meets nobody after a blow", Altered { may_meet: |_, _| false, ..sprung() }),
+        informed(
             "the lid meets only what is above its place at rest",
             Altered { may_meet: |answer, region| answer && region.max.y > 11.4, ..sprung() },
         ),
-        Fault(
-            Blind,
+        blind(
             "the state is in single precision",
             Altered {
                 state: |state| state.iter().map(|&number| f64::from(number as f32)).collect(),
                 ..sprung()
             },
         ),
-        Fault(
-            Informed,
+        informed(
             "a state that is too long is accepted",
             Altered { restored: |state| state.iter().take(3).copied().collect(), ..sprung() },
         ),
-        Fault(
-            Blind,
-            "the lid is at rest after its state is set",
-            Altered { restored: |state| state.iter().map(|_| 0.0).collect(), ..sprung() },
-        ),
-        Fault(Honest, "shaken", shaken()),
-        Fault(Honest, "sliding", sliding()),
-        Fault(Honest, "dish", dish()),
-        Fault(Honest, "stirred", stirred()),
-        Fault(Honest, "board", board()),
-        Fault(Honest, "torus", torus()),
-        Fault(Honest, "sprung", sprung()),
+        honest("shaken", shaken()),
+        honest("sliding", sliding()),
+        honest("dish", dish()),
+        honest("stirred", stirred()),
+        honest("board", board()),
+        honest("torus", torus()),
+        honest("sprung", sprung()),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use granular_edmd::boundary::{Boundary, Wall, laws as boundary_laws};
 use granular_edmd::collision::{
-    CollisionRule, Contact, ElasticBelow, Frictional, Impulse, RulesByKind, Smooth, laws as collision_laws,
+    CollisionRule, Contact, Frictional, Impulse, RulesByKind, Smooth, laws as collision_laws,
 };
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{
@@ -10,9 +10,8 @@ use granular_edmd::wall::{
 };
 use granular_edmd::{Fingerprint, Kind, Violation};
 
-use crate::Half::{Blind, Honest, Informed};
 use crate::boundaries::{Altered, pegs, resting};
-use crate::{Fault, judge};
+use crate::{Fault, blind, honest, informed, judge};
 
 const NAME: Fingerprint = Fingerprint::of("part");
 
@@ -103,19 +102,12 @@ fn late_ramp(duration: f64) -> Combined {
 
 fn of_rules() -> Vec<Fault<Pair>> {
     vec![
-        Fault(Blind, "the loss is forgotten", rules([0.1, 0.2], |_| NAME, smooth)),
-        Fault(
-            Blind,
+        blind("the loss is forgotten", rules([0.1, 0.2], |_| NAME, smooth)),
+        blind(
             "a loss counts in single precision",
             rules([0.1, 0.1 + 1e-10], |loss| NAME.number(f64::from(loss as f32)), smooth),
         ),
-        Fault(
-            Blind,
-            "a remedy forgets the rule that it helps",
-            rules([0.1, 0.2], |_| NAME, |loss| ElasticBelow::new(smooth(loss), 0.01).expect("a speed")),
-        ),
-        Fault(
-            Informed,
+        informed(
             "the last bit of a friction is forgotten",
             rules(
                 [0.3, 0.3_f64.next_up()],
@@ -123,52 +115,35 @@ fn of_rules() -> Vec<Fault<Pair>> {
                 |friction| Frictional::from_inelasticity(0.1, 0.1, friction).expect("an inelasticity"),
             ),
         ),
-        Fault(Informed, "one of two larger kinds is forgotten", rules([41, 42], |_| NAME, table)),
-        Fault(
-            Blind,
+        informed("one of two larger kinds is forgotten", rules([41, 42], |_| NAME, table)),
+        blind(
             "each rule of a program has a number of its own",
             rules([1.0, 2.0], |number| NAME.number(number), |_| smooth(0.1)),
         ),
-        Fault(Honest, "different rules", rules([0.1, 0.2], |loss| NAME.number(loss), smooth)),
-        Fault(Honest, "equal rules", rules([0.1, 0.1], |loss| NAME.number(loss), smooth)),
+        honest("different rules", rules([0.1, 0.2], |loss| NAME.number(loss), smooth)),
+        honest("equal rules", rules([0.1, 0.1], |loss| NAME.number(loss), smooth)),
     ]
 }
 
 fn of_motions() -> Vec<Fault<Pair>> {
     vec![
-        Fault(Blind, "the frequency is forgotten", motions([3.0, 7.0], |_| NAME, sine)),
-        Fault(
-            Informed,
-            "the duration of a late ramp is forgotten",
-            motions([20.0, 20.5], |_| NAME, late_ramp),
-        ),
-        Fault(
-            Informed,
-            "starts at 1e7 and 1.1e7 are one",
-            motions(
-                [1e7, 1.1e7],
-                |_| NAME,
-                |start| Combined::new(sine(3.0)).delayed_until(start).expect("a start"),
-            ),
-        ),
-        Fault(
-            Blind,
+        blind("the frequency is forgotten", motions([3.0, 7.0], |_| NAME, sine)),
+        informed("the duration of a late ramp is forgotten", motions([20.0, 20.5], |_| NAME, late_ramp)),
+        blind(
             "equal motions have numbers of their own",
             motions([0.0, 1.0], |number| NAME.number(number), |_| sine(3.0)),
         ),
-        Fault(Honest, "different ramps", motions([20.0, 20.5], |duration| NAME.number(duration), late_ramp)),
+        honest("different ramps", motions([20.0, 20.5], |duration| NAME.number(duration), late_ramp)),
     ]
 }
 
 fn of_boundaries() -> Vec<Fault<Pair>> {
     vec![
-        Fault(
-            Blind,
+        blind(
             "the place of a peg is forgotten",
             boundaries([3.0, 7.0], |_| NAME, |x| Altered::new(pegs(DVec2::new(x, 6.0)))),
         ),
-        Fault(
-            Informed,
+        informed(
             "the speed of a belt on the lid is forgotten",
             boundaries(
                 [0.1, 0.2],
@@ -176,22 +151,11 @@ fn of_boundaries() -> Vec<Fault<Pair>> {
                 |speed| Altered::new(resting().with_surface_speed(Wall::Lid, speed).expect("a lid")),
             ),
         ),
-        Fault(
-            Blind,
-            "the rule of a wall is forgotten",
-            boundaries(
-                [0.1, 0.2],
-                |_| NAME,
-                |loss| Altered::new(resting().with_rule(Wall::Left, smooth(loss)).expect("a side")),
-            ),
-        ),
-        Fault(
-            Informed,
+        informed(
             "the time origin is in the fingerprint",
             boundaries([0, 1], |_| NAME, |_| Altered::new(resting()).marked_anew()),
         ),
-        Fault(
-            Blind,
+        blind(
             "the present origin counts",
             boundaries(
                 [0.0, 64.0],
@@ -203,7 +167,7 @@ fn of_boundaries() -> Vec<Fault<Pair>> {
                 },
             ),
         ),
-        Fault(Honest, "equal boundaries", boundaries([0, 0], |_| NAME, |_| Altered::new(resting()))),
+        honest("equal boundaries", boundaries([0, 0], |_| NAME, |_| Altered::new(resting()))),
     ]
 }
 

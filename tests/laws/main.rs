@@ -28,6 +28,22 @@ enum Half {
 /// A part, and a sentence that says what is wrong with it.
 struct Fault<T>(Half, &'static str, T);
 
+fn blind<T>(name: &'static str, part: T) -> Fault<T> {
+    Fault(Half::Blind, name, part)
+}
+
+fn informed<T>(name: &'static str, part: T) -> Fault<T> {
+    Fault(Half::Informed, name, part)
+}
+
+fn survivor<T>(name: &'static str, part: T) -> Fault<T> {
+    Fault(Half::Survivor, name, part)
+}
+
+fn honest<T>(name: &'static str, part: T) -> Fault<T> {
+    Fault(Half::Honest, name, part)
+}
+
 /// Checks that each fault is found and each honest part passes, and writes down the shares.
 fn judge<T>(part: &str, faults: Vec<Fault<T>>, check: impl Fn(T) -> Result<(), Violation>) {
     let (mut wrong, mut counts) = (Vec::new(), [[0; 2]; 2]);

@@ -6,8 +6,7 @@ use granular_edmd::Disk;
 use granular_edmd::collision::Regime;
 use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot, laws};
 
-use crate::Half::{Blind, Honest, Informed};
-use crate::{Fault, judge};
+use crate::{Fault, blind, honest, informed, judge};
 
 const INTERVAL: f64 = 0.5;
 
@@ -88,54 +87,36 @@ impl Observer for Altered {
 
 fn faults() -> Vec<Fault<Altered>> {
     vec![
-        Fault(Blind, "the first sample is at no number", Altered::start(|clock, _| clock.next = f64::NAN)),
-        Fault(
-            Informed,
+        blind("the first sample is at no number", Altered::start(|clock, _| clock.next = f64::NAN)),
+        informed(
             "question 777 has no number",
             Altered {
                 ask: |clock| if clock.asked.get() == 777 { f64::NAN } else { clock.next },
                 ..Altered::honest()
             },
         ),
-        Fault(Blind, "the sample is asked for again", Altered::sample(|clock, time| clock.next = time)),
-        Fault(
-            Informed,
+        blind("the sample is asked for again", Altered::sample(|clock, time| clock.next = time)),
+        informed(
             "after 5000, samples are asked for again",
             Altered::sample(|clock, time| {
                 clock.next = if time > 5000.0 { time } else { clock.next };
             }),
         ),
-        Fault(
-            Blind,
+        blind(
             "the first sample is before the start by 1e-7",
             Altered::start(|clock, time| clock.next = time - 1e-7),
         ),
-        Fault(
-            Informed,
-            "the fifth run starts a little early",
-            Altered::start(|clock, time| {
-                clock.next = if clock.runs == 5 { time - 1e-6 } else { clock.next };
-            }),
-        ),
-        Fault(
-            Blind,
+        blind(
             "a collision puts the sample off",
             Altered::collision(|clock, collision| clock.next = collision.time + INTERVAL),
         ),
-        Fault(
-            Informed,
+        informed(
             "a collision of the regime least rebound puts the sample off",
             Altered::collision(|clock, collision| {
                 clock.next += if collision.impulse.regime() == Regime::LeastRebound { 1.0 } else { 0.0 };
             }),
         ),
-        Fault(
-            Informed,
-            "a disk that comes in puts the sample off",
-            Altered { insert: |clock, time| clock.next = time + 1.0, ..Altered::honest() },
-        ),
-        Fault(
-            Blind,
+        blind(
             "each run counts its samples from its own start",
             Altered {
                 start: |clock, time| clock.next = time + INTERVAL,
@@ -143,8 +124,8 @@ fn faults() -> Vec<Fault<Altered>> {
                 ..Altered::honest()
             },
         ),
-        Fault(Informed, "each run leaves out a sample", Altered::start(|clock, _| clock.next += INTERVAL)),
-        Fault(Honest, "clock", Altered::honest()),
+        informed("each run leaves out a sample", Altered::start(|clock, _| clock.next += INTERVAL)),
+        honest("clock", Altered::honest()),
     ]
 }
 

@@ -4,8 +4,7 @@ use std::cell::Cell;
 
 use granular_edmd::scheduler::{EventScheduler, NOTHING_DUE, laws};
 
-use crate::Half::{Blind, Honest, Informed};
-use crate::{Fault, judge};
+use crate::{Fault, blind, honest, informed, judge};
 
 /// A scan through all times, some of whose steps are changed.
 struct Altered {
@@ -21,7 +20,7 @@ struct Altered {
     hint: fn(&mut Vec<usize>),
 }
 
-fn honest() -> Altered {
+fn scan() -> Altered {
     Altered {
         due: Vec::new(),
         sets: 0,
@@ -67,56 +66,44 @@ fn last_of_ties(due: &[f64]) -> (usize, f64) {
 }
 
 fn answering(answer: fn(&[f64], u64) -> (usize, f64)) -> Altered {
-    Altered { answer, ..honest() }
+    Altered { answer, ..scan() }
 }
 
 fn setting(set: fn(&mut Vec<f64>, usize, f64, u64)) -> Altered {
-    Altered { set, ..honest() }
+    Altered { set, ..scan() }
 }
 
 fn resetting(reset: fn(&mut Vec<f64>, &[f64])) -> Altered {
-    Altered { reset, ..honest() }
+    Altered { reset, ..scan() }
 }
 
 type Maker = fn() -> Altered;
 
 fn times() -> Vec<Fault<Maker>> {
     vec![
-        Fault(Blind, "of equal times, the last disk comes first", || answering(|due, _| last_of_ties(due))),
-        Fault(Informed, "a negative zero comes before a zero", || {
+        blind("of equal times, the last disk comes first", || answering(|due, _| last_of_ties(due))),
+        informed("a negative zero comes before a zero", || {
             answering(|due, _| {
                 let first = due.iter().enumerate().min_by(|one, other| one.1.total_cmp(other.1));
                 first.map_or(NOTHING_DUE, |(disk, &time)| (disk, time))
             })
         }),
-        Fault(Informed, "of infinite times, the last disk comes first", || {
+        informed("of infinite times, the last disk comes first", || {
             answering(|due, _| {
                 let (disk, time) = earliest(due);
                 if time == f64::INFINITY { last_of_ties(due) } else { (disk, time) }
             })
         }),
-        Fault(Blind, "times are kept in single precision", || {
+        blind("times are kept in single precision", || {
             setting(|due, disk, time, _| due[disk] = f64::from(time as f32))
         }),
-        Fault(Informed, "a time below 1e-307 is 0", || {
-            answering(|due, _| {
-                let (disk, time) = earliest(due);
-                (disk, if time.abs() < 1e-307 { 0.0 } else { time })
-            })
-        }),
-        Fault(Blind, "without disks, disk 0 is due never", || {
+        blind("without disks, disk 0 is due never", || {
             answering(|due, _| if due.is_empty() { (0, f64::INFINITY) } else { earliest(due) })
         }),
-        Fault(Informed, "infinite times alone are nothing due", || {
-            answering(|due, _| {
-                let (disk, time) = earliest(due);
-                if time == f64::INFINITY { NOTHING_DUE } else { (disk, time) }
-            })
-        }),
-        Fault(Blind, "only the first 256 disks are ever due", || {
+        blind("only the first 256 disks are ever due", || {
             answering(|due, _| earliest(&due[..due.len().min(256)]))
         }),
-        Fault(Informed, "only the first 40000 disks are ever due", || {
+        informed("only the first 40000 disks are ever due", || {
             answering(|due, _| earliest(&due[..due.len().min(40_000)]))
         }),
     ]
@@ -124,53 +111,36 @@ fn times() -> Vec<Fault<Maker>> {
 
 fn calls() -> Vec<Fault<Maker>> {
     vec![
-        Fault(Blind, "one set in a hundred is lost", || {
+        blind("one set in a hundred is lost", || {
             setting(|due, disk, time, sets| {
                 if sets % 100 != 0 {
                     due[disk] = time;
                 }
             })
         }),
-        Fault(Informed, "one set in 20000 is lost", || {
+        informed("one set in 20000 is lost", || {
             setting(|due, disk, time, sets| {
                 if sets % 20_000 != 0 {
                     due[disk] = time;
                 }
             })
         }),
-        Fault(Blind, "a time that is earlier than the last one of the disk is lost", || {
+        blind("a time that is earlier than the last one of the disk is lost", || {
             setting(|due, disk, time, _| due[disk] = due[disk].max(time))
         }),
-        Fault(Informed, "a time that is later by less than 1e-6 is lost", || {
-            setting(|due, disk, time, _| {
-                if !(0.0..1e-6).contains(&(time - due[disk])) {
-                    due[disk] = time;
-                }
-            })
-        }),
-        Fault(Blind, "a reset with fewer disks leaves the others", || {
+        blind("a reset with fewer disks leaves the others", || {
             resetting(|due, times| {
                 due.resize(due.len().max(times.len()), f64::INFINITY);
                 due[..times.len()].copy_from_slice(times);
             })
         }),
-        Fault(Informed, "a reset to one disk sets time 0", || {
+        informed("a reset to one disk sets time 0", || {
             resetting(|due, times| {
                 *due = if times.len() == 1 { vec![0.0] } else { times.to_vec() };
             })
         }),
-        Fault(Blind, "each third answer is never", || {
-            answering(|due, asked| {
-                let (disk, time) = earliest(due);
-                (disk, if asked % 3 == 0 { f64::INFINITY } else { time })
-            })
-        }),
-        Fault(Blind, "a hint clears the disks that it is given", || Altered { hint: Vec::clear, ..honest() }),
-        Fault(Informed, "a hint removes disks that are named twice", || Altered {
-            hint: Vec::dedup,
-            ..honest()
-        }),
-        Fault(Honest, "scan", honest),
+        blind("a hint clears the disks that it is given", || Altered { hint: Vec::clear, ..scan() }),
+        honest("scan", scan),
     ]
 }
 

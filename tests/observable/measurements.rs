@@ -186,29 +186,8 @@ fn refused<T: DeserializeOwned>(value: Value) -> bool {
 }
 
 #[test]
-fn forged_measurements_are_refused() -> Outcome {
-    let running = RunningMean::from_iter([1.0, 2.0]);
-    for (at, number) in [
-        ("/count", json!(0)),
-        ("/count", json!(1)),
-        ("/squares", json!(-1.0)),
-        ("/mean", json!(null)),
-        ("/count", json!(u64::MAX)),
-    ] {
-        assert!(refused::<RunningMean>(forged(&running, at, number)), "{at}");
-    }
+fn impossible_parameters_and_lengths_are_refused() -> Outcome {
     let blocked = BlockedMean::from_iter([1.0, 2.0, 4.0, 5.0, 7.0]);
-    for (at, number) in [
-        ("", json!([])).clone(),
-        ("/0/blocks/count", json!(9)),
-        ("/1/blocks/count", json!(3)),
-        ("/0/waiting", json!(null)),
-        ("/1/waiting", json!(1.5)),
-        ("/2", json!({ "blocks": { "count": 0, "mean": 0.0, "squares": 0.0 }, "waiting": null })),
-    ] {
-        let changed = forged(&blocked, at, number);
-        assert_eq!(refused::<BlockedMean>(changed), !at.is_empty(), "{at}");
-    }
     let estimate: Estimate = blocked.estimate();
     for (at, number) in [
         ("/samples", json!(1)),
@@ -225,17 +204,8 @@ fn forged_measurements_are_refused() -> Outcome {
     for (at, number) in [("/interval", json!(0.0)), ("/first", json!("soon")), ("/beat", json!(-1))] {
         assert!(refused::<SampleTimes>(forged(&times, at, number)), "{at}");
     }
-    let (series, (_, counts), profile, (heights, fields, ..), (pairs, displacement, _), (stress, walls, _)) =
-        &watchers()?;
-    assert!(refused::<Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>>(forged(
-        series,
-        "/times",
-        json!([1.0])
-    )));
-    assert!(refused::<CollisionCounts>(forged(counts, "/sticking", json!(1))));
-    assert!(refused::<CollisionCounts>(forged(counts, "/disks", json!(u64::MAX))));
-    for (at, number) in [("/layers/1/height", json!(0.5)), ("/bins/count", json!(4)), ("/layers", json!([]))]
-    {
+    let (_, _, profile, (heights, fields, ..), (pairs, displacement, _), (stress, walls, _)) = &watchers()?;
+    for (at, number) in [("/bins/count", json!(4)), ("/layers", json!([]))] {
         assert!(refused::<EnergyChangeProfile>(forged(&**profile, at, number)), "{at}");
     }
     for (at, number) in [
@@ -246,23 +216,12 @@ fn forged_measurements_are_refused() -> Outcome {
     ] {
         assert!(refused::<HeightProfile>(forged(&**heights, at, number)), "{at}");
     }
-    for (at, number) in [
-        ("/grid/columns", json!(4)),
-        ("/grid/rows", json!(u64::MAX)),
-        ("/grid/region/max/0", json!(-1.0)),
-        ("/sums/0/count", json!(1)),
-        ("/sums/0/area", json!(1.0)),
-        ("/sums/0/velocity/1/squares", json!(1.0)),
-    ] {
+    for (at, number) in
+        [("/grid/columns", json!(4)), ("/grid/rows", json!(u64::MAX)), ("/grid/region/max/0", json!(-1.0))]
+    {
         assert!(refused::<Fields>(forged(&**fields, at, number)), "{at}");
     }
-    for (at, number) in [
-        ("/bins/low", json!(-1.0)),
-        ("/bins/count", json!(9)),
-        ("/pairs", json!([])),
-        ("/pairs/0", json!([{ "blocks": { "count": 1, "mean": 0.0, "squares": 0.0 }, "waiting": 0.0 }])),
-        ("/region/max/0", json!(-1.0)),
-    ] {
+    for (at, number) in [("/bins/count", json!(9)), ("/pairs", json!([])), ("/region/max/0", json!(-1.0))] {
         assert!(refused::<PairCorrelation>(forged(&**pairs, at, number)), "{at}");
     }
     for (at, number) in [("/lags/means", json!([])), ("/lags/past", json!([[], [], [], [], [], [], []]))] {

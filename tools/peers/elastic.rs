@@ -7,7 +7,7 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{SampleTimes, Stress, Temperatures};
 use granular_edmd::simulation::Limits;
-use granular_edmd::speed::{Circumstances, Meter, Quartiles};
+use granular_edmd::speed::{Meter, Quartiles};
 use granular_edmd::{Simulation, initial};
 
 use super::measured::{Measured, Speed, Start};
@@ -40,7 +40,7 @@ pub(crate) fn compare(folder: &Path) -> Outcome<()> {
     println!(
         "Elastic disks, periodic square; time on the processor, medians (and quartiles) of {rounds} pairs."
     );
-    println!("{}\nSmallenburg’s code: {}\n", Circumstances::present(), compiler());
+    println!("{}\nSmallenburg’s code: {}\n", benches::machine(), compiler());
     println!(
         "| N, φ | this crate, ns a collision | its time | ratio | rate, pressure: its over ours | its settings |"
     );

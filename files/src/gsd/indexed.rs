@@ -5,8 +5,7 @@ use std::io;
 use std::ops::Range;
 use std::path::Path;
 
-use super::archive::{ENTRY, HEADER, id, number, read_at, width};
-use super::{CHUNKS, Shape, write_chunks};
+use super::{CHUNKS, ENTRY, HEADER, Shape, id, number, read_at, width, write_chunks};
 
 use crate::format::no_frame;
 use crate::one_file::{check_later, is_gzip};

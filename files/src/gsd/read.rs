@@ -5,16 +5,16 @@ use std::f64::consts::PI;
 use std::io::{BufRead, Cursor, Read, Seek};
 use std::rc::Rc;
 
-use granular_edmd::glam::DVec2;
-
-use super::archive::{Archive, Chunk};
-use crate::ReadError;
-use crate::column::Column;
-use crate::found::{Found, Frames, RADIUS_IGNORED, Settings};
-use crate::lines::{as_whole, checked_box, is_upright};
-use crate::table::Table;
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
+use granular_edmd::glam::DVec2;
+
+use super::{Archive, Chunk};
+use crate::ReadError;
+use crate::column::Column;
+use crate::lines::{as_whole, checked_box, is_upright};
+use crate::table::Table;
+use crate::table::{Found, Frames, RADIUS_IGNORED, Settings};
 
 /// Rounding of an inertia factor that follows from three numbers of single precision, relative to the factor.
 const ROUNDING: f64 = 1e-6;

@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use super::arc::{Arc, Sector};
-use super::segment::Segment;
+use super::shapes::Segment;
+use super::shapes::{Arc, Sector};
 use super::{Brick, Free, Nearest, Shape};
 use crate::boundary::WallError;
-use crate::boundary::vector::{direction, finite_point};
+use crate::boundary::domain::{direction, finite_point};
 use crate::quantity::{accept, finite, positive};
 
 impl Brick {

@@ -3,10 +3,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::arc::{Arc, Sector};
+use super::shapes::{Arc, Sector};
 use super::{Brick, Free, Shape};
 use crate::boundary::WallError;
-use crate::boundary::vector::unit_vector;
+use crate::boundary::domain::unit_vector;
 use crate::quantity::accept;
 
 /// The form of a brick in a file.

@@ -166,19 +166,6 @@ impl Container {
         Ok(removed.part)
     }
 
-    /// Replaces the part of this name, and returns the old one.
-    ///
-    /// # Errors
-    /// If there is no part of this name, or for the reasons of [`add_part`](Self::add_part). The container
-    /// then stays unchanged.
-    pub fn replace_part(&mut self, name: &str, part: Part) -> Result<Part, WallError> {
-        let (number, mut container) = (self.number_of(name)?, self.clone());
-        let mut placed = container.take_parts();
-        let before = std::mem::replace(&mut placed[number], Placed::new(name.to_owned(), part));
-        *self = container.rebuilt(placed)?;
-        Ok(before.part)
-    }
-
     /// Returns the part of this name, or `None` if the container has no such part.
     pub fn part(&self, name: &str) -> Option<&Part> {
         self.placed().iter().find(|placed| placed.name == name).map(|placed| &placed.part)
@@ -210,7 +197,7 @@ impl Container {
     }
 
     /// Returns the container with its parts, after they or the container's walls have changed.
-    pub(super) fn rebuilt(mut self, placed: Vec<Placed>) -> Result<Self, WallError> {
+    fn rebuilt(mut self, placed: Vec<Placed>) -> Result<Self, WallError> {
         let walls: usize = placed.iter().map(|placed| placed.part.all_bricks().count()).sum();
         let count = walls + self.planes.len();
         accept(count <= MOST_WALLS, "number of walls of the container", "at most 2^16", count as f64)?;

@@ -10,10 +10,9 @@
 use glam::DVec2;
 
 use super::Random;
-use super::gap::Gap;
-use super::trial::{PART, Trial};
+use super::trial::{Gap, PART, Trial};
 use crate::boundary::{Boundary, Domain, Region};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Kind, Violation};
 
 /// Smallest and largest number of halvings of a region that a wall crosses.
@@ -35,21 +34,18 @@ const BEND: f64 = 0.01;
 /// of the region.
 const SLACK: f64 = 2e-5;
 
-/// Checks the free areas of the domain, of a random region and of a narrow one, for centers of disks and for
+/// Checks the free areas of the domain, of and of a random region, for centers of disks and for
 /// matter. Beyond its walls, the domain has no free area.
 pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> Result<(), Violation> {
     let Region { min: low, max: high } = trial.rectangle();
     let any = |random: &mut Random| DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));
     let (one, other) = (any(random), any(random));
-    let mut thin = || libm::exp10(random.between(-2.0, 0.0));
-    let narrow = DVec2::new(thin(), thin());
-    let narrow = Region::new(one, (one + narrow * (high - low)).min(high));
     let Domain { periodic_sides, periodic_ends, top, .. } = trial.domain;
     let beyond = trial.radius * DVec2::new(f64::from(!periodic_sides), f64::from(!periodic_ends));
     let above = beyond * DVec2::new(1.0, f64::from(top == high.y));
     for radius in [trial.radius, 0.0] {
         let whole = Region::new(low, high);
-        for region in [whole, Region::new(one.min(other), one.max(other)), narrow] {
+        for region in [whole, Region::new(one.min(other), one.max(other))] {
             check_area(trial, &region, radius, time)?;
         }
         let area = |region| trial.boundary.area(&region, radius, time);

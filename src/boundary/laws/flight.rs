@@ -3,12 +3,11 @@
 use glam::DVec2;
 
 use super::reaction::check_reaction;
-use super::regions::check_regions;
 use super::surface::{check_surface, in_words, is_same};
 use super::trial::{PART, Trial, restarted};
 use super::{LATEST, SMALLEST};
-use crate::boundary::{Boundary, Response, Surface, Touch};
-use crate::violation::require;
+use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use crate::error::require;
 use crate::{Flight, Violation};
 
 /// Number of samples along a flight.
@@ -18,8 +17,9 @@ const SAMPLES: u32 = 200;
 /// touch happens, and whether it happens.
 const GRAZING: f64 = 1e-2;
 
-/// Closing speeds of flights that graze a wall, as fractions of the speed along it.
-const GRAZES: [f64; 4] = [3e-2, 3e-3, 3e-4, 3e-5];
+/// Sizes of the regions around a touch, relative to the radius. The smallest region is a point, up to
+/// rounding.
+const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
 /// Largest relative difference between surfaces that are seen from two time origins.
 const SAME: f64 = 1e-9;
@@ -52,19 +52,13 @@ impl Meeting {
 /// Checks consecutive flights of a disk. Each wall that the disk touches reflects it.
 pub(super) fn check_flights(trial: &mut Trial<'_>, first: Flight, flights: usize) -> Result<(), Violation> {
     let mut flight = first;
-    for number in 0..flights {
+    for _ in 0..flights {
         let touched = check_flight(trial, &flight)?;
         trial.check_constants()?;
         let Some(meeting) = touched else { break };
         check_reaction(trial, meeting.touch, meeting.place)?;
         flight = turned_back(&flight, &meeting);
         trial.touches += 1;
-        if number % 2 == 1 {
-            let grazing = grazing(trial, &flight, &meeting, GRAZES[trial.touches / 2 % GRAZES.len()]);
-            if !trial.gap().is_below(0.0, grazing.position(grazing.time()), grazing.time()) {
-                check_flight(trial, &grazing)?;
-            }
-        }
     }
     Ok(())
 }
@@ -144,18 +138,9 @@ fn check_place(trial: &Trial<'_>, flight: &Flight, touch: Touch) -> Result<Meeti
     Ok(Meeting { touch, place, rate, is_grazing: rate > -slow, surface: seen(&surface) })
 }
 
-/// Checks that a flight that ends before the touch finds none, unless the gap is closed up to rounding there,
-/// and that a flight that ends just after the touch, or begins at it, finds it.
+/// Checks that a flight that ends just after the touch, or begins at it, finds it.
 fn check_limits(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting) -> Result<(), Violation> {
     let Touch { time, wall, .. } = meeting.touch;
-    let half = flight.time() + 0.5 * (time - flight.time());
-    let early = trial.first_touch(flight, half)?;
-    // A search may end at any time at which the gap is closed up to rounding, as it is before a slow touch.
-    let is_closed = |Touch { time, .. }: Touch| {
-        time <= half && trial.gap().is_below(trial.rounding(), flight.position(time), time)
-    };
-    require!(PART, "touch time", early.is_none_or(is_closed) || time <= half;
-        "a search that ends at {half:?} finds {early:?}, on {flight:?}");
     if meeting.is_grazing {
         return Ok(());
     }
@@ -185,9 +170,8 @@ fn check_origin(
     let state = trial.boundary.state();
     // The other origin is earlier, so that no offset is negative. A late offset would lose digits. Walls that
     // react keep no record of their past, so for them the other origin is later.
-    let known = trial.earliest();
     let earlier = 0.37 * origin.min(LATEST * trial.crossing());
-    let shift = if state.is_empty() { earlier } else { -known - 0.37 * (start - known) };
+    let shift = if state.is_empty() { earlier } else { -0.37 * start };
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius())
         .with_kind(flight.kind());
@@ -251,11 +235,45 @@ fn turned_back(flight: &Flight, meeting: &Meeting) -> Flight {
         .with_kind(flight.kind())
 }
 
-/// Returns a flight that starts slightly off the wall and approaches it slowly while moving along it.
-fn grazing(trial: &Trial<'_>, flight: &Flight, meeting: &Meeting, share: f64) -> Flight {
-    let Surface { normal, velocity, .. } = meeting.surface.0;
-    let velocity = velocity + trial.speed * (normal.perp() - share * normal);
-    let place = meeting.place + 0.1 * share * share * flight.radius() * normal;
-    Flight::new(meeting.touch.time, place, velocity, flight.acceleration(), flight.radius())
-        .with_kind(flight.kind())
+/// Checks that `may_touch` and `may_meet` are true for regions that contain the position of a touch.
+fn check_regions(trial: &Trial<'_>, touch: Touch, place: DVec2) -> Result<(), Violation> {
+    for size in REGIONS.map(|size| size * trial.radius) {
+        let [low, high] = [0.0, size].map(|size| DVec2::splat(size + trial.rounding()));
+        for [low, high] in [[low, low], [high, high], [low, high], [high, low]] {
+            let around = Region::new(place - low, place + high);
+            check_region(trial, touch, around)?;
+            check_region(trial, touch, open_at_edges(trial, around))?;
+        }
+    }
+    let Region { min, max } = trial.rectangle();
+    check_region(trial, touch, Region::new(min.min(place), max.max(place)))
+}
+
+fn check_region(trial: &Trial<'_>, Touch { time, wall, .. }: Touch, region: Region) -> Result<(), Violation> {
+    for radius in [trial.radius, 1.5 * trial.radius] {
+        let may = trial.boundary.may_touch(&region, radius);
+        require!(PART, "may_touch", may;
+            "a disk of radius {radius:?} touches in {region:?}, where it is denied");
+        for until in [time, time + trial.crossing()] {
+            let may = trial.boundary.may_meet(wall, &region, radius, until);
+            require!(PART, "may_meet", may;
+                "a disk meets wall {wall} in {region:?} at {time:?}, where it is denied up to {until:?}");
+        }
+    }
+    Ok(())
+}
+
+/// Returns the region as the engine extends it: to infinity where it is near an edge of the domain.
+fn open_at_edges(trial: &Trial<'_>, Region { min, max }: Region) -> Region {
+    let Domain { periodic_sides, periodic_ends, .. } = trial.domain;
+    let (near, domain) = (2.0 * trial.radius, trial.domain.region());
+    let open = |is_near: bool, edge: f64, end: f64| if is_near { end } else { edge };
+    let low =
+        |periodic: bool, edge: f64, end: f64| open(!periodic && edge < end + near, edge, f64::NEG_INFINITY);
+    let high =
+        |periodic: bool, edge: f64, end: f64| open(!periodic && edge > end - near, edge, f64::INFINITY);
+    Region::new(
+        DVec2::new(low(periodic_sides, min.x, domain.min.x), low(periodic_ends, min.y, domain.min.y)),
+        DVec2::new(high(periodic_sides, max.x, domain.max.x), high(periodic_ends, max.y, domain.max.y)),
+    )
 }

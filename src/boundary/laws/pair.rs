@@ -8,8 +8,8 @@ use super::surface::in_words;
 use super::trial::{PART, Trial};
 use super::{KINDS, Random};
 use crate::boundary::{Boundary, FirstTouch, Region};
+use crate::error::require;
 use crate::fingerprint::check_pair;
-use crate::violation::require;
 use crate::{Flight, Kind, Violation};
 
 /// Number of flights on which two boundaries are compared.
@@ -59,7 +59,7 @@ where
     let (mut first, mut second) = (first, second);
     let mut one = Trial::new(&mut first, domain, radius, speed);
     let mut other = Trial::new(&mut second, domain, radius, speed);
-    let are_alike = one.states[0] == other.states[0];
+    let are_alike = one.state == other.state;
     for number in 0..FLIGHTS {
         one.kind = Kind::new(KINDS[number % KINDS.len()]);
         other.kind = one.kind;
@@ -73,7 +73,7 @@ where
         require!(PART, "fingerprint", kept == fingerprints;
             "with the time origin {origin:?}, the walls are alike, but the fingerprints are {kept:?}, and were \
              {fingerprints:?}");
-        if other.take_state(&one.states[0]).is_err() {
+        if other.take_state(&one.state).is_err() {
             return judge(Some("in their states".to_owned()));
         }
         let until = flight.time() + one.crossing();

@@ -5,17 +5,14 @@ use glam::DVec2;
 use super::surface::in_words;
 use super::trial::{PART, Trial};
 use crate::boundary::{Boundary, Impact, Reaction, Region, Surface, Touch};
-use crate::violation::require;
+use crate::error::require;
 use crate::{Flight, Violation};
 
-/// Speeds that the tested impacts give to a wall, in units of the typical speed. After an earlier impact,
-/// they are less by a quarter, so that the wall is never faster than after the strongest of these.
+/// Speeds that the tested impacts give to a wall, in units of the typical speed.
 const BLOWS: [f64; 4] = [1e-6, 1e-3, 5e-2, 2.0];
 
-/// Speed that a wall gains before other disks fly to it, and the largest speed of a wall after a blow in
-/// which flights begin, in the same units.
+/// Speed that a wall gains before other disks fly to it, in the same units.
 const BLOW: f64 = 0.5;
-const FASTEST: f64 = 3.0;
 
 /// Part of the radius by which a disk is enlarged in order to find the wall near it.
 const NEAR: f64 = 0.5;
@@ -37,9 +34,7 @@ pub(super) fn check_reaction(trial: &mut Trial<'_>, touch: Touch, place: DVec2) 
     check_meetings(trial, touch, place)?;
     // One of the blows leaves the wall almost at rest: its motion must not stick.
     let stop = -1e-5 - velocity.dot(normal) / trial.speed;
-    for share in
-        BLOWS.map(|share| if trial.is_struck { -0.75 * share } else { -share }).into_iter().chain([stop])
-    {
+    for share in BLOWS.map(|share| -share).into_iter().chain([stop]) {
         check_blow(trial, touch, place, share)?;
         let (changed, after) = (trial.boundary.state(), View::of(trial, touch, place));
         for longer in [&[&changed[..], &[0.0]].concat(), &changed[..changed.len().saturating_sub(1)]] {
@@ -152,19 +147,14 @@ fn check_meetings(trial: &mut Trial<'_>, touch: Touch, place: DVec2) -> Result<(
     let flights = flights_about(trial, time, place);
     strike(trial, touch, place, sign * trial.speed * mass * normal);
     let near = |trial: &Trial<'_>, place, time| trial.gap().nearest(place, NEAR * trial.radius, time);
-    let (mut met, mut is_slow) = (Vec::new(), true);
+    let mut met = Vec::new();
     for flight in flights {
         let found = trial.first_touch(&flight, flight.time() + trial.longest(&flight))?;
         let Some(Touch { wall: other, time, .. }) = found else { continue };
         let (place, margin) = (flight.position(time), DVec2::splat(trial.rounding()));
         let around = Region::new(place - margin, place + margin);
         let is_named = trial.boundary.may_meet(wall, &around, trial.radius, time);
-        is_slow &= trial.boundary.surface(other, place, time).velocity.length() <= FASTEST * trial.speed;
         met.push((flight, other, time, around, is_named, near(trial, place, time)));
-    }
-    // A blow near an axle may make other places too fast for the other checks.
-    if !trial.is_struck && is_slow {
-        (trial.states[1], trial.struck_at) = (trial.boundary.state(), time);
     }
     trial.take_state(&state)?;
     for (flight, other, then, around, is_named, after) in met {

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::trial::{PART, Trial};
 use crate::boundary::{Boundary, Response, Surface, Touch};
 use crate::collision::laws::hostile_contacts;
-use crate::violation::require;
+use crate::error::require;
 use crate::{Fingerprint, Violation};
 
 /// Distance that the disk is moved for the gradient of the gap, and largest reach of a gap, both relative to
@@ -97,7 +97,7 @@ impl Around<'_, '_> {
             "the normal {normal:?} of wall {wall} at {place:?}, time {time:?}, is not the gradient of the gap");
         let speed = velocity.dot(normal);
         // No query is about a time before the walls are known.
-        let is_early = time - trial.earliest() < 2.0 * step / scale;
+        let is_early = *time < 2.0 * step / scale;
         let rate = |step: f64| self.gap(DVec2::ZERO, step / scale);
         require!(PART, "velocity", is_early || has_slope(-speed / scale, step, far + late, rate);
             "wall {wall} has the velocity {speed:?} along its normal, but moves otherwise, at {place:?}, \

@@ -1,10 +1,9 @@
-//! A boundary under test: sizes, states, origins and the allowed rounding.
+//! A boundary under test, the gap between a disk and its nearest wall, and the allowed rounding.
 
 use glam::DVec2;
 
-use super::gap::Gap;
-use crate::boundary::{Boundary, Domain, FirstTouch, Region, Touch};
-use crate::violation::require;
+use crate::boundary::{Boundary, Domain, FirstTouch, Probe, Region, Touch};
+use crate::error::require;
 use crate::{Flight, Kind, Violation};
 
 pub(super) const PART: &str = "boundary";
@@ -15,12 +14,39 @@ const ROUNDING: f64 = 1e-9;
 /// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
-/// Longest wait for a flight after a blow, and longest flight then, in the same units: a free wall must not
-/// leave the domain, and the disks of the check do not hold it up.
-pub(super) const SOON: f64 = 0.1;
-
 /// Largest number of searches that together follow one flight.
 const MOST_SEARCHES: u32 = 10_000;
+
+/// The gap between a disk and the nearest wall: negative inside a wall.
+///
+/// All laws of walls follow from this function of place and time. A flight touches a wall at the first root
+/// of the gap along the flight; the normal is its gradient, the velocity along the normal is its rate with
+/// the opposite sign, the curvature its second derivative, and the free area is where it is positive.
+#[derive(Clone, Copy)]
+pub(super) struct Gap<'a> {
+    pub(super) boundary: &'a dyn Boundary,
+    pub(super) radius: f64,
+    pub(super) kind: Kind,
+}
+
+impl Gap<'_> {
+    /// Returns the nearest wall and the gap to it, or `None` if all walls are farther than `reach`. The reach
+    /// may be negative: then the disk must be deeper in a wall.
+    pub(super) fn nearest(&self, place: DVec2, reach: f64, time: f64) -> Option<(usize, f64)> {
+        let probe = Probe::new(place, self.radius + reach, time).with_kind(self.kind);
+        self.boundary.overlap(&probe).map(|found| (found.with, reach - found.depth))
+    }
+
+    /// Returns the gap, at most `reach`.
+    pub(super) fn at(&self, place: DVec2, reach: f64, time: f64) -> f64 {
+        self.nearest(place, reach, time).map_or(reach, |(_, gap)| gap)
+    }
+
+    /// Returns whether the gap is less than `slack`.
+    pub(super) fn is_below(&self, slack: f64, place: DVec2, time: f64) -> bool {
+        self.nearest(place, slack, time).is_some()
+    }
+}
 
 /// A boundary under test, and the numbers of the test.
 pub(super) struct Trial<'a> {
@@ -33,36 +59,18 @@ pub(super) struct Trial<'a> {
     pub(super) kind: Kind,
     pub(super) speed: f64,
     pub(super) origin: f64,
-    /// The initial state of the walls, and a state after a blow.
-    pub(super) states: [Vec<f64>; 2],
-    /// Time of that blow, from any origin.
-    pub(super) struck_at: f64,
-    /// True if flights begin in the second state.
-    pub(super) is_struck: bool,
-    /// Number of touches so far, by which the check varies blows and grazing flights.
+    /// The initial state of the walls.
+    pub(super) state: Vec<f64>,
+    /// Number of touches so far, by which the check varies blows.
     pub(super) touches: usize,
 }
 
 impl<'a> Trial<'a> {
     pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
         let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
-        let states = [boundary.state(), boundary.state()];
-        let (origin, struck_at, is_struck, touches) = (0.0, 0.0, false, 0);
+        let (state, origin, touches) = (boundary.state(), 0.0, 0);
         let largest = radius;
-        Self {
-            boundary,
-            domain,
-            wall_count,
-            largest,
-            radius,
-            kind,
-            speed,
-            origin,
-            states,
-            struck_at,
-            is_struck,
-            touches,
-        }
+        Self { boundary, domain, wall_count, largest, radius, kind, speed, origin, state, touches }
     }
 
     /// Returns the gap of the present disk.
@@ -106,30 +114,15 @@ impl<'a> Trial<'a> {
         across.into_iter().flat_map(move |x| up.map(move |y| min + DVec2::new(x, y) * (max - min)))
     }
 
-    /// Returns the time from which the walls are known.
-    pub(super) fn earliest(&self) -> f64 {
-        if self.is_struck { self.struck_at } else { 0.0 }
-    }
-
     pub(super) fn set_origin(&mut self, origin: f64) {
         self.boundary.set_time_origin(origin);
         self.origin = origin;
     }
 
-    /// Adds to a violation that it is one of walls in motion, if it is.
-    pub(super) fn told(&self, violation: Violation) -> Violation {
-        if !self.is_struck {
-            return violation;
-        }
-        let (found, state) = (violation.found(), &self.states[1]);
-        let found = format!("{found}, after a blow that left the walls in the state {state:?}");
-        Violation::new(violation.part(), violation.law(), found)
-    }
-
-    /// Sets a time origin, and the state of the walls that react in which flights begin.
+    /// Sets a time origin, and the initial state of the walls.
     pub(super) fn begin(&mut self, origin: f64) -> Result<(), Violation> {
         self.set_origin(origin);
-        self.take_state(&self.states[usize::from(self.is_struck)].clone())
+        self.take_state(&self.state.clone())
     }
 
     /// Checks that the boundary accepts this state.
@@ -185,7 +178,7 @@ impl<'a> Trial<'a> {
     /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or
     /// end at the latest.
     pub(super) fn longest(&self, flight: &Flight) -> f64 {
-        let longest = if self.is_struck { SOON } else { LONGEST } * self.crossing();
+        let longest = LONGEST * self.crossing();
         let (start, Region { min, max }) = (flight.time(), self.domain.region());
         let (place, velocity) = (flight.position(start), flight.velocity(start));
         let way = (max - place).min(place - min).max(DVec2::ZERO);

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::{Along, Part, Travel, Turning};
 use crate::ParameterError;
 use crate::boundary::brick::Brick;
-use crate::boundary::vector::{direction, finite_point, unit};
+use crate::boundary::domain::{direction, finite_point, unit};
 use crate::boundary::{Region, WallError};
 use crate::quantity::{accept, finite};
 use crate::wall::{Motion, Piston, Stroke, WallMotion};

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::boundary::Region;
 use crate::boundary::brick::{Brick, Path};
-use crate::boundary::vector::direction;
+use crate::boundary::domain::direction;
 use crate::wall::{Motion, Stroke};
 use crate::{Fingerprint, Flight};
 

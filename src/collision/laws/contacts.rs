@@ -1,10 +1,11 @@
 //! Contacts that a rule can meet: from mild to extreme, and random ones over the decades between.
 
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
 use crate::Kind;
 use crate::collision::Contact;
 use crate::random::uniform;
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 // Each list begins with its mildest values, so that a faulty rule fails first at ordinary numbers.
 

@@ -2,10 +2,10 @@
 
 use super::crowd::Crowds;
 use crate::disk::MOST_DISKS;
-use crate::prefetch::prefetch;
+use crate::instructions::prefetch;
 
 /// Number of disks for which a block has room.
-pub(super) const SLOTS: usize = 4;
+const SLOTS: usize = 4;
 
 /// Bits of the number of a disk. In the first slot, the bits above these hold the number of slots taken, or
 /// [`CROWDED`] if the last slot links to more disks. The highest bit is set if the disks of the cell can
@@ -15,7 +15,7 @@ const ONE: u32 = DISK + 1;
 const AT_WALL: u32 = 1 << 31;
 
 /// Stored in place of the number of slots taken, when the last slot links to more disks.
-pub(super) const CROWDED: usize = SLOTS + 1;
+const CROWDED: usize = SLOTS + 1;
 
 const _: () = assert!(MOST_DISKS <= DISK as usize + 1);
 
@@ -51,13 +51,13 @@ impl Block {
     }
 
     /// Links to this crowd in place of the last disk, or of another crowd.
-    pub(super) fn set_crowd(&mut self, crowd: u32) {
+    fn set_crowd(&mut self, crowd: u32) {
         self.0[SLOTS - 1] = crowd;
         self.set_count(CROWDED);
     }
 
     /// Ends the link to a crowd. The disks in the other slots stay.
-    pub(super) fn end_crowd(&mut self) {
+    fn end_crowd(&mut self) {
         self.set_count(SLOTS - 1);
     }
 
@@ -67,7 +67,7 @@ impl Block {
 
     /// Returns the slots: the disks, followed by arbitrary numbers.
     #[inline(always)]
-    pub(super) fn slots(&self) -> [u32; SLOTS] {
+    fn slots(&self) -> [u32; SLOTS] {
         let [first, second, third, fourth] = self.0;
         [first & DISK, second, third, fourth]
     }

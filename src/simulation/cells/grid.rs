@@ -6,7 +6,7 @@ use super::edges::{edges, row_edges, widen};
 use super::layout::CellSize;
 use super::layout::{Layout, margin};
 use crate::boundary::{Domain, Region};
-use crate::prefetch::prefetch;
+use crate::instructions::prefetch;
 
 /// The columns and rows of cells. A ring of ghosts surrounds them, so that every cell has eight neighbors.
 ///

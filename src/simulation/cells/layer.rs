@@ -40,7 +40,7 @@ pub(in crate::simulation) struct LayerLayout {
     /// The cells.
     pub(in crate::simulation) cells: Layout,
     /// Number of cells along the side of a home, as an exponent of two.
-    pub(in crate::simulation) doublings: u32,
+    doublings: u32,
 }
 
 impl LayerLayout {

@@ -1,7 +1,7 @@
 //! Early requests to the memory for the cells that the next events will need.
 
 use super::Cells;
-use crate::prefetch::prefetch;
+use crate::instructions::prefetch;
 use crate::simulation::state::Exit;
 
 impl Cells {

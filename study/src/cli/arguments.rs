@@ -86,11 +86,6 @@ pub(super) enum Command {
     /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
     /// disk, change of energy.
     Replay(Replay),
-    /// Prints completions for a shell, or with `man` a page of the manual.
-    Completions {
-        /// `bash`, `elvish`, `fish`, `powershell`, `zsh` or `man`.
-        shell: String,
-    },
     /// Allows this program to continue a study that other code began. Each record keeps the mark of the code
     /// that made it.
     Accept {
@@ -199,10 +194,6 @@ pub(super) struct Replay {
     /// Number of collisions to write, the last ones; 10 if there is no `--from`.
     #[arg(long)]
     pub(super) last: Option<usize>,
-    /// Number of a collision: the state before it is written instead, as disks if the file ends in .xyz,
-    /// .lammpstrj, .csv, .data or .vtp, and otherwise as a checkpoint for `--start`.
-    #[arg(long, conflicts_with_all = ["from", "disk", "last"])]
-    pub(super) before: Option<u64>,
     /// File to write; standard output if not given. An existing file is not overwritten.
     #[arg(long)]
     pub(super) out: Option<PathBuf>,

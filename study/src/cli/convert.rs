@@ -9,8 +9,7 @@ use granular_edmd::{Disk, ParameterError};
 use granular_edmd_files::{ByEnding, ExtendedXyz, Frame, FrameFormat, LammpsDump, Reader, Recorder, State};
 
 use super::arguments::Convert;
-use super::terminal::{tell, write_new};
-use super::{End, Failure, PlanError};
+use super::{End, Failure, PlanError, tell, write_new};
 
 impl Convert {
     fn reader(&self) -> Result<Reader, ParameterError> {
@@ -73,7 +72,7 @@ const ENDINGS: [(&str, Ending); 10] = [
 
 impl Ending {
     /// Returns the format of a file from the ending of its name. A text trajectory may be compressed.
-    pub(super) fn of(path: &Path) -> Option<Self> {
+    fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?.to_ascii_lowercase();
         let (name, is_packed) = name.strip_suffix(".gz").map_or((name.as_str(), false), |name| (name, true));
         let (_, found) = ENDINGS
@@ -98,7 +97,7 @@ impl Ending {
 
     /// Returns `state` encoded in this format, or `None` if the format is not plain text or the file is
     /// compressed.
-    pub(super) fn text(self, path: &Path, state: &State) -> Option<io::Result<Vec<u8>>> {
+    fn text(self, path: &Path, state: &State) -> Option<io::Result<Vec<u8>>> {
         if path.extension().is_some_and(|ending| ending == "gz") {
             return None;
         }
@@ -126,7 +125,7 @@ impl Ending {
     }
 
     /// Returns the names of the state's data that the format cannot hold.
-    pub(super) fn lost(self, state: &State) -> Vec<&'static str> {
+    fn lost(self, state: &State) -> Vec<&'static str> {
         let has_gravity = state.gravity().is_some_and(|gravity| gravity.strength() > 0.0);
         let any = |has: fn(&Disk) -> bool| state.disks().iter().any(has);
         let is_lammps = matches!(self, Self::Dump | Self::Data);

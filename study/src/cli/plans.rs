@@ -1,19 +1,16 @@
-//! The commands that need no study: a new plan, the check of a plan, the meanings of its keys, its core
-//! hours, and completions.
+//! The commands that need no study: a new plan, the check of a plan, the meanings of its keys, and its core
+//! hours.
 
 use std::collections::HashSet;
 use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use clap::{CommandFactory, ValueEnum};
 use granular_edmd::simulation::Limits;
 use granular_edmd::speed::Meter;
 
-use super::arguments::Arguments;
-use super::terminal::{read, say, write_new};
-use super::{End, Failure, LISTED, core_time};
-use crate::experiment::columns::{Meanings, OF_TABLES, find, meanings, of_error};
+use super::{End, Failure, LISTED, core_time, read, say, write_new};
+use crate::experiment::{Meanings, OF_TABLES, find, meanings, of_error};
 use crate::vibrated_box::{Base, VibratedBox};
 use crate::{
     Axis, Column, Course, Experiment, Plan, PlanError, Protocol, Ramp, StudyError, Table, parameters,
@@ -94,20 +91,6 @@ fn values_of<E: Experiment>(plan: &Plan<E>, point: usize) -> String {
         repeats => format!("{ramp} to {}", ramp + repeats - 1),
     };
     format!("  {repeats}: {}", parts.join("; "))
-}
-
-pub(super) fn completions(shell: &str) -> Result<End, Failure> {
-    let (mut command, mut text) = (Arguments::command(), Vec::new());
-    if shell == "man" {
-        clap_mangen::Man::new(command).render(&mut text)?;
-    } else {
-        let shell = clap_complete::Shell::from_str(shell, true).map_err(|_| {
-            format!("completions are for bash, elvish, fish, powershell, zsh and man, not {shell}")
-        })?;
-        clap_complete::generate(shell, &mut command, "granular-edmd", &mut text);
-    }
-    say(String::from_utf8(text)?.trim_end())?;
-    Ok(End::Done)
 }
 
 /// The keys that the plans of all experiments have, by section.

@@ -1,5 +1,5 @@
-//! The commands that play a value again, from its start or from a file: `replay` writes its collisions or the
-//! state before a collision, `trajectory` writes frames.
+//! The commands that play a value again, from its start or from a file: `replay` writes its collisions,
+//! `trajectory` writes frames.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -16,12 +16,11 @@ use granular_edmd::observable::{
     Collision, Observer, Partner, SampleTimes, Snapshot, on_collision, on_sample,
 };
 use granular_edmd::simulation::{Checkpoint, CheckpointError, RunError};
-use granular_edmd_files::{ByEnding, Reader, Recorder, State};
+use granular_edmd_files::{ByEnding, Reader, Recorder};
 
 use super::arguments::{Place, Replay, Trajectory};
 use super::convert::Ending;
-use super::terminal::{Watch, end_at_once, read, say, tell, wrote};
-use super::{End, Failure, chain};
+use super::{End, Failure, Watch, chain, end_at_once, read, say, tell, wrote};
 use crate::execution::value::play::{Found, Pause, Player};
 use crate::{Experiment, ExperimentError, Plan, PlanError, Progress, Run, Scalar, Study, StudyError};
 
@@ -193,7 +192,7 @@ pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Fail
 
 /// Plays until a time or the end of the value.
 fn play<E: Experiment>(player: &mut Player<'_, E>, until: f64) -> Result<(), Failure> {
-    while player.play(until, u64::MAX)? == Pause::Slice {}
+    while player.play(until)? == Pause::Slice {}
     Ok(())
 }
 
@@ -217,10 +216,7 @@ pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
         wrote(written, wishes.out.as_deref().unwrap_or(Path::new("standard output")))
     };
     end_at_once(wishes.out.clone())?;
-    let written = match wishes.before {
-        Some(number) => state_before(number, source, wishes.out.as_deref(), &mut write),
-        None => rows(wishes, source, &mut write),
-    };
+    let written = rows(wishes, source, &mut write);
     if let (Some(path), Err(_)) = (&wishes.out, &written) {
         let _ = fs::remove_file(path);
     }
@@ -258,7 +254,7 @@ fn rows<E: Experiment>(
     let mut player = Player::new(value.as_ref(), run, catcher)?;
     let (mut kept, mut text) = (VecDeque::new(), HEADINGS.to_owned() + "\n");
     loop {
-        let paused = player.play(end, u64::MAX);
+        let paused = player.play(end);
         let boundary = player.run().boundary();
         kept.extend(caught.borrow_mut().drain(..).map(|(number, it)| row(number, &it, boundary) + "\n"));
         kept.drain(..kept.len().saturating_sub(last));
@@ -301,53 +297,4 @@ impl Replay {
             }
         }))
     }
-}
-
-/// Writes the state before a collision, even if the collision ended the run with an error.
-fn state_before<E: Experiment>(
-    number: u64,
-    source: Source<E>,
-    path: Option<&Path>,
-    write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
-) -> Result<(), Failure> {
-    let show = source.clock();
-    let Source { run, found, end, .. } = source;
-    let first = run.counters().collisions() + 1;
-    if number < first {
-        let message = format!("the first collision of this run has the number {first}, not {number}");
-        return Err(PlanError::Refused(message).into());
-    }
-    let absent = |last| format!("there is no collision {number} until {end}: the last one is {last}").into();
-    let value = found.as_ref().map(Found::value);
-    let mut player = Player::new(value.as_ref(), run, Box::new(()))?;
-    let ended = loop {
-        match player.play(end, number - 1) {
-            Ok(Pause::Slice) => show(player.run().time()),
-            ended => break ended,
-        }
-    };
-    let found = player.run().counters().collisions();
-    if found + 1 < number {
-        ended?;
-        return Err(absent(found));
-    }
-    let state = contents::<E>(player.run(), path)?;
-    // The run may end without a further collision.
-    let is_there = ended.is_err()
-        || loop {
-            match player.play(end, number) {
-                Ok(Pause::Slice) => {}
-                last => break last.is_err() || player.run().counters().collisions() == number,
-            }
-        };
-    if is_there { write(&state).map(drop) } else { Err(absent(found)) }
-}
-
-/// Returns the present state, encoded in the format that the ending of the file's name chooses.
-fn contents<E: Experiment>(run: &Run<E>, path: Option<&Path>) -> Result<Vec<u8>, Failure> {
-    let path = path.unwrap_or(Path::new("-.csv"));
-    let Some(ending) = Ending::of(path) else { return Ok(run.checkpoint().to_bytes()?) };
-    let text = ending.text(path, &State::of(&run.snapshot())).transpose()?;
-    let advice = || PlanError::Refused(format!("`convert` makes {} of a file in .xyz", path.display()));
-    text.ok_or_else(|| advice().into())
 }

@@ -14,10 +14,10 @@ use granular_edmd::simulation::{Checkpoint, Counters, Limits, RunEnd, RunError};
 
 use crate::errors::{ExperimentError, StudyError, chain};
 use crate::experiment::record::Origin;
-use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record, check, check_state};
+use crate::experiment::record::{Contents, Cycles, Measured, Outcome, Record};
 use crate::plan::ramp::Step;
 use crate::sliced::{self, Riders};
-use crate::{Experiment, Protocol, Run, SavedDriving, Start, Study};
+use crate::{Experiment, Run, SavedDriving, Start, Study};
 
 /// A value to be run.
 pub(crate) struct Value<'a, E: Experiment> {
@@ -67,11 +67,13 @@ impl<'a, E: Experiment> Value<'a, E> {
         if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), driving, .. }) =
             shorter.map(|record| record.contents)
         {
-            let missing = self.study.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
-            let work = self.work(&run, self.study.plan.protocol().steps() - missing, measured);
-            match self.go_on((work, state, driving), self.study.folder()) {
-                Err(StudyError::Damaged { .. }) => {}
-                made => return made,
+            let (protocol, found) = (self.study.plan.protocol(), measured.samples.len() as u64);
+            if let Some(missing) = protocol.samples().checked_sub(found) {
+                let work = self.work(&run, protocol.steps() - missing, measured);
+                match self.go_on((work, state, driving), self.study.folder()) {
+                    Err(StudyError::Damaged { .. }) => {}
+                    made => return made,
+                }
             }
         }
         let mut active = self.begin_alone(run)?;
@@ -139,24 +141,14 @@ impl<'a, E: Experiment> Value<'a, E> {
             (Some(driving), Some(bytes)) => driving.load(bytes).is_ok(),
             (driving, bytes) => driving.is_none() && bytes.is_none(),
         };
-        let loaded = check(is_loaded, "its driving is another").map_err(str::to_owned);
-        let state = loaded.and_then(|()| self.state_of(partial));
-        let (work, run) = state.map_err(|reason| StudyError::damaged(path, reason))?;
+        let (work, state, _) = partial;
+        let run =
+            Self::resume(&state, &self.experiment).ok().filter(|_| is_loaded && work.start == self.start());
+        let run = run.filter(|run| run.gravity() == self.experiment.gravity());
+        let run = run.ok_or_else(|| StudyError::damaged(path, "its state cannot go on"))?;
         let companion = self.companion(run.time(), true)?;
         let riders = Riders { driving, companion, is_under_way: false };
         Ok(Active { value: self, work, run, riders })
-    }
-
-    fn state_of(&self, (work, state, _): Partial<E>) -> Result<(WorkOf<E>, Run<E>), String> {
-        let protocol = self.study.plan.protocol();
-        work.check(protocol)?;
-        check(work.start == self.start(), "it starts elsewhere")?;
-        let [from, to] = [work.steps, protocol.steps().min(work.steps + 1)]
-            .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
-        check_state(&state, from..=to)?;
-        let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
-        check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
-        Ok((work, run))
     }
 
     /// Returns the time at which the value starts. It continues the count of whole cycles if the length of a
@@ -204,7 +196,7 @@ impl<E: Experiment> Active<'_, E> {
     /// whether the step is done; if not, the next call continues the step, with the same bits. The error is
     /// the outcome of a value that ends early.
     pub(super) fn step(&mut self, slice: Duration) -> Result<bool, Outcome> {
-        let ended = self.advance(slice, f64::INFINITY, u64::MAX);
+        let ended = self.advance(slice, f64::INFINITY);
         let time = self.run.time();
         match ended {
             Ok(RunEnd::Time) => Ok(true),
@@ -226,10 +218,10 @@ impl<E: Experiment> Active<'_, E> {
     }
 
     /// Runs the next step to its end, and takes its sample on the way if the step has one. The time `until`
-    /// and the number of collisions `most` in the value may end the run earlier.
-    fn advance(&mut self, slice: Duration, until: f64, most: u64) -> Result<RunEnd, RunError> {
+    /// may end the run earlier.
+    fn advance(&mut self, slice: Duration, until: f64) -> Result<RunEnd, RunError> {
         let (protocol, cycle) = (self.value.study.plan.protocol(), self.value.experiment.cycle());
-        let (most, before) = (most.min(protocol.most_collisions.unwrap_or(u64::MAX)), self.work.counters);
+        let (most, before) = (protocol.most_collisions.unwrap_or(u64::MAX), self.work.counters);
         let end = protocol.cycles_of(self.work.steps + 1) as f64;
         let [sample_time, end] =
             [end - (1.0 - protocol.phase), end].map(|cycles| self.work.start.time(cycles, cycle));
@@ -293,17 +285,5 @@ impl<E: Experiment> Active<'_, E> {
             state,
         };
         Ok(Record { experiment: value.experiment.clone(), contents })
-    }
-}
-
-impl<S, O> Work<S, O> {
-    /// Checks that the work so far fits the protocol.
-    fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
-        check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
-        let (left, found) = (protocol.steps() - self.steps, self.measured.samples.len() as u64);
-        let samples = protocol.samples().saturating_sub(left);
-        // The sample of an unfinished step may have been taken already.
-        let is_taken = found == samples + 1 && (1..=protocol.samples()).contains(&left);
-        check(found == samples || is_taken, "its samples are not as many as its steps")
     }
 }

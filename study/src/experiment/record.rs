@@ -12,9 +12,6 @@ use granular_edmd::statistics::{BlockedMean, Estimate};
 use crate::Experiment;
 use crate::parameters::{self, Scalar};
 
-/// Relative rounding of the time at which a run ended.
-const TIME_ROUNDING: f64 = 1e-12;
-
 /// A finished value: its parameters, samples and counters, and its last state if the plan keeps it.
 ///
 /// The samples, their times and the observer belong to the measured part of the value, after settling.
@@ -252,20 +249,6 @@ impl Cycles {
     pub(crate) fn time(&self, more: f64, cycle: f64) -> f64 {
         self.since + (self.count as f64 + more) * cycle
     }
-}
-
-pub(crate) fn check(valid: bool, reason: &'static str) -> Result<(), &'static str> {
-    if valid { Ok(()) } else { Err(reason) }
-}
-
-/// Checks that the time of a state is in this range, up to rounding.
-pub(crate) fn check_state(
-    state: &Checkpoint,
-    range: std::ops::RangeInclusive<f64>,
-) -> Result<(), &'static str> {
-    let rounding = TIME_ROUNDING * range.end();
-    let is_in = state.time() >= range.start() - rounding && state.time() <= range.end() + rounding;
-    check(is_in, "its state is of another time")
 }
 
 /// The study, ramp and value to which a file belongs.

@@ -125,11 +125,6 @@ impl Ramp {
         Ok(Self { refine: Some(width), ..self })
     }
 
-    /// Returns whether a bisection can reach this value.
-    pub(crate) fn bisects(&self, at: f64) -> bool {
-        self.refine.is_some() && self.value(0) <= at && at <= self.value(self.values.len() - 1)
-    }
-
     /// Returns the name of the parameter.
     pub fn parameter(&self) -> &str {
         &self.parameter

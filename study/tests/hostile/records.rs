@@ -148,21 +148,3 @@ fn a_value_half_done_that_cannot_be_is_started_again() {
     assert!(run_steps(&partial.study, u64::MAX).unwrap().redone.is_empty());
     assert!(logs::record(&folder, 0, 1) == expected.contents);
 }
-
-/// The samples and the state of such a value would not be those of the step.
-#[test]
-fn a_value_half_done_at_another_step_is_started_again() {
-    let mut partial = Specimen::partial("another-step");
-    let expected = Specimen::record("another-step-not");
-    let folder = partial.scratch.0.clone();
-    // The number of steps, three, comes after the cycles of the value before, five.
-    let steps = partial.contents.windows(2).position(|window| window == [5, 3]).unwrap() + 1;
-    // Two steps, with the sample of the third taken, are this value, too.
-    for bad in [0, 1, 4, 5, 100] {
-        partial.forge(|contents| contents[steps] = bad);
-        let summary = partial.study.run(&Control::default()).unwrap();
-        assert_eq!(summary.redone, [partial.path.clone().unwrap()], "{bad}");
-        assert!(logs::record(&folder, 0, 1) == expected.contents);
-        logs::forget(&folder, 0, 1);
-    }
-}

@@ -5,7 +5,7 @@ use std::fs;
 use granular_edmd_study::vibrated_box::VibratedBox;
 use granular_edmd_study::{Control, Plan, Protocol, Study, StudyError};
 
-use crate::support::{AnyError, Scratch, TEMPORARY, contents, done, small_box, small_plan};
+use crate::support::{AnyError, Scratch, TEMPORARY, contents, small_box, small_plan};
 use support::report::report;
 
 #[test]
@@ -108,23 +108,6 @@ fn a_folder_with_files_of_others_is_refused_and_left_alone() -> Result<(), AnyEr
     fs::write(scratch.0.join(TEMPORARY), "of a killed process")?;
     Study::create(&scratch.0, &small_plan())?;
     assert!(!scratch.0.join(TEMPORARY).exists());
-    Ok(())
-}
-
-/// A README that was cut comes back; one that somebody has edited stays.
-#[test]
-fn a_readme_that_was_cut_comes_back() -> Result<(), AnyError> {
-    let (scratch, study) = done(&small_plan(), "readme");
-    let path = scratch.0.join("README.txt");
-    let whole = fs::read_to_string(&path)?;
-    for left in [0, 10, whole.len() - 1] {
-        fs::write(&path, &whole[..left])?;
-        study.write_tables()?;
-        assert_eq!(fs::read_to_string(&path)?, whole);
-    }
-    fs::write(&path, "mine")?;
-    study.write_tables()?;
-    assert_eq!(fs::read_to_string(&path)?, "mine");
     Ok(())
 }
 

@@ -164,7 +164,7 @@ fn values_by_rule_are_values() -> Result<(), AnyError> {
         values = { from = 10, to = 30, step = 10 }
     "#;
     let plan = Plan::<VibratedBox>::from_toml(&format!("{head}{rules}"))?;
-    assert_eq!((plan.point_count(), plan.value_count()), (9, 4));
+    assert_eq!((plan.ramp_count(), plan.value_count()), (9, 4));
     assert_eq!(
         plan.parameters(4, 1),
         [("gravity", 0.1.into()), ("disks", 20.into()), ("friction", 0.2.into())]

@@ -167,10 +167,10 @@ fn ramps_one_by_one_make_the_study_and_the_last_one_writes_the_tables() -> Resul
     let scratch = Scratch::new("one-by-one");
     for (index, ramp) in [3, 0, 5, 1, 4, 2].into_iter().enumerate() {
         let study = Study::open_or_create(&scratch.0, &plan(1))?;
-        assert_eq!(study.status(ramp).unwrap(), RampStatus::Waiting);
+        assert_eq!(study.all_status().unwrap()[ramp], RampStatus::Waiting);
         let summary = study.run_ramp(ramp, &Control::default())?;
         assert_eq!((summary.finished, summary.total), (1, 1));
-        assert_eq!(study.status(ramp).unwrap(), RampStatus::Done);
+        assert_eq!(study.all_status().unwrap()[ramp], RampStatus::Done);
         assert_eq!(scratch.0.join("values.csv").exists(), index == 5);
     }
     assert_same(&scratch.0, &expected.0);
@@ -214,7 +214,7 @@ fn a_ramp_that_somebody_does_is_left_to_them() -> Result<(), AnyError> {
         let other = Study::<VibratedBox>::open(&scratch.0).unwrap();
         let summary = other.run_ramp(progress.ramp, &Control::default().without_waiting()).unwrap();
         assert_eq!((summary.finished, summary.elsewhere), (0, vec![progress.ramp]));
-        assert_eq!(other.status(progress.ramp).unwrap(), RampStatus::Running);
+        assert_eq!(other.all_status().unwrap()[progress.ramp], RampStatus::Running);
     };
     assert!(study.run(&Control::default().with_progress(&look))?.is_complete());
     assert!(seen.into_inner());

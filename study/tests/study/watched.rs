@@ -111,22 +111,19 @@ fn names_of_columns_may_be_made_when_the_program_runs() -> Result<(), AnyError> 
 }
 
 #[test]
-fn ramps_and_points_that_do_not_exist_are_errors() -> Result<(), AnyError> {
+fn ramps_that_do_not_exist_are_errors() -> Result<(), AnyError> {
     let scratch = Scratch::new("watched-places");
     let study = Study::create(&scratch.0, &plan()?)?;
-    assert_eq!(study.status(0)?, RampStatus::Waiting);
+    assert_eq!(study.all_status()?, [RampStatus::Waiting]);
     let is_no_ramp =
         |error: Option<StudyError>| matches!(error, Some(StudyError::Absent { what: "ramp", count: 1, .. }));
     for ramp in [1, usize::MAX] {
-        assert!(is_no_ramp(study.status(ramp).err()));
         assert!(is_no_ramp(study.record(ramp, 0).err()));
         assert!(is_no_ramp(study.transitions(ramp).err()));
         assert!(is_no_ramp(study.run_ramp(ramp, &Control::default()).err()));
         // The ramp is refined, so the number of its records is not known.
         let mut records = study.ramp_records(ramp);
         assert!(is_no_ramp(records.next().and_then(Result::err)) && records.next().is_none());
-        assert!(matches!(study.point(ramp, 0), Err(StudyError::Absent { what: "point", count: 1, .. })));
     }
-    assert!(study.point(0, 7)?.is_none());
     Ok(())
 }

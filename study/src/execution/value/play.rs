@@ -80,7 +80,7 @@ impl<E: Experiment> Study<E> {
 pub(crate) enum Pause {
     /// A slice or a step has ended.
     Slice,
-    /// The time or the number of collisions that was asked for is reached.
+    /// The time that was asked for is reached.
     Reached,
     /// The value has ended.
     Over,
@@ -140,19 +140,18 @@ impl<'a, E: Experiment> Player<'a, E> {
         Self { way, is_over: false }
     }
 
-    /// Plays on, at most to the absolute time `until`, and to the number of collisions `most` of the run.
+    /// Plays on, at most to the absolute time `until`.
     ///
     /// # Errors
     /// The error with which the value ends.
-    pub(crate) fn play(&mut self, until: f64, most: u64) -> Result<Pause, Box<dyn Error>> {
+    pub(crate) fn play(&mut self, until: f64) -> Result<Pause, Box<dyn Error>> {
         if self.is_over {
             return Ok(Pause::Over);
         }
         let paused = match &mut self.way {
-            Way::Value(active) => active.play(until, most),
+            Way::Value(active) => active.play(until),
             Way::Plain(run, companion) => {
-                let left = most.saturating_sub(run.counters().collisions());
-                let limits = Limits::until(until).with_wall_clock(SLICE).with_most_collisions(left);
+                let limits = Limits::until(until).with_wall_clock(SLICE);
                 let ended = run.run(&limits, companion);
                 ended
                     .map_err(Into::into)
@@ -165,29 +164,21 @@ impl<'a, E: Experiment> Player<'a, E> {
 }
 
 impl<E: Experiment> Active<'_, E> {
-    fn play(&mut self, until: f64, most: u64) -> Result<Pause, Box<dyn Error>> {
+    fn play(&mut self, until: f64) -> Result<Pause, Box<dyn Error>> {
         let (protocol, steps) = (self.value.study.plan.protocol(), self.work.steps);
         let start = self.work.start.time(protocol.cycles_of(steps) as f64, self.value.experiment.cycle());
         if self.is_done() {
             return Ok(Pause::Over);
         }
-        if start >= until || self.run.counters().collisions() >= most {
+        if start >= until {
             return Ok(Pause::Reached);
         }
-        Ok(match self.advance(SLICE, until, most - self.work.counters.collisions())? {
+        Ok(match self.advance(SLICE, until)? {
             RunEnd::WallClock => Pause::Slice,
             RunEnd::Time if self.is_done() => Pause::Over,
             RunEnd::Time if self.work.steps > steps => Pause::Slice,
-            RunEnd::Collisions if protocol.most_collisions.is_some_and(|most| self.collisions() >= most) => {
-                Pause::Over
-            }
-            RunEnd::Time | RunEnd::Collisions => Pause::Reached,
+            RunEnd::Time => Pause::Reached,
             _ => Pause::Over,
         })
-    }
-
-    /// Returns the number of collisions in the value so far.
-    fn collisions(&self) -> u64 {
-        self.run.counters().since(&self.work.counters).collisions()
     }
 }

@@ -1,0 +1,242 @@
+//! Mechanics of the whole system: its center of mass, the energies per disk, and walls with a mass.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::{Heading, Observable, Snapshot, Tabular};
+use crate::Disk;
+use crate::boundary::direction;
+
+/// The position of the center of mass, or NaN without disks.
+///
+/// It is $`\sum m_i\vec r_i/\sum m_i`$. Its `y` is the $`Y_{cm}`$ of the paper's Fig. 2.
+///
+/// In a periodic direction, the mean of positions depends on where the seam is. There, the value is the
+/// circular mean (Bai and Breen 2008): the direction of $`\sum m_i e^{2\pi i x_i/L}`$, as a position in the
+/// domain. It moves along with the disks, even across the seam. If the disks are symmetric about it, it is
+/// their center of mass. It is NaN if the sum vanishes, as for disks that are spread evenly, and mostly noise
+/// if the sum nearly vanishes. To follow the center over time, use displacements of
+/// [unwrapped](crate::boundary::Domain::unwrapped) positions.
+///
+/// ```
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{CenterOfMass, Observable, Snapshot};
+///
+/// let disks = [
+///     Disk::new(DVec2::new(1.0, 1.0), 0.5)?,
+///     Disk::new(DVec2::new(3.0, 5.0), 0.5)?.with_mass(3.0)?,
+/// ];
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
+/// let center = CenterOfMass.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
+/// assert_eq!(center, DVec2::new(2.5, 4.0));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CenterOfMass;
+
+impl Observable for CenterOfMass {
+    type Value = DVec2;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> DVec2 {
+        let mass: f64 = snapshot.disks().iter().map(Disk::mass).sum();
+        let moment: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * disk.position()).sum();
+        let (domain, mut center) = (snapshot.domain(), moment / mass);
+        if domain.periodic_sides {
+            center.x = circular_mean(snapshot, mass, domain.left, domain.width(), |place| place.x);
+        }
+        if domain.periodic_ends {
+            center.y = circular_mean(snapshot, mass, domain.bottom, domain.height(), |place| place.y);
+        }
+        center
+    }
+}
+
+/// Returns the circular mean of a coordinate, between `low` and `low + period`; NaN if the disks have no mean
+/// direction.
+fn circular_mean(
+    snapshot: &Snapshot<'_>,
+    mass: f64,
+    low: f64,
+    period: f64,
+    coordinate: impl Fn(DVec2) -> f64,
+) -> f64 {
+    /// Length of the mean direction below which the direction is due to rounding.
+    const ROUNDING: f64 = 1e-12;
+    let turns = |disk: &Disk| (coordinate(disk.position()) - low) / period;
+    let sum: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * direction(TAU * turns(disk))).sum();
+    if sum.length() > ROUNDING * mass {
+        low + (libm::atan2(sum.y, sum.x) / TAU).rem_euclid(1.0) * period
+    } else {
+        f64::NAN
+    }
+}
+
+impl Tabular for CenterOfMass {
+    fn headings(&self) -> Vec<Heading> {
+        vec![Heading::new("center_x", "length"), Heading::new("center_y", "length")]
+    }
+
+    fn add_numbers(&self, value: &DVec2, row: &mut Vec<f64>) {
+        row.extend([value.x, value.y]);
+    }
+}
+
+/// Mean energies per disk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct EnergyPerDisk {
+    /// Translational energy, ⟨½ m v²⟩.
+    pub translational: f64,
+    /// Rotational energy, ⟨½ I ω²⟩.
+    pub rotational: f64,
+    /// Potential energy, ⟨−m **g**·**r**⟩, from unwrapped positions. It is zero at the origin.
+    pub potential: f64,
+}
+
+impl EnergyPerDisk {
+    /// Creates energies from the translational, rotational and potential energy.
+    pub const fn new(translational: f64, rotational: f64, potential: f64) -> Self {
+        Self { translational, rotational, potential }
+    }
+
+    /// Returns the sum of all three energies.
+    pub fn total(&self) -> f64 {
+        self.translational + self.rotational + self.potential
+    }
+}
+
+/// The translational, rotational and potential energy, averaged over the disks; NaN without disks.
+///
+/// Walls with a mass have energies of their own: [`FreeWall`](super::FreeWall).
+///
+/// ```
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{Energies, Observable, Snapshot};
+///
+/// let disks = [Disk::new(DVec2::new(1.0, 3.0), 0.5)?.with_velocity(DVec2::X)?];
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
+/// let energies = Energies.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
+/// assert_eq!((energies.translational, energies.potential), (0.5, 6.0));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Energies;
+
+impl Observable for Energies {
+    type Value = EnergyPerDisk;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> EnergyPerDisk {
+        EnergyPerDisk {
+            translational: snapshot.mean(Disk::translational_energy),
+            rotational: snapshot.mean(Disk::rotational_energy),
+            potential: snapshot.mean(|disk| potential(snapshot, disk)),
+        }
+    }
+}
+
+fn potential(snapshot: &Snapshot<'_>, disk: &Disk) -> f64 {
+    let (gravity, place) = (snapshot.gravity(), snapshot.domain().unwrapped(disk));
+    disk.mass() * gravity.downward() * place.y - disk.mass() * gravity.rightward() * place.x
+}
+
+impl Tabular for Energies {
+    fn headings(&self) -> Vec<Heading> {
+        vec![
+            Heading::new("translational_energy", "energy"),
+            Heading::new("rotational_energy", "energy"),
+            Heading::new("potential_energy", "energy"),
+        ]
+    }
+
+    fn add_numbers(&self, value: &EnergyPerDisk, row: &mut Vec<f64>) {
+        row.extend([value.translational, value.rotational, value.potential]);
+    }
+}
+
+/// The motion of a wall or part with a mass, as a [`Piston`](crate::wall::Piston) has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
+pub struct FreeWallMotion {
+    /// Displacement from the position at rest.
+    pub displacement: DVec2,
+    /// Velocity.
+    pub velocity: DVec2,
+    /// Energy, kinetic and potential.
+    pub energy: f64,
+}
+
+/// The displacement, the velocity and the energy of a wall or part with a mass, which the disks push; NaN for
+/// a wall without a mass, and for an unknown name.
+///
+/// The [`Energies`](super::Energies) of the disks, times their number, and the energies of these walls are
+/// constant in a container of elastic disks at rest.
+///
+/// ```
+/// use granular_edmd::observable::FreeWall;
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::wall::Piston;
+///
+/// let lid = Piston::new(4.0, [-3.0, 3.0])?.with_force(0.5)?.with_start(1.0, 0.0)?;
+/// let container = Container::closed(6.0, 8.0)?.with_piston(Wall::Lid, lid)?;
+/// let disk = Disk::new(DVec2::new(3.0, 2.0), 0.5)?;
+/// let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
+/// run.run_until(2.0, &mut ())?;
+/// // The force 1/2 accelerates the mass 4 inward, which is down.
+/// let lid = run.measure(&FreeWall::named("lid"));
+/// assert_eq!((lid.displacement.y, lid.velocity.y), (-1.25, -0.25));
+/// assert_eq!(lid.energy, -0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeWall {
+    name: String,
+}
+
+impl FreeWall {
+    /// Creates the observable of the wall or part of this name.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self { name: name.into() }
+    }
+}
+
+impl Observable for FreeWall {
+    type Value = FreeWallMotion;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> FreeWallMotion {
+        let found = snapshot.walls().zip(0..).find(|(wall, _)| wall.name == self.name);
+        let motion = found.and_then(|(wall, index)| {
+            let ((displacement, _), velocity) = (wall.motion?, snapshot.wall_velocity(index)?);
+            Some(FreeWallMotion { displacement, velocity, energy: wall.energy? })
+        });
+        let unknown = FreeWallMotion { displacement: DVec2::NAN, velocity: DVec2::NAN, energy: f64::NAN };
+        motion.unwrap_or(unknown)
+    }
+}
+
+impl Tabular for FreeWall {
+    fn headings(&self) -> Vec<Heading> {
+        let names = [
+            ("displacement_x", "length"),
+            ("displacement_y", "length"),
+            ("wall_velocity_x", "length/time"),
+            ("wall_velocity_y", "length/time"),
+            ("wall_energy", "energy"),
+        ];
+        names.map(Heading::from).into()
+    }
+
+    fn add_numbers(&self, value: &FreeWallMotion, row: &mut Vec<f64>) {
+        let FreeWallMotion { displacement, velocity, energy } = value;
+        row.extend([displacement.x, displacement.y, velocity.x, velocity.y, *energy]);
+    }
+}
