@@ -125,6 +125,7 @@ fn images_that_differ_are_shown() {
     let chiral = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(0.5), -0.0625));
     let violation = check(&chiral, &Promises::new().with_energy_gain()).unwrap_err();
     assert_eq!(violation.law(), "mirror image");
+    assert_eq!(check(&chiral, &Promises::new().with_energy_gain().with_handedness()), Ok(()));
     let expected = "should be (0.75, 0.0625) in the mirror image, where tangential impulse and couple change \
                     sign, but is (0.75, -0.0625) there";
     let found = violation.found();
