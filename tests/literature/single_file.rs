@@ -87,7 +87,7 @@ fn spacing(width: f64, force: f64) -> f64 {
 fn a_channel_in_single_file_has_its_exact_pressure() -> Outcome {
     let (count, distance) = (200, 1.25);
     for width in [0.5, 0.8] {
-        let (length, height) = (count as f64 * distance, 1.0 + width);
+        let (length, height) = (f64::from(count) * distance, 1.0 + width);
         let channel = Container::closed(length, height)?.with_periodic_sides()?;
         let disks = (0..count)
             .map(|number| Disk::new(DVec2::new((f64::from(number) + 0.5) * distance, 0.5 * height), 0.5));
