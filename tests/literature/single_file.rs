@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::boundary::Container;
+use granular_edmd::boundary::{Boundary, Container};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial;
@@ -48,6 +48,26 @@ fn rods_in_single_file_diffuse_as_jepsen_says() -> Outcome {
     println!("  error {error:.4}");
     assert!(error < 0.02, "{error}");
     assert!(agrees("diffusion in single file", found.mean(), expected, 4.0 * error));
+    Ok(())
+}
+
+/// The pressure of five rods on a ring, P L/NT = 1 + (N - 1)/N ρ/(1 - ρ) (Tonks 1936, for a ring of N rods): its
+/// collisional part belongs to the temperature of the N - 1 degrees of freedom that momentum leaves.
+#[test]
+fn few_rods_on_a_ring_have_the_pressure_of_their_degrees_of_freedom() -> Outcome {
+    let (count, density, mut found) = (5.0, 0.5, RunningMean::default());
+    for seed in 0..400 {
+        let mut run = rods(5, count / density, seed)?;
+        let mut stress = Stress::new(SampleTimes::every(10.0)?);
+        run.run_until(100.0, &mut stress)?;
+        let area = run.boundary().domain().width() * run.boundary().domain().height();
+        let free = count / (count - 1.0);
+        found.push(1.0 + stress.collisional().xx.mean() * area / (count * free));
+    }
+    let expected = 1.0 + (count - 1.0) / count * density / (1.0 - density);
+    let error = found.standard_error() / expected;
+    assert!(error < 0.005, "{error}");
+    assert!(agrees("Z of five rods on a ring", found.mean(), expected, 4.0 * error));
     Ok(())
 }
 
