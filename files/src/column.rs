@@ -138,6 +138,9 @@ pub(super) fn settle(columns: &mut [Column]) -> Vec<String> {
     let has_shapes = has(&["major", "minor", "feret"]);
     let has_id = columns.iter().any(|column| column.slot == Quantity::Id.slot(0));
     let mut notes = Vec::new();
+    if has_spots || has_shapes || has(&["centroid0"]) {
+        notes.push("y points down in images, and up here: the disks are mirrored".to_owned());
+    }
     for (column, name) in columns.iter_mut().zip(&names) {
         let found = match name.as_str() {
             "mass" if has_spots => "the brightness of a spot here, and ignored",

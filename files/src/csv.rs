@@ -14,6 +14,9 @@ use super::{ReadError, State};
 const UNITS: [&str; 10] =
     ["", "1", "rad", "length", "sigma", "time", "mass", "length/time", "1/time", "rad/time"];
 
+/// Units of angles that are no radians.
+const DEGREES: [&str; 4] = ["deg", "degree", "degrees", "°"];
+
 /// Reads a table whose first line names the columns. A column that numbers frames, or else one of times,
 /// divides the rows into frames.
 ///
@@ -108,10 +111,14 @@ impl Head {
 
     fn of(text: &str, line: usize) -> Self {
         let divider = [',', ';', '\t'].into_iter().find(|&divider| text.contains(divider));
-        let (mut columns, mut foreign): (Vec<Column>, Vec<&str>) = (Vec::new(), Vec::new());
+        let (mut columns, mut foreign, mut notes) = (Vec::<Column>::new(), Vec::<&str>::new(), Vec::new());
         for heading in cells(text, divider) {
             let (name, unit) = name_and_unit(heading);
-            let column = Column::of(name, 1).next();
+            let mut column = Column::of(name, 1).next();
+            if let Some(column) = column.as_mut().filter(|_| DEGREES.contains(&unit)) {
+                column.slot = None;
+                notes.push(format!("`{heading}` is in degrees, and ignored"));
+            }
             let is_used =
                 column.as_ref().is_some_and(|column| column.slot.is_some() || is_one(column, TIMES));
             if is_used && !UNITS.contains(&unit) {
@@ -119,7 +126,6 @@ impl Head {
             }
             columns.extend(column);
         }
-        let mut notes = Vec::new();
         if !foreign.is_empty() {
             notes.push(format!("numbers are read without conversion of units: {}", foreign.join(", ")));
         }

@@ -11,7 +11,7 @@ use super::column::Quantity::{
     self, Angle, AngularVelocity, Density, Diameter, Id, Image, InertiaFactor, Mass, Momentum, Name,
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
-use super::column::SLOTS;
+use super::column::{SLOTS, plain};
 use super::table::Table;
 use super::table::{RADIUS_IGNORED, Settings};
 use super::{ReadError, State, table};
@@ -127,7 +127,11 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
         }
     }
     if !either(&[Radius, Diameter], 0) && settings.radius.is_none() {
-        let what = "the column `radius`, or one radius for all (with_radius, --radius),";
+        let is_size = |name: &&str| ["area", "feret"].contains(&plain(name).as_str());
+        let names: Vec<&str> =
+            table.columns.iter().map(|column| column.name.as_str()).filter(is_size).collect();
+        let known = if names.is_empty() { String::new() } else { format!(", from {}", names.join(" or ")) };
+        let what = format!("the column `radius`, or one radius for all{known} (with_radius, --radius),");
         return Err(ReadError::missing(table.line, what));
     }
     if either(&[Momentum], 0) && !either(&[Mass, Density], 0) && settings.density.is_none() {

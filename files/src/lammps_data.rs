@@ -254,7 +254,8 @@ pub(crate) fn table(text: &Text) -> Result<Table, ReadError> {
     table.time = header.time;
     if !sections.columns.1 {
         table.notes.push(format!(
-            "the atoms are read as those of the style `sphere` ({SPHERE}), since the file does not name it"
+            "the atoms are read as those of the style `sphere` ({SPHERE}), since the file does not name it; \
+             `Atoms # full` would name another"
         ));
     }
     Ok(table)

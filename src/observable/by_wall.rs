@@ -76,6 +76,14 @@ impl<T: Default> ByWall<T> {
         self.values.get_mut(place).map(|(_, value)| value)
     }
 
+    /// Iterates over the values, each with the first of its walls in the present run.
+    pub(super) fn first_walls(&mut self) -> impl Iterator<Item = (usize, &mut T)> {
+        let places = &self.places;
+        let first = |place: usize| places.iter().position(|&found| found == Some(place));
+        let values = self.values.iter_mut().enumerate();
+        values.filter_map(move |(place, (_, value))| Some((first(place)?, value)))
+    }
+
     /// Returns the value of a name.
     pub(super) fn get(&self, name: &str) -> Option<&T> {
         self.values.iter().find(|(other, _)| other == name).map(|(_, value)| value)

@@ -38,6 +38,7 @@ use crate::{Disk, ParameterError};
 /// run.run_until(12.0, &mut crossings)?;
 /// assert_eq!((crossings.forward(), crossings.backward()), (&[1, 1][..], &[1, 1][..]));
 /// assert_eq!(crossings.flux()?.mean(), 0.0);
+/// assert_eq!(crossings.rates()?.map(|rate| rate.mean()), [1.0 / 6.0; 2]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -113,13 +114,28 @@ impl Crossings {
         &self.backward
     }
 
+    /// Returns the mean numbers of forward and of backward crossings per unit of time, with their errors.
+    ///
+    /// Through a line of length $`L`$ in a gas of density $`n`$ in equilibrium, both are
+    /// $`nL\sqrt{T/2\pi m}`$.
+    ///
+    /// # Errors
+    /// If no interval is complete yet, or only one.
+    pub fn rates(&self) -> Result<[Estimate; 2], ParameterError> {
+        let interval = self.stretch.sample_times.interval();
+        let rate = |counts: &[u64]| {
+            block_average(&counts.iter().map(|&count| count as f64 / interval).collect::<Vec<_>>())
+        };
+        Ok([rate(&self.forward)?, rate(&self.backward)?])
+    }
+
     /// Returns the mean number of forward minus backward crossings per unit of time, with its error.
     ///
     /// In a closed system, whatever has crossed comes back, so short intervals are anticorrelated, and the
     /// error may be ten times too large.
     ///
     /// # Errors
-    /// If no interval is complete yet.
+    /// If no interval is complete yet, or only one.
     pub fn flux(&self) -> Result<Estimate, ParameterError> {
         block_average(&self.fluxes().collect::<Vec<_>>())
     }

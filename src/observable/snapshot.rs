@@ -207,6 +207,13 @@ impl<'a> Snapshot<'a> {
         Some(walls.boundary.surface(wall, point, walls.time).velocity)
     }
 
+    /// Returns the momentum of a wall with a mass, or `None` for other walls.
+    pub(super) fn wall_momentum(&self, wall: usize) -> Option<DVec2> {
+        let (walls, point) = (self.walls?, self.wall_point(wall)?);
+        let surface = walls.boundary.surface(wall, point, walls.time);
+        surface.mass.is_finite().then(|| surface.mass * surface.velocity)
+    }
+
     /// Returns the rectangle of the domain with its edges where the walls are at this time.
     ///
     /// The [`domain`](Self::domain) leaves room for walls that move.

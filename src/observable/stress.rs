@@ -45,7 +45,17 @@ pub struct StressTensor {
 /// the region counts. Each interval between two samples gives one value of the stress, and the errors come
 /// from blocks of these values.
 ///
-/// In a box without gravity, the normal stress is the pressure on the walls. The area $`A`$ is the area that
+/// In a box without gravity, the normal stress is the pressure on the walls. Under a wall with a mass that
+/// moves along y under the force $`F`$, at the distance $`h`$ from the floor, the virial has a term of the
+/// wall: $`\langle P_{yy}A\rangle = F\langle h\rangle - T`$, so the stress is lower than the pressure
+/// $`F/L`$ on it by about one disk in all.
+///
+/// In a periodic box at rest, the $`2N - 2`$ degrees of freedom have the temperature $`T' = E/(N-1)`$, and
+/// [`Temperatures`](super::Temperatures) divides by $`N`$: the kinetic part is $`NT/A`$ with $`T = E/N`$, but
+/// collisions happen at $`T'`$. The compressibility factor of $`N`$ disks is therefore
+/// $`Z = 1 + P_{\rm coll}A/NT'`$; with $`T`$ in place of $`T'`$, it would be too large by $`(Z-1)/(N-1)`$.
+///
+/// The area $`A`$ is the area that
 /// walls leave free for matter in the region, or in the whole domain, at the time of the sample
 /// ([`Boundary::area`](crate::boundary::Boundary::area)). A run ends with an error if the area is infinite,
 /// or if the boundary does not know the area. Where a driving changes the number of disks or their

@@ -1,5 +1,7 @@
 //! The stress on walls.
 
+use glam::DVec2;
+
 use super::by_wall::ByWall;
 use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
@@ -7,6 +9,9 @@ use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, S
 use crate::ParameterError;
 use crate::quantity::positive;
 use crate::statistics::{BlockedMean, Estimate};
+
+/// Smallest cosine between two normals that count as one direction.
+const ALIKE: f64 = 0.999_999;
 
 /// An observer of the pressure and the shear stress of the disks on walls.
 ///
@@ -20,7 +25,18 @@ use crate::statistics::{BlockedMean, Estimate};
 /// tangent, which is the normal turned counterclockwise (to the left on a floor). Each interval between two
 /// samples gives one value, and the errors come from blocks of these values. A disk that has hit a wall
 /// cannot hit it again immediately, so the values of short intervals are anticorrelated, and their errors are
-/// up to three times too large. Choose intervals with many collisions.
+/// up to three times too large.
+///
+/// A wall of the mass $`M`$ that disks push from one side gives back what they push: over a time $`t`$,
+///
+/// ```math
+/// \sum\Delta_n = \int F\,dt - M\,\Delta V
+/// ```
+///
+/// for the force $`F`$ on the wall and the change $`\Delta V`$ of its velocity, both along its normal. The
+/// second term is bounded, so blocks of pressures would give errors that are far too large. The error is
+/// therefore taken from blocks of $`\sum\Delta_n + M\Delta V`$ and from $`M\Delta V`$ between the first
+/// sample and the last, whose variance is $`2M^2\langle V^2\rangle`$.
 ///
 /// One brick of a part has a name like "funnel, brick 2". A run ends with an error if its boundary has no
 /// wall and no part of one of the names.
@@ -57,6 +73,21 @@ struct Received {
     /// Normal and tangential impulse since the latest sample.
     impulse: [f64; 2],
     means: [BlockedMean; 2],
+    inertia: Inertia,
+}
+
+/// The motion of a wall with a mass, for the error of the pressure on it.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct Inertia {
+    /// Direction from the wall to the disks, once it is known; zero if they push from several sides.
+    facing: Option<DVec2>,
+    /// Momentum at the latest sample.
+    momentum: DVec2,
+    /// The pressures without the impulse that changed the momentum.
+    loads: BlockedMean,
+    /// Squares of the momentum along `facing`.
+    squares: BlockedMean,
 }
 
 impl WallStress {
@@ -71,14 +102,14 @@ impl WallStress {
     /// If the length is not finite and positive.
     pub fn with_wall(mut self, name: impl Into<String>, length: f64) -> Result<Self, ParameterError> {
         let length = positive("length of a wall", length)?;
-        let received = Received { length, impulse: [0.0; 2], means: Default::default() };
+        let received = Received { length, ..Received::default() };
         self.walls.insert(name.into(), received);
         Ok(self)
     }
 
     /// Returns the pressure on the wall of this name, or `None` if it is not watched.
     pub fn pressure(&self, name: &str) -> Option<Estimate> {
-        self.walls.get(name).map(|wall| wall.means[0].estimate())
+        self.walls.get(name).map(|wall| wall.pressure(self.stretch.sample_times.interval()))
     }
 
     /// Returns the shear stress on the wall of this name, or `None` if it is not watched.
@@ -86,12 +117,56 @@ impl WallStress {
         self.walls.get(name).map(|wall| wall.means[1].estimate())
     }
 
+    fn sample(&mut self, snapshot: &Snapshot<'_>, duration: Option<f64>) {
+        for (wall, received) in self.walls.first_walls() {
+            received.sample(snapshot.wall_momentum(wall), duration);
+        }
+    }
+
     /// Forgets all measurements so far.
     pub fn clear(&mut self) {
         self.stretch.forget();
         for received in self.walls.values_mut() {
-            (received.impulse, received.means) = ([0.0; 2], Default::default());
+            *received = Received { length: received.length, ..Received::default() };
         }
+    }
+}
+
+impl Received {
+    /// Begins a new interval at which the wall has this momentum, if it has a mass, and takes the values of
+    /// the interval before, of this duration, if that counts.
+    fn sample(&mut self, momentum: Option<DVec2>, duration: Option<f64>) {
+        let impulse = std::mem::take(&mut self.impulse);
+        let now = momentum.unwrap_or_default();
+        let gained = now - std::mem::replace(&mut self.inertia.momentum, now);
+        let Some(duration) = duration else { return };
+        let scale = self.length * duration;
+        for (mean, impulse) in self.means.iter_mut().zip(impulse) {
+            mean.push(impulse / scale);
+        }
+        if momentum.is_some() {
+            let facing = self.inertia.facing.unwrap_or_default();
+            self.inertia.loads.push((impulse[0] + gained.dot(facing)) / scale);
+            self.inertia.squares.push(now.dot(facing) * now.dot(facing));
+        }
+    }
+
+    /// Returns the pressure from values of intervals of this duration.
+    fn pressure(&self, interval: f64) -> Estimate {
+        /// Share of the error below which an error does not matter, whether it has converged or not.
+        const SMALL: f64 = 0.3;
+        let ([pressure, _], Inertia { facing, loads, squares, .. }) = (&self.means, &self.inertia);
+        let (whole, naive) = (pressure.estimate(), pressure.ungrouped().standard_error());
+        if loads.count() < 2 || naive == 0.0 || *facing == Some(DVec2::ZERO) {
+            return whole;
+        }
+        let (load, square) = (loads.estimate(), squares.estimate());
+        let swing = (2.0 * square.mean()).sqrt() / (self.length * interval * pressure.count() as f64);
+        let error = libm::hypot(load.standard_error(), swing);
+        let is_known = |share: f64, converged: bool| converged || share < SMALL * error;
+        let converged =
+            is_known(load.standard_error(), load.is_converged()) && is_known(swing, square.is_converged());
+        Estimate::blocked(whole.mean(), error, whole.samples(), (error / naive).powi(2), converged)
     }
 }
 
@@ -99,7 +174,7 @@ impl Observer for WallStress {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.walls.find(start)?;
         if self.stretch.begin(start) {
-            self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
+            self.sample(start, None);
         }
         Ok(())
     }
@@ -109,6 +184,10 @@ impl Observer for WallStress {
         if let Some(received) = self.walls.at(wall) {
             received.impulse[0] += collision.impulse.normal();
             received.impulse[1] -= collision.impulse.tangential();
+            let facing = received.inertia.facing.get_or_insert(collision.normal);
+            if facing.dot(collision.normal) < ALIKE {
+                *facing = DVec2::ZERO;
+            }
         }
     }
 
@@ -118,13 +197,7 @@ impl Observer for WallStress {
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let duration = self.stretch.finish(snapshot.time());
-        for received in self.walls.values_mut() {
-            let impulse = std::mem::take(&mut received.impulse);
-            let Some(duration) = duration else { continue };
-            for (mean, impulse) in received.means.iter_mut().zip(impulse) {
-                mean.push(impulse / (received.length * duration));
-            }
-        }
+        self.sample(snapshot, duration);
     }
 
     fn on_end(&mut self, end: &Snapshot<'_>) {
@@ -139,13 +212,15 @@ impl Table for WallStress {
     }
 
     fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let estimates = |received: &Received| received.means.each_ref().map(BlockedMean::estimate);
+        let interval = self.stretch.sample_times.interval();
+        let estimates =
+            move |received: &Received| [received.pressure(interval), received.means[1].estimate()];
         let numbered = (0..).map(f64::from).zip(self.walls.values());
         Box::new(numbered.map(move |(number, received)| row(&[number], &estimates(received))))
     }
 }
 
 crate::gate::from_file! {
-    Received { length: f64, impulse: [f64; 2], means: [BlockedMean; 2] } =>
-        Ok(Self { length: positive("length of a wall", length)?, impulse, means })
+    Received { length: f64, impulse: [f64; 2], means: [BlockedMean; 2], inertia: Inertia } =>
+        Ok(Self { length: positive("length of a wall", length)?, impulse, means, inertia })
 }

@@ -65,13 +65,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Checks that a wall with a mass has taken the impulse of a collision, given its velocity before, and
-    /// the expected one after.
+    /// the expected one after. Notes the energy that a stop has absorbed.
     ///
     /// Rounding hides what the impulse does to a very heavy wall.
     #[cold]
     #[inline(never)]
     pub(super) fn check_reaction(
-        &self,
+        &mut self,
         collision: &Collision,
         wall: usize,
         [before, expected]: [DVec2; 2],
@@ -92,7 +92,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let is_smooth = impulse.tangential() == 0.0 && impulse.couple() == 0.0;
         let is_right_across = is_smooth || is_at(expected, normal.perp());
         let is_told = reaction == Reaction::Moved || found.distance(before) <= slack;
-        if is_told && is_right_across && (is_at(expected, normal) || is_held(normal)) {
+        let is_free = is_at(expected, normal);
+        if is_told && is_right_across && (is_free || is_held(normal)) {
+            if !is_free {
+                let mass = self.parts.boundary.surface(wall, collision.position, self.engine.clock.now).mass;
+                let speeds = [expected, found].map(|velocity| velocity.dot(normal));
+                self.engine.note_stop(wall, 0.5 * mass * (speeds[0] * speeds[0] - speeds[1] * speeds[1]));
+            }
             return Ok(());
         }
         let fault = BoundaryFault::Reaction { wall, expected, found };

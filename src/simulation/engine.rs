@@ -35,6 +35,9 @@ pub(super) struct Engine {
     pub(super) scratch: Scratch,
     pub(super) inlets: Vec<Inlet>,
     pub(super) ledger: Ledger,
+    /// The last wall with a mass that was hit while it rested on a stop, and the energy that stops have
+    /// absorbed in such collisions since the last change between two runs.
+    pub(super) stopped: Option<(usize, f64)>,
     /// Marks of this run and of its walls.
     pub(super) marks: [Mark; 2],
 }
@@ -61,6 +64,7 @@ impl Engine {
             scratch: Scratch::default(),
             inlets: Vec::new(),
             ledger,
+            stopped: None,
             marks: [Mark::new(), Mark::new()],
         }
     }
@@ -75,6 +79,11 @@ impl Engine {
     #[inline]
     pub(super) fn len(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// Notes that a stop has absorbed this energy of a wall with a mass that rests on it.
+    pub(super) fn note_stop(&mut self, wall: usize, energy: f64) {
+        self.stopped = Some((wall, energy + self.stopped.map_or(0.0, |(_, before)| before)));
     }
 
     /// Returns an engine without disks, which stands in for one that is lent.

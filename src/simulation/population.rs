@@ -111,5 +111,6 @@ impl Engine {
     pub(super) fn balance_anew(&mut self, domain: &Domain) {
         let [energy, _] = self.bodies.energy(self.clock.now, domain);
         self.ledger.balance_anew(energy - self.counters.energy_of_rebounds);
+        self.stopped = None;
     }
 }

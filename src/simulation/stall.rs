@@ -71,6 +71,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 if self.moves_otherwise(disk, wall, due) {
                     return Remedy::WallVelocity;
                 }
+                if self.engine.stopped.is_some_and(|(stopped, _)| stopped == wall) {
+                    return Remedy::WallOnStop;
+                }
                 let (collision, _) = resolve_wall(
                     &self.engine.bodies,
                     &self.parts.rule,

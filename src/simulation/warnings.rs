@@ -9,7 +9,7 @@ use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Region};
 use crate::collision::CollisionRule;
 use crate::error::Rounded;
-use crate::observable::Temperatures;
+use crate::observable::{Partner, Temperatures};
 use crate::scheduler::EventScheduler;
 
 /// Fewest collisions for which a share is meaningful.
@@ -26,6 +26,9 @@ const STRAIGHT: f64 = 1e-9;
 
 /// Largest relative gain of energy that counts as rounding.
 const GAIN: f64 = 1e-9;
+
+/// Smallest energy that stops absorb, relative to the energy of the disks, that matters.
+const ABSORBED: f64 = 0.01;
 
 /// Fewest disks at an inlet that count as a jam.
 const JAM: usize = 1000;
@@ -85,6 +88,16 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
+    /// Disks have hit a wall with a mass that rested on a stop. The stop absorbs what the disks give the
+    /// wall, so they lose energy under any rule ([`Piston`](crate::wall::Piston)). The warning comes if stops
+    /// have absorbed a hundredth of the energy of the disks or more since the simulation was built or
+    /// resumed, or since disks or walls were last changed between two runs.
+    WallOnStop {
+        /// The name of the last such wall.
+        wall: String,
+        /// Energy that stops have absorbed.
+        energy: f64,
+    },
     /// A thousand disks or more wait at an inlet. The inlet may have no room at all, for example if it lies
     /// inside a part.
     DisksWait {
@@ -127,6 +140,12 @@ impl fmt::Display for Warning {
                 "the energy grew from {} to {} without a source: a rule gains energy; see collision::laws::check",
                 Rounded(*before),
                 Rounded(*now)
+            ),
+            Self::WallOnStop { wall, energy } => write!(
+                formatter,
+                "the wall {wall:?} was hit while it rested on a stop, which absorbed the energy {}: a disk of mass m leaves \
+                 a wall of mass M that rests with (M - m)/(M + m) of its speed, under any rule",
+                Rounded(*energy)
             ),
             Self::DisksWait { inlet, waiting } => write!(
                 formatter,
@@ -174,7 +193,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         warnings.extend(self.engine.one_direction());
         warnings.extend(self.endless_fall());
         warnings.extend(self.energy_gained());
+        warnings.extend(self.wall_on_stop());
         warnings
+    }
+
+    fn wall_on_stop(&self) -> Option<Warning> {
+        let (wall, energy) = self.engine.stopped?;
+        let [_, size] = self.engine.bodies.energy(self.engine.clock.now, &self.parts.boundary.domain());
+        let wall = self.name_of(Partner::Wall(wall))?;
+        (energy > ABSORBED * size).then_some(Warning::WallOnStop { wall, energy })
     }
 
     fn long_contact_duration(&self) -> Option<Warning> {

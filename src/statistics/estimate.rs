@@ -63,7 +63,7 @@ impl Estimate {
     }
 
     /// Creates the mean and error of correlated samples, from blocks.
-    pub(super) fn blocked(
+    pub(crate) fn blocked(
         mean: f64,
         standard_error: f64,
         samples: u64,

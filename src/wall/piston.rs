@@ -21,7 +21,19 @@ use crate::{Fingerprint, ParameterError};
 /// The wall is guided, so an impulse along its surface does not move it. A stop takes all of the wall's
 /// velocity: the wall rests there as long as the force presses it against the stop. A wall that has almost
 /// stopped when it arrives at a stop (less than 1e-7 of its previous speed is left) turns around there
-/// without touching the stop.
+/// without touching the stop. The normal of a lid points down, so $`z > 0`$ is below its place at rest.
+///
+/// # At a stop, no rule is elastic
+/// A disk that hits a wall at rest on a stop gives it the speed $`2mv/(M+m)`$ under
+/// [`Elastic`](crate::collision::Elastic), and the stop absorbs it: the disk leaves with
+///
+/// ```math
+/// v' = \frac{M-m}{M+m}\,v .
+/// ```
+///
+/// If both masses are equal, the disk stops dead; a lighter wall is hit again and again. The simulation then
+/// [warns](crate::simulation::Warning::WallOnStop). A force, or a spring, that keeps the wall off its stops
+/// prevents it, as does a wall without a mass in its place.
 ///
 /// [`Container::with_piston`](crate::boundary::Container::with_piston) makes a wall from a piston. A
 /// checkpoint keeps the present state of the wall; a file of the container keeps only its state at the start.
@@ -43,6 +55,9 @@ use crate::{Fingerprint, ParameterError};
 /// run.run_until(200.0, &mut ())?;
 /// let height = run.snapshot().wall_point(3).ok_or("there is a lid")?.y;
 /// assert!(height > 5.0 && height < 30.0);
+/// // A displacement above 0, along the normal of the lid, is downward.
+/// let (_, displacement, _) = run.snapshot().moving_walls()[0];
+/// assert!(displacement.y < 0.0 && (displacement.y - (height - 30.0)).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

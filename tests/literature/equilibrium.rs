@@ -2,14 +2,16 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::Disk;
+use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Elastic, Frictional, Rough};
+use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
 use granular_edmd::observable::{
-    Collision, Energies, HeightProfile, Partner, SampleTimes, Sampled, Snapshot, Temperatures, on_collision,
-    on_sample,
+    Collision, Energies, HeightProfile, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures,
+    on_collision, on_sample,
 };
 use granular_edmd::statistics::RunningMean;
+use granular_edmd::{Disk, Simulation, initial};
 
 use crate::gas::{Gas, run_for};
 use crate::{Outcome, agrees};
@@ -235,6 +237,40 @@ fn contact_duration_thins_collisions_as_computed() -> Outcome {
         // There are 5e5 collisions, 4.4 % and 11 % of which count, and weights double the variance: 1 % and
         // 0.6 %.
         assert!(agrees("thinning", exponent, 2.25, 0.06));
+    }
+    Ok(())
+}
+
+/// Dense fluids at 1.6, 1.5 and 1.4 times the area of closest packing (Erpenbeck & Luban 1985), and the
+/// pressure at φ = 0.70 of the liquid that coexists with the hexatic phase: β p σ² = 9.185 (Bernard & Krauth
+/// 2011).
+#[test]
+#[ignore = "long"]
+fn dense_fluids_have_the_pressure_of_the_literature() -> Outcome {
+    let closest = 0.5 * PI / 3.0_f64.sqrt();
+    let [first, second, third] =
+        [(1.6, 5.4963), (1.5, 6.6074), (1.4, 8.306)].map(|(area, z)| (closest / area, z));
+    // The pressure of 1024 disks, unlike that of a million, still depends on their number where they freeze.
+    let liquid = (0.70, 9.185 * 0.25 * PI / 0.70);
+    for ((packing, expected), tolerance) in
+        [first, second, third, liquid].into_iter().zip([0.004, 0.004, 0.004, 0.015])
+    {
+        let count = 1024;
+        let side = (0.25 * PI * f64::from(count) / packing).sqrt();
+        let container = Container::periodic(side, side)?;
+        let disks =
+            initial::packed_mix(&container, vec![Disk::new(DVec2::ZERO, 0.5)?; count as usize], side, 1)?;
+        let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, 1)?)?;
+        let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+        run.run_until(300.0, &mut ())?;
+        let mut stress = Stress::new(SampleTimes::every(2.0)?);
+        run.run_until(900.0, &mut stress)?;
+        // Momentum and energy are conserved, so each degree of freedom has the energy of N/(N - 1) disks, and
+        // the kinetic part of the pressure belongs to N/(N - 1) times the temperature of the samples.
+        let (collisional, kinetic) = (stress.collisional().pressure, stress.kinetic().pressure);
+        let factor = 1.0 + collisional.mean() / kinetic.mean() * (f64::from(count) - 1.0) / f64::from(count);
+        println!("  {collisional}");
+        assert!(agrees(&format!("Z of dense fluids, {packing:.3}"), factor, expected, tolerance));
     }
     Ok(())
 }

@@ -8,6 +8,7 @@
 //! `.ci/validation` compares the table with the values that the tests write.
 
 mod atmosphere;
+mod billiards;
 mod collapse;
 mod collisions;
 mod cooling;
@@ -21,12 +22,15 @@ mod order_parameters;
 mod piston;
 mod plate;
 mod reversal;
+mod shock;
+mod single_file;
 mod stress;
 mod structure;
 mod superball;
 mod thermal_walls;
 mod transport;
 mod velocities;
+mod work;
 
 use support::measured::measured;
 

@@ -23,6 +23,35 @@ fn net(crossings: &Crossings) -> i64 {
         - crossings.backward().iter().sum::<u64>().cast_signed()
 }
 
+/// Both one-way rates are those of effusion, n L √(T/2πm), within their errors, over 20 seeds; the net rate
+/// is zero.
+#[test]
+fn one_way_rates_are_those_of_effusion() -> Outcome {
+    let (count, side) = (100, 20.0);
+    let container = Container::periodic(side, side)?;
+    let line = [DVec2::new(0.0, HEIGHT), DVec2::new(side, HEIGHT)];
+    let mut squares = [0.0; 2];
+    for seed in 0..20 {
+        let disks = initial::scattered(&container, count, 0.3, side, seed)?;
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
+        let disks = initial::without_drift(disks)?;
+        let energy: f64 = disks.iter().map(Disk::translational_energy).sum();
+        let heat = energy / (count as f64 - 1.0) / disks[0].mass();
+        let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).build()?;
+        let mut crossings = Crossings::new(line, SampleTimes::every(1.0)?)?;
+        run.run_until(400.0, &mut crossings)?;
+        let expected = count as f64 / side * (heat / std::f64::consts::TAU).sqrt();
+        for (square, rate) in squares.iter_mut().zip(crossings.rates()?) {
+            *square += ((rate.mean() - expected) / rate.standard_error()).powi(2);
+        }
+    }
+    println!("{squares:?}");
+    // Sums of 20 squares of normal numbers, 20 ± 6. As the number of disks and their energy are fixed, the
+    // errors are a little too large.
+    assert!(squares.iter().all(|square| (4.0..40.0).contains(square)), "{squares:?}");
+    Ok(())
+}
+
 /// In a box under gravity with kicks, of two kinds: at each end, as many disks more are above as have
 /// crossed.
 #[test]

@@ -1,6 +1,6 @@
 //! Stress, histograms, and velocities about a flow, of known states and of chance.
 
-use granular_edmd::boundary::{Boundary, Container, Region};
+use granular_edmd::boundary::{Boundary, Container, Part, Region, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
@@ -9,6 +9,7 @@ use granular_edmd::observable::{
     VelocityDistribution, WallStress,
 };
 use granular_edmd::statistics::Histogram;
+use granular_edmd::wall::Piston;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
 
 use crate::chance::{BOX, Chance, points};
@@ -42,6 +43,38 @@ fn a_region_gets_its_share_of_a_collision() -> Outcome {
     let (xx, yx) = (tensor.xx.mean(), tensor.yx.mean());
     assert!((xx - 3.0 * 0.75 / 20.0).abs() < 1e-15 && (yx - 0.75 / 20.0).abs() < 1e-15, "{tensor:?}");
     assert_eq!((tensor.xy.mean(), tensor.yy.mean(), stress.samples()), (0.0, 0.0, 1));
+    Ok(())
+}
+
+/// The pressure on a wall with a mass that a gas pushes from one side, over 40 seeds and two intervals: its
+/// error is that of the momentum of the wall, not that of blocks of bounded sums.
+#[test]
+fn the_error_of_the_pressure_on_a_wall_with_a_mass_is_its_scatter() -> Outcome {
+    let (force, length) = (4.0, 8.0);
+    let piston = Piston::new(30.0, [-90.0, 8.0])?.with_force(force)?;
+    let head = Part::polyline([(0.0, 10.0), (8.0, 10.0)].map(DVec2::from))?;
+    let lid = Container::closed(8.0, 10.0)?.with_piston(Wall::Lid, piston)?;
+    let head = Container::closed(8.0, 100.0)?.with_part("head", head.with_piston(DVec2::NEG_Y, piston)?)?;
+    for (walls, name, interval) in [(&lid, "lid", 1.0), (&lid, "lid", 25.0), (&head, "head", 1.0)] {
+        let mut squares = 0.0;
+        for seed in 1..=40 {
+            let disks = initial::scattered(walls, 20, 0.3, 9.0, seed)?;
+            let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
+            let mut run = Simulation::builder(Elastic, walls.clone()).disks(disks).build()?;
+            run.run_until(50.0, &mut ())?;
+            let mut push = WallStress::new(SampleTimes::every(interval)?).with_wall(name, length)?;
+            run.run_until(350.0, &mut push)?;
+            let pressure = push.pressure(name).ok_or("it is watched")?;
+            squares += ((pressure.mean() - force / length) / pressure.standard_error()).powi(2);
+            assert!(
+                pressure.standard_error() < 0.015 * pressure.mean(),
+                "{name}, {interval}, {seed}: {pressure}"
+            );
+        }
+        // A sum of 40 squares of normal numbers is 40 ± 9, and the errors are uncertain by a tenth.
+        assert!((13.0..80.0).contains(&squares), "{name}, {interval}: {squares}");
+        println!("{name}, {interval}: {squares}");
+    }
     Ok(())
 }
 

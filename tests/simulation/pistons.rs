@@ -29,23 +29,6 @@ fn energy(snapshot: &Snapshot<'_>, piston: &Piston, height: f64) -> f64 {
     disks + fallen + piston.energy(displacement, velocity)
 }
 
-/// The digits of π: a piston of mass 100ⁿ pushes a disk against a wall; they collide ⌊π 10ⁿ⌋ times.
-#[test]
-fn collisions_count_the_digits_of_pi() -> Outcome {
-    for digits in 0..6 {
-        let piston = Piston::new(100_f64.powi(digits), [-90.0, 9.6])?.with_start(0.0, 1e-3)?;
-        let container = Container::closed(10.0, 4.0)?.with_piston(Wall::Right, piston)?;
-        let disk = Disk::new(DVec2::new(3.0, 2.0), 0.25)?.with_mass(1.0)?;
-        let mut run = Simulation::builder(Elastic, container).disks([disk]).build()?;
-        // After the last collision, the piston goes away and stops where it began.
-        let limits = Limits::until(1e5).with_least_progress(0.0)?;
-        run.run(&limits, &mut ())?;
-        let count = (PI * 10_f64.powi(digits)).floor() as u64;
-        assert_eq!(run.counters().wall_collisions, count, "{digits}");
-    }
-    Ok(())
-}
-
 /// A piston on a spring over a fast disk: nothing is lost in many blows.
 #[test]
 fn energy_is_kept_over_many_blows() -> Outcome {

@@ -11,7 +11,7 @@ use granular_edmd::collision::{
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Temperatures, on_collision};
 use granular_edmd::simulation::{Limits, Remedy, RunError, Warning};
-use granular_edmd::wall::Sinusoidal;
+use granular_edmd::wall::{Piston, Sinusoidal};
 use granular_edmd::{Disk, Flight, Simulation, initial};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
@@ -269,6 +269,33 @@ fn a_stall_names_its_cause() -> Outcome {
     let sinking = || -> Outcome<Lying> { Ok(Lying(walls()?, -0.2)) };
     assert_eq!(stall_of(lossy, sinking()?, disk()?)?, Remedy::WallVelocity);
     assert_eq!(stall_of(short, sinking()?, disk()?)?, Remedy::WallVelocity);
+    Ok(())
+}
+
+/// A stop absorbs what a disk gives a wall that rests on it: the disk keeps (M - m)/(M + m) of its speed, a
+/// run that loses its energy so warns, and one that stalls for this reason says so.
+#[test]
+fn a_wall_that_rests_on_a_stop_is_a_warning_and_a_cause() -> Outcome {
+    let loaded = |mass: f64| -> Outcome<Container> {
+        let floor = Piston::new(mass, [0.0, 1.0])?.with_force(-1e3)?;
+        Ok(walls()?.with_piston(Wall::Floor, floor)?)
+    };
+    let disk = Disk::new(DVec2::new(5.0, 3.0), 0.5)?.with_velocity(DVec2::NEG_Y)?;
+    for mass in [1.0, 3.0, 1e6] {
+        let mut run = Simulation::builder(Elastic, loaded(mass)?).disks([disk.with_mass(1.0)?]).build()?;
+        run.run_until(5.0, &mut ())?;
+        assert!((run.disks()[0].velocity().y - (mass - 1.0) / (mass + 1.0)).abs() < 1e-12);
+        assert_eq!(run.warnings().len(), usize::from(mass < 10.0), "{mass}: {:?}", run.warnings());
+    }
+    let mut run = Simulation::builder(Elastic, loaded(20.0)?).disks(gas(&walls()?)?).build()?;
+    run.run_until(200.0, &mut ())?;
+    let warned = run.warnings();
+    let [Warning::WallOnStop { wall, energy }] = &warned[..] else { panic!("{warned:?}") };
+    let left = 100.0 * run.measure(&Temperatures).translational();
+    assert!(wall == "floor" && *energy > 10.0 && *energy + left < 120.0, "{energy} {left}");
+    let light = Simulation::builder(Elastic, loaded(3.0)?).disks([disk.with_mass(1.0)?]).gravity(1.0).build();
+    let error = light?.run_until(1e4, &mut ()).unwrap_err();
+    assert!(matches!(error, RunError::Stalled { remedy: Remedy::WallOnStop, .. }), "{error}");
     Ok(())
 }
 

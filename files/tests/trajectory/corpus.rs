@@ -100,8 +100,8 @@ fn tables_of_many_programs() {
             // Units of the user's own, which are not converted.
             (
                 "x [m],y [length],radius [mm],angle [deg],weight [kg]\n1,2,0.5,90,1\n",
-                "(1 2) r0.5 a90 | numbers are read without conversion of units: x [m], radius [mm], angle [deg] \
-                 | ignored: weight",
+                "(1 2) r0.5 | `angle [deg]` is in degrees, and ignored | numbers are read without conversion of units: \
+                 x [m], radius [mm] | ignored: angle, weight",
             ),
             ("x;y;d;weight\n1;2;1;9\n", "(1 2) r0.5 | ignored: weight"),
             ("x\ty\tradius\tvx\tvy\n1\t2\t0.5\t3\t4\n", "(1 2) r0.5 v(3 4)"),

@@ -18,7 +18,7 @@ const ATOMS: &str = "\n\n1 1 1 6 2 3 0\n2 2 0.5 6 5 3 0\n";
 /// Adds what is said where a file does not name the style of its atoms, or its periodic sides.
 fn guessed((text, said): (String, String)) -> (String, String) {
     let style = " | the atoms are read as those of the style `sphere` (id type diameter density x y z), since the file does \
-                 not name it";
+                 not name it; `Atoms # full` would name another";
     let style = if text.contains("sphere") { "" } else { style };
     if said.starts_with("refused") {
         return (text, said);

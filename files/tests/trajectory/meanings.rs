@@ -70,13 +70,13 @@ fn tables_of_programs_that_track_particles() {
             // trackpy, whose mass is a brightness and whose size is that of a spot.
             (
                 ",y,x,mass,size,ecc,signal,raw_mass,ep,frame,particle\n0,2,1,1167.5,3.1,0.1,9,1200,0.05,0,0\n",
-                "(1 2) r0.5 #1 | `mass` is the brightness of a spot here, and ignored | ids begin with 0 in the file, and \
+                "(1 2) r0.5 #1 | y points down in images, and up here: the disks are mirrored | `mass` is the brightness of a spot here, and ignored | ids begin with 0 in the file, and \
                  are greater by 1 here | ignored: (without a name), mass, size, ecc, signal, raw_mass, ep",
             ),
             // ImageJ: an empty name above the numbers of rows, and degrees.
             (
                 " \tArea\tX\tY\tMajor\tMinor\tAngle\n1\t9\t1\t2\t3\t3\t90\n",
-                "(1 2) r0.5 | `Angle` is in degrees here, and ignored | ignored: (names of rows), Area, Major, Minor, Angle",
+                "(1 2) r0.5 | y points down in images, and up here: the disks are mirrored | `Angle` is in degrees here, and ignored | ignored: (names of rows), Area, Major, Minor, Angle",
             ),
             // TrackMate: three more rows of names and units.
             (
@@ -88,7 +88,7 @@ fn tables_of_programs_that_track_particles() {
             // scikit-image's `regionprops_table`.
             (
                 "label,centroid-1,centroid-0,equivalent_diameter\n1,1,2,0.5\n",
-                "(1 2) r0.25 | the radius that was given is \
+                "(1 2) r0.25 | y points down in images, and up here: the disks are mirrored | the radius that was given is \
               ignored, since the file has radii | ignored: label",
             ),
         ],
@@ -140,6 +140,10 @@ fn headers_with_units_names_of_rows_and_comments() {
             ("x,y,D\n1,2,1\n", "(1 2) r0.5 | `D` is read as the diameter"),
             ("position[x],position[y],radius,d/dt\n1,2,0.5,7\n", "(1 2) r0.5 | ignored: d/dt"),
             ("x,y,radius,theta\n1,2,0.5,30\n", "(1 2) r0.5 | ignored: theta"),
+            (
+                "x,y,radius,angle (deg)\n1,2,0.5,30\n",
+                "(1 2) r0.5 | `angle (deg)` is in degrees, and ignored | ignored: angle",
+            ),
         ],
     );
 }
@@ -152,6 +156,11 @@ fn what_is_missing_or_not_used_is_told() {
             (
                 "x,y\n1,2\n",
                 "refused: line 1: the column `radius`, or one radius for all (with_radius, --radius), is missing",
+            ),
+            (
+                "x,y,Area,Feret\n1,2,9,3\n",
+                "refused: line 1: the column `radius`, or one radius for all, from Area or Feret (with_radius, \
+                 --radius), is missing",
             ),
             (
                 "x,y,radius\n1,2,0.5\n3,2,0.25\n",

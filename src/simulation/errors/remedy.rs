@@ -23,6 +23,9 @@ pub enum Remedy {
     /// The surface of the wall has another velocity than the wall's geometry, so that disks are hit again
     /// immediately.
     WallVelocity,
+    /// The wall has a mass and rests on a stop, which absorbs what the disk gives the wall, so the disk loses
+    /// energy under any rule ([`Piston`](crate::wall::Piston)).
+    WallOnStop,
     /// The rule gains energy, so disks become ever faster.
     EnergyGain,
     /// The run advances, but more slowly than
@@ -50,6 +53,11 @@ impl fmt::Display for Remedy {
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
             Self::WallVelocity => {
                 "the wall does not move at the velocity of its surface; boundary::laws::check compares the two"
+            }
+            Self::WallOnStop => {
+                "the wall rests on a stop, which absorbs the impulse of each disk: a disk of mass m leaves a wall of mass M \
+                 with (M - m)/(M + m) of its speed, even under Elastic; a wall without a mass, a heavier one, or one \
+                 that its force does not press against the stop helps"
             }
             Self::EnergyGain => "the rule gains energy, so disks become ever faster; see collision::laws::check",
             Self::LessProgress => "time advances, but the least progress that was asked for is larger",
