@@ -36,7 +36,8 @@ const ALIKE: f64 = 0.999_999;
 /// for the force $`F`$ on the wall and the change $`\Delta V`$ of its velocity, both along its normal. The
 /// second term is bounded, so blocks of pressures would give errors that are far too large. The error is
 /// therefore taken from blocks of $`\sum\Delta_n + M\Delta V`$ and from $`M\Delta V`$ between the first
-/// sample and the last, whose variance is $`2M^2\langle V^2\rangle`$.
+/// sample and the last, whose variance is $`2M^2\langle V^2\rangle`$. A wall on a spring swings, and blocks
+/// of a force that swings give errors that are up to twice too large.
 ///
 /// One brick of a part has a name like "funnel, brick 2". A run ends with an error if its boundary has no
 /// wall and no part of one of the names.

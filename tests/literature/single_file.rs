@@ -51,8 +51,8 @@ fn rods_in_single_file_diffuse_as_jepsen_says() -> Outcome {
     Ok(())
 }
 
-/// The pressure of five rods on a ring, P L/NT = 1 + (N - 1)/N ρ/(1 - ρ) (Tonks 1936, for a ring of N rods): its
-/// collisional part belongs to the temperature of the N - 1 degrees of freedom that momentum leaves.
+/// The pressure of five rods on a ring, P L/NT = 1 + (N - 1)/N ρ/(1 - ρ) (Tonks 1936, for a ring of N rods):
+/// its collisional part belongs to the temperature of the N - 1 degrees of freedom that momentum leaves.
 #[test]
 fn few_rods_on_a_ring_have_the_pressure_of_their_degrees_of_freedom() -> Outcome {
     let (count, density, mut found) = (5.0, 0.5, RunningMean::default());
