@@ -78,8 +78,8 @@ fn a_new_plan_is_a_plan_and_overwrites_nothing() {
         "{text}"
     );
     let check = scratch.runs(&["check", "mine.toml"]);
-    let listed = "2 ramps of 4 values of 3000 cycles\n  0: inelasticity = 0.0; friction = 0.01, 0.03, 0.06, 0.1\n  \
-                  1: inelasticity = 0.01; friction = 0.01, 0.03, 0.06, 0.1\n";
+    let listed = "2 ramps of 3 values of 103000 cycles\n  0: inelasticity = 0.0; friction = 0.01, 0.03, 0.05\n  \
+                  1: inelasticity = 0.01; friction = 0.01, 0.03, 0.05\n";
     assert_eq!(said(&check), listed);
     let again = scratch.runs(&["new", "mine.toml"]);
     assert_eq!(code(&again), Some(1));

@@ -31,7 +31,7 @@ use granular_edmd::collision::{ElasticBelow, SpeedDependent};
 use granular_edmd::initial::Radii;
 use granular_edmd::observable::stop_when_sampled;
 use granular_edmd::prelude::*;
-use granular_edmd::simulation::{BoxedRule, RunEnd};
+use granular_edmd::simulation::{BoxedRule, RunEnd, Warning};
 
 use gallery::command_line::{self, Failure, positive, whole};
 use gallery::progress::Progress;
@@ -207,7 +207,9 @@ fn way(arguments: &Arguments, run: &mut Run) -> Result<Way, Box<dyn Error>> {
         above == 0
     });
     let ended = run.run(&limits(arguments, start + END), &mut empty)?;
-    gallery::output::warn(&run.warnings());
+    // Grains rest for most of the time, and meet at the least rebound: a warning for a flow only.
+    let is_wanted = |warning: &Warning| !matches!(warning, Warning::MostlyLeastRebound { .. });
+    gallery::output::warn(&run.warnings().into_iter().filter(is_wanted).collect::<Vec<_>>());
     let counters = run.counters().since(&before);
     let collisions = counters.disk_collisions + counters.wall_collisions;
     Ok(Way { frames, ended, seconds: since.elapsed().as_secs_f64(), collisions })

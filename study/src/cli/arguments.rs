@@ -79,8 +79,8 @@ pub(super) enum Command {
     /// mass, density or momenta, omega, orientation or angle, id, type, kind or species, image. Notes on
     /// standard error say what is ignored, wrapped or shrunk.
     Convert(Convert),
-    /// Runs a value again, bit by bit the same and to the same end, and writes its last collisions, its
-    /// collisions in an interval of time, or the state before a collision.
+    /// Runs a value again, bit by bit the same and to the same end, and writes its last collisions, or its
+    /// collisions in an interval of time.
     ///
     /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
     /// the wall, position of the disk, closing speed and slip speed before the collision, impulse on the
