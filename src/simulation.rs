@@ -41,8 +41,6 @@ mod inlet;
 mod lending;
 mod limits;
 mod lookahead;
-mod mapping;
-mod parting;
 mod population;
 mod prediction;
 mod resolution;

@@ -250,7 +250,7 @@ pub(super) const TORN: &str = "the last line has no line break: its last number 
 pub(super) const RADIUS_IGNORED: &str = "the radius that was given is ignored, since the file has radii";
 
 /// The function that reads a frame.
-pub(super) type Reading<'a> = Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>;
+type Reading<'a> = Box<dyn FnOnce(&Settings) -> Result<Table, ReadError> + 'a>;
 
 /// The frames of a file, one after another.
 pub(super) type Frames<'a> = Box<dyn Iterator<Item = Result<Found<'a>, ReadError>> + 'a>;

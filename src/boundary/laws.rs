@@ -49,8 +49,8 @@ const SMALLEST: f64 = 0.3;
 ///
 /// Each of four hundred disks, of the kinds 0 to 3, 7 and 300, flies from a free position, with or without
 /// gravity, at various speeds, at times up to a hundred times the time in which it crosses the domain, and
-/// seldom later. Each wall that it touches reflects it, for up to four flights in a row. The check requires of
-/// each flight:
+/// seldom later. Each wall that it touches reflects it, for up to four flights in a row. The check requires
+/// of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is

@@ -13,8 +13,9 @@ use crate::{Disk, Kind, ParameterError};
 /// snapshots: [`Collision::ids`] name the same disks in both.
 ///
 /// In a collision with a disk of another kind, only one disk of the kind takes part, so a rate per disk that
-/// counts both partners is too high. Instead, add up the collisions [between](super::BetweenKinds) each pair of kinds, and
-/// count two disks of the kind for a collision within it, and one for a collision with another kind.
+/// counts both partners is too high. Instead, add up the collisions [between](super::BetweenKinds) each pair
+/// of kinds, and count two disks of the kind for a collision within it, and one for a collision with another
+/// kind.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -91,7 +91,7 @@ const MOST_LAGS: usize = 1 << 20;
 /// are forgotten and the means are kept.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub(super) struct Lags<V> {
+struct Lags<V> {
     pub(super) sample_times: SampleTimes,
     /// Time of the latest sample.
     latest: Option<f64>,

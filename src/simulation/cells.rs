@@ -6,10 +6,8 @@
 //! ahead (`Cells::ahead`).
 
 mod contents;
-mod cost;
 mod crowd;
 mod division;
-mod edges;
 mod grid;
 mod layer;
 mod layers;

@@ -1,23 +1,26 @@
 //! Checkpoints: the saved states of runs, which continue from them later, bit for bit.
 //!
-//! This file contains the format. The file `validation.rs` decides which contents are a possible state, and
-//! `resumption.rs` turns them into a run.
+//! This file contains the format, and the checks of contents that are no possible state; `resumption.rs`
+//! turns the others into a run.
+//!
+//! The seal of a file reveals accidents. The numbers behind it were written by a run, so only lengths and
+//! indices are checked: a difference between the saved run and the given boundary must be an error, and must
+//! not be a panic or a request for all memory. A file that was forged on purpose may continue unphysically.
 
 mod resumption;
-mod together;
-mod validation;
+
+pub use resumption::Resumption;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use thiserror::Error;
 
-pub use resumption::Resumption;
-
-use super::cells::{Layouts, Place};
-use super::state::{Clock, Forecast, Identities, Ledger, Spin, Trajectory};
+use super::cells::{CELLS_PER_DISK, Cells, Layout, Layouts, Place, SPARE_CELLS, SPARE_DISKS};
+use super::state::{Clock, Exit, Forecast, Identities, Ledger, Spin, Trajectory};
 use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
@@ -27,6 +30,9 @@ use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal::new(*b"GRANEDMD", 10);
+
+/// The mark of a file with a checkpoint and observers, and the version of its format.
+const SEAL_WITH: Seal = Seal::new(*b"GRANWITH", 1);
 
 /// A saved run: everything on which its future depends, except its rule and its boundary. The state of walls
 /// that [react](Boundary::react) is included.
@@ -224,7 +230,7 @@ fn opened(seal: Seal, bytes: &[u8]) -> Result<&[u8], CheckpointError> {
 
 fn decoded<T: de::DeserializeOwned>(bytes: &[u8]) -> Result<T, CheckpointError> {
     let (value, rest) = postcard::take_from_bytes(bytes).map_err(contents)?;
-    validation::check(rest.is_empty(), "something follows it")?;
+    check(rest.is_empty(), "something follows it")?;
     Ok(value)
 }
 
@@ -279,4 +285,107 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             ledger: self.engine.ledger,
         })
     }
+}
+
+impl Checkpoint {
+    /// Writes the checkpoint and the observers of its run to one file, completely or not at all.
+    ///
+    /// All numbers keep their bits, even infinities and NaN. The state and the observers in one file always
+    /// belong to the same time. The observers can be anything that serde writes and reads: a [`Series`], a
+    /// [`Sampled`] accumulator, a tuple of several, or a custom type. A field that serde skips is not
+    /// written, and begins anew when the file is read: no state may stand in it.
+    ///
+    /// [`Series`]: crate::observable::Series
+    /// [`Sampled`]: crate::observable::Sampled
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    /// use granular_edmd::simulation::Checkpoint;
+    ///
+    /// # let file = std::env::temp_dir().join(format!("granular-edmd-with-{}", std::process::id()));
+    /// let container = Container::closed(20.0, 20.0)?;
+    /// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 1.0, 1)?;
+    /// let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).build()?;
+    /// let mut series = Series::new(CenterOfMass, SampleTimes::every(0.5)?);
+    /// run.run_until(5.0, &mut series)?;
+    /// run.checkpoint().write_with(&series, &file)?;
+    ///
+    /// let (checkpoint, mut resumed) = Checkpoint::read_with::<Series<CenterOfMass>>(&file)?;
+    /// Simulation::resume(&checkpoint, Elastic, container).build()?.run_until(10.0, &mut resumed)?;
+    /// run.run_until(10.0, &mut series)?;
+    /// assert_eq!(resumed.values(), series.values());
+    /// # std::fs::remove_file(&file)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the observers do not read back as they were written, as types with `#[serde(untagged)]`, `flatten`
+    /// or `skip_serializing_if` may not, or if the file cannot be written. An older file of that name then
+    /// stays unchanged.
+    pub fn write_with<O: Serialize + DeserializeOwned>(
+        &self,
+        observers: &O,
+        path: impl AsRef<Path>,
+    ) -> Result<(), CheckpointError> {
+        let encode = |observers: &O| postcard::to_stdvec(&(self, observers)).map_err(contents);
+        let bytes = encode(observers)?;
+        // An unreadable file must be noticed now, not when the run is gone and its observers are needed.
+        let (_, read): (Self, O) = decoded(&bytes)?;
+        check(encode(&read)? == bytes, "its observers do not read back as they were written")?;
+        write_whole(path.as_ref(), &SEAL_WITH.seal(&bytes)).map_err(failed("write", path.as_ref()))
+    }
+
+    /// Reads a checkpoint and the observers of its run from a file that [`write_with`](Self::write_with)
+    /// wrote.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not such a file, is of another version, was truncated or altered, or
+    /// has observers of another layout. The error names the file. Files hold no names: observers whose
+    /// numbers are laid out in the same way, such as two series of two columns, are not told apart. Read the
+    /// types that were written, in the same order.
+    pub fn read_with<O: DeserializeOwned>(path: impl AsRef<Path>) -> Result<(Self, O), CheckpointError> {
+        read(path.as_ref(), |bytes| decoded(opened(SEAL_WITH, bytes)?))
+    }
+}
+
+fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
+    if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what.to_owned())) }
+}
+
+/// Checks everything that does not depend on the cells.
+fn check_lengths(saved: &Saved, walls: usize) -> Result<(), CheckpointError> {
+    let count = saved.trajectories.len();
+    let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
+    check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
+    check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
+    check(saved.identities.suits(count), "its ids do not fit the number of disks")?;
+    check([1, count].contains(&saved.models.len()), "its models do not fit the number of disks")?;
+    let times = [saved.clock.origin, saved.clock.now, saved.clock.epoch_length];
+    check(times.iter().all(|time| time.is_finite()) && times[2] > 0.0, "a time is not finite")?;
+    let mut forecasts = saved.forecasts.iter();
+    let are_walls = forecasts.all(|event| event.exit != Exit::Wall || usize::from(event.wall) < walls);
+    check(are_walls, "an event names no wall")
+}
+
+/// Checks that the grids have a class for each disk, and no more cells than the disks need.
+fn check_layouts(saved: &Saved, mut diameters: impl Iterator<Item = f64>) -> Result<(), CheckpointError> {
+    let Layouts { smallest, larger, classes } = &saved.layouts;
+    let disks = 2 * saved.places.len() + SPARE_DISKS;
+    let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
+    let suits = |Layout { columns, rows, .. }: Layout| {
+        columns.min(rows) > 0 && f64::from(columns) * f64::from(rows) <= most
+    };
+    let suits_all = suits(*smallest) && larger.iter().all(|layer| layer.homes().is_some_and(suits));
+    let largest = classes.last().map_or(0.0, |class| class.largest);
+    let have_a_class = classes.len() == larger.len() + 1 && diameters.all(|diameter| diameter <= largest);
+    check(suits_all && have_a_class, "its neighbor cells do not fit the disks")
+}
+
+/// Checks that each disk is in a cell of its grid.
+fn check_places(saved: &Saved, cells: &Cells) -> Result<(), CheckpointError> {
+    let are_cells = saved.places.iter().enumerate().all(|(disk, place)| {
+        let Layout { columns, rows, .. } = cells.grid_of(disk).layout;
+        (1..=columns).contains(&place.column) && (1..=rows).contains(&place.row)
+    });
+    check(are_cells, "a disk is outside the neighbor cells")
 }

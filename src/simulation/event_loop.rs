@@ -4,7 +4,7 @@
 //! [`Simulation::advance`] carries out the event. [`Simulation::collide`] lets the rule decide
 //! (`resolution.rs`) and kicks both disks. It then predicts the next event of each disk, and passes its time
 //! to the scheduler (`forecasting.rs`). The arithmetic of predictions is in `prediction.rs`, and epochs are
-//! in `epoch.rs`. If rounding leaves partners approaching after a collision, `parting.rs` makes them part.
+//! in `epoch.rs`. If rounding leaves partners approaching after a collision, `resolution.rs` makes them part.
 //! All results of rules, boundaries and schedulers are checked in `checking.rs`. None of these files calls
 //! back into the event loop.
 

@@ -218,7 +218,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// The apparent standard error from blocks of one size.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct BlockError {
+struct BlockError {
     pub(super) error: f64,
     mean: f64,
     /// Relative uncertainty of the error itself.

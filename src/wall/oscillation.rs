@@ -63,7 +63,7 @@ fn steady(phase: f64, length: f64) -> AccelerationBounds {
 /// The amplitude and period of a motion that is cut into equal pieces of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub(super) struct Oscillation {
+struct Oscillation {
     pub(super) amplitude: f64,
     angular_frequency: f64,
 }

@@ -105,7 +105,7 @@ fn speed_dependent_passes() {
     });
 }
 
-type Answer = Box<dyn Fn(&Contact) -> Impulse>;
+type Faulty = Box<dyn Fn(&Contact) -> Impulse>;
 
 /// Each law has its name, also where a fault shows in few contacts only.
 #[test]
@@ -117,7 +117,7 @@ fn laws_are_named() {
     let kicking = move |contact: &Contact| Impulse::new(contact.normal_impulse(1.0) + kick(contact), 0.0);
     let inverse =
         |contact: &Contact| Impulse::new(contact.normal_impulse(1.0) + 1.0 / contact.closing_speed(), 0.0);
-    let all: [(&str, Promises, Answer); 12] = [
+    let all: [(&str, Promises, Faulty); 12] = [
         ("separation", plain, Box::new(pushing(|_| -0.1))),
         (
             "separation",

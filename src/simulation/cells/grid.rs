@@ -2,9 +2,7 @@
 
 use glam::DVec2;
 
-use super::edges::{edges, row_edges, widen};
-use super::layout::CellSize;
-use super::layout::{Layout, margin};
+use super::layout::{CellSize, Layout, edges, margin, row_edges, widen};
 use crate::boundary::{Domain, Region};
 use crate::instructions::prefetch;
 

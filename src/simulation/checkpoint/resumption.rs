@@ -1,7 +1,6 @@
 //! Resumption: building a run from a checkpoint.
 
-use super::validation::{check_layouts, check_lengths, check_places};
-use super::{Checkpoint, CheckpointError, Saved};
+use super::{Checkpoint, CheckpointError, Saved, check_layouts, check_lengths, check_places};
 use crate::Gravity;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
