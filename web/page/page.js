@@ -156,8 +156,8 @@ function show(frame) {
 function draw() {
   requestAnimationFrame(draw);
   const options = { color: at('color').value, arrows: at('arrows').checked, isSlow: run.speed < run.scene.speed / 100 || !run.isPlaying };
-  // Neither leaves the other behind, and the one beside is never ahead.
-  const lead = Math.max(1, Math.min(run.speed, 300) / 10);
+  // Neither leaves the other behind, and the one beside is never ahead: each follows a frame later, sixty times a second.
+  const lead = Math.max(1, Math.min(run.speed, 300) / 30);
   other?.draw(options, side.frame?.oscillations);
   if (!side.draw(options, other ? (other.frame?.oscillations ?? 0) + lead : undefined)) return;
   plot.draw();
@@ -182,9 +182,14 @@ at('seed').onchange = () => {
   if (fault) at('seed').value = run.seed; else { run.seed = Number(at('seed').value); at('restart').click(); }
 };
 at('speed').oninput = () => { run.speed = speedOf(Number(at('speed').value)); tellSpeed(); both('speed', run.speed); };
+// A value that differs visibly from this run's: half of it, or the middle of the slider where that is 0.
+function another(index) {
+  const setting = run.scene.settings[index], value = sliders.values[index];
+  return setting.round(value > setting.least ? Math.max(value / 2, setting.least) : setting.to(0.5));
+}
 at('beside').onchange = () => {
   const setting = at('beside').value;
-  run.beside = setting === '' ? null : { setting: Number(setting), value: run.scene.starts[setting] };
+  run.beside = setting === '' ? null : { setting: Number(setting), value: another(Number(setting)) };
   showBeside();
 };
 at('beside-value').onchange = () => {
