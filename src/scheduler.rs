@@ -156,7 +156,7 @@ impl Entry {
         f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
     }
 
-    /// Returns the result of [`EventScheduler::earliest`](EventScheduler::earliest) if this entry is
+    /// Returns the result of [`EventScheduler::earliest`] if this entry is
     /// the first.
     #[inline]
     fn answer(self) -> (usize, f64) {

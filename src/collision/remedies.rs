@@ -4,8 +4,8 @@ use super::{CollisionRule, Contact, Elastic, Impulse, KnownRule, Regime};
 use crate::quantity::{non_negative, positive};
 use crate::{Fingerprint, ParameterError};
 
-/// The choice of the tangential impulse in a contact that [`ContactDuration`](super::ContactDuration) or
-/// [`ElasticBelow`](super::ElasticBelow) makes elastic.
+/// The choice of the tangential impulse in a contact that [`ContactDuration`] or [`ElasticBelow`] makes
+/// elastic.
 ///
 /// Published codes differ in this choice, so it is explicit here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -137,7 +137,7 @@ crate::gate::from_file! {
 /// A disk that comes to rest on a floor then bounces at the speed $`v_c`$, once every $`2v_c/g`$. Many disks
 /// share the energy that the last fast collisions left them. If the tangential response loses nothing, their
 /// granular temperature stays constant. This temperature may be far below $`m v_c^2`$, and the lower it is,
-/// the more often disks collide. [`LeastRebound`](super::LeastRebound) bounds the number of collisions. The
+/// the more often disks collide. [`LeastRebound`] bounds the number of collisions. The
 /// page `docs/rest.md` of the repository compares the remedies.
 ///
 /// Collisions with $`v_c \le v_n < v_c/r_n`$ lose less, too, but keep the regime of the inner rule. In a gas

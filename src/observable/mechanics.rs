@@ -112,7 +112,7 @@ impl EnergyPerDisk {
 
 /// The translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
-/// Walls with a mass have energies of their own: [`FreeWall`](super::FreeWall).
+/// Walls with a mass have energies of their own: [`FreeWall`].
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -177,7 +177,7 @@ pub struct FreeWallMotion {
 /// The displacement, the velocity and the energy of a wall or part with a mass, which the disks push; NaN for
 /// a wall without a mass, and for an unknown name.
 ///
-/// The [`Energies`](super::Energies) of the disks, times their number, and the energies of these walls are
+/// The [`Energies`] of the disks, times their number, and the energies of these walls are
 /// constant in a container of elastic disks at rest.
 ///
 /// ```

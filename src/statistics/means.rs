@@ -34,7 +34,7 @@ impl Moments {
 /// The mean, variance and standard error of numbers that come one by one (Welford 1962).
 ///
 /// The standard error assumes independent numbers. It is too small for correlated numbers, such as the
-/// samples or collisions of one run; see [`BlockedMean`](super::BlockedMean).
+/// samples or collisions of one run; see [`BlockedMean`].
 ///
 /// ```
 /// use granular_edmd::statistics::RunningMean;
@@ -205,7 +205,7 @@ const FEWEST_BLOCKS: u64 = 8;
 /// A series is called converged if its error is small, and some errors are small by chance. Trusted errors
 /// are therefore too small on average, especially errors from few samples. With this excess, the true mean
 /// lies within two errors in nine cases in ten or more, at any length. The table of
-/// [`block_average`](super::block_average) shows it.
+/// [`block_average`] shows it.
 const EXCESS: f64 = 60.0;
 
 /// Largest allowed change of the mean by the last samples, which fill no block, in units of the error from
@@ -286,7 +286,7 @@ fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
 /// The type keeps the scatter of blocks of 1, 2, 4, … numbers. Its memory grows with the logarithm of their
 /// count, and each number costs constant time on average. [`Self::estimate`] takes the error from the
 /// smallest blocks that are long enough. The result has the same bits as
-/// [`block_average`](super::block_average) gives for a series in memory.
+/// [`block_average`] gives for a series in memory.
 ///
 /// ```
 /// use granular_edmd::statistics::{BlockedMean, block_average};
