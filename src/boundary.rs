@@ -20,7 +20,7 @@
 //! | wall or part that the disks push | [`Container::with_piston`], [`Part::with_piston`] |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
-//! Parts are added, replaced and removed by name, even between runs; this is how a gate opens. With the
+//! Parts are added and removed by name, even between runs; this is how a gate opens. With the
 //! feature `serde`, bricks, parts and containers can be written to files, and reading them repeats their
 //! checks. A rule or a custom motion cannot be written.
 //!

@@ -84,7 +84,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// # Errors
     /// The same as for [`Simulation::run_until`]. The run can be played back up to the error.
     pub fn run_until(&mut self, end: f64) -> Result<(), RunError> {
-        if !end.is_finite() {
+        if !(end.is_finite() && end >= self.present.time()) {
             return self.present.run_until(end, &mut ()).map(drop);
         }
         let start = self.states[0].time();

@@ -20,7 +20,7 @@ use crate::{Kind, ParameterError};
 /// left corner is at the origin unless it is [shifted](Self::shifted).
 ///
 /// All walls are fixed initially, and follow the rule of the disks. Each wall can be given a motion along its
-/// normal (which points inward), its own rule, a temperature, or a kind. Parts are added, replaced and
+/// normal (which points inward), its own rule, a temperature, or a kind. Parts are added and
 /// removed by name, even between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
@@ -404,6 +404,9 @@ impl Container {
         let motion = Motion::new(motion).map_err(|violation| WallError::Motion { violation })?;
         let mirrored = Combined::of(motion.clone()).scaled(-1.0);
         let mirrored = mirrored.map_err(|_| WallError::Jump)?;
+        if self.planes.is_empty() {
+            return Err(WallError::Missing { wall: first });
+        }
         for (wall, motion) in [(first, motion.clone()), (second, Motion::of(mirrored))] {
             if let Ok(plane) = self.plane_mut(wall) {
                 if plane.motion.reach() != (0.0, 0.0) {

@@ -65,13 +65,13 @@ impl Part {
     /// Returns the same part, at which disks collide by this rule instead of their own.
     #[must_use]
     pub fn with_rule(self, rule: impl CollisionRule + Send + Sync + 'static) -> Self {
-        Self { conduct: Conduct::rule(rule), ..self }
+        self.with_conduct(Conduct::rule(rule))
     }
 
     /// Returns the same part as a thermal wall.
     #[must_use]
     pub fn with_temperature(self, thermal: Thermal) -> Self {
-        Self { conduct: Conduct::Thermal(thermal), ..self }
+        self.with_conduct(Conduct::Thermal(thermal))
     }
 
     /// Returns the same part as a sink that takes a disk out of the run at its first touch.
@@ -84,7 +84,7 @@ impl Part {
     /// [`Response::Absorbing`]: super::Response::Absorbing
     #[must_use]
     pub fn absorbing(self) -> Self {
-        Self { conduct: Conduct::Absorbing, ..self }
+        self.with_conduct(Conduct::Absorbing)
     }
 
     /// Returns the same part as a sink that takes a disk out of the run when its center arrives at a brick.
@@ -183,9 +183,7 @@ impl Part {
     /// center is a point.
     fn with_conduct(mut self, conduct: Conduct) -> Self {
         self.conduct = conduct;
-        if self.takes_centers() {
-            self.corners.clear();
-        }
+        self.corners = if self.takes_centers() { Vec::new() } else { shapes::corners(&self.bricks) };
         self
     }
 

@@ -1,6 +1,8 @@
 //! Adaptors of observers: to the disks of a kind, to the collisions between two kinds, and to samples by
 //! collisions.
 
+use std::num::NonZeroU64;
+
 use super::{Collision, Heading, Observable, Observer, ObserverError, Partner, Snapshot, Tabular, Verdict};
 use crate::quantity::accept;
 use crate::{Disk, Kind, ParameterError};
@@ -216,7 +218,7 @@ impl<T: Observer> Observer for BetweenKinds<T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ByCollisions<O> {
     inner: O,
-    every: u64,
+    every: NonZeroU64,
     /// Number of collisions since the latest sample.
     count: u64,
     /// Time of the collision after which a sample is due.
@@ -229,8 +231,9 @@ impl<O> ByCollisions<O> {
     /// # Errors
     /// If the number is 0.
     pub fn new(count: u64, inner: O) -> Result<Self, ParameterError> {
-        accept(count > 0, "number of collisions between samples", "positive", count as f64)?;
-        Ok(Self { inner, every: count, count: 0, due: None })
+        let every = NonZeroU64::new(count);
+        accept(every.is_some(), "number of collisions between samples", "positive", count as f64)?;
+        Ok(Self { inner, every: every.unwrap_or(NonZeroU64::MIN), count: 0, due: None })
     }
 
     /// Returns the inner observer.
@@ -252,7 +255,7 @@ impl<O: Observer> Observer for ByCollisions<O> {
     fn on_collision(&mut self, collision: &Collision) {
         self.inner.on_collision(collision);
         self.count += 1;
-        if self.count >= self.every {
+        if self.count >= self.every.get() {
             self.due = Some(collision.time);
         }
     }

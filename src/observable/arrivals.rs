@@ -83,7 +83,7 @@ impl Arrivals {
 impl Observer for Arrivals {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.walls.find(start)?;
-        if self.stretch.begin(start) {
+        if self.stretch.begin(start)? {
             self.present = 0;
         }
         Ok(())

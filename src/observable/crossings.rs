@@ -282,7 +282,7 @@ impl Observer for Crossings {
         (self.pull, self.periods) = (start.gravity().acceleration(), start.domain().periods());
         let disks = start.disks().iter();
         self.flights = disks.map(|disk| (disk.id(), Free::of(disk, start.time()))).collect();
-        if self.stretch.begin(start) {
+        if self.stretch.begin(start)? {
             self.present = [0; 2];
         }
         Ok(())

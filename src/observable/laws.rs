@@ -139,6 +139,11 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
             self.collisions += 1;
             let collision = collision(self.now, self.collisions);
             self.observer.on_collision(&collision);
+            if self.next_sample()? == self.now {
+                // A collision may ask for a sample at once.
+                self.wanted = self.now;
+                return self.goes_on();
+            }
             if !self.goes_on()? {
                 return Ok(false);
             }

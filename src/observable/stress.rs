@@ -211,7 +211,7 @@ impl Observer for Stress {
             self.stretch.forget();
         }
         self.check(start)?;
-        if self.stretch.begin(start) {
+        if self.stretch.begin(start)? {
             self.transferred = [0.0; 4];
         }
         Ok(())

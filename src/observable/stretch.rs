@@ -77,8 +77,12 @@ impl Stretch {
 
     /// Notes the start of a run, and returns true if the run begins a new stretch. A run of another system
     /// always does.
-    pub(super) fn begin(&mut self, start: &Snapshot<'_>) -> bool {
+    ///
+    /// # Errors
+    /// If the intervals are not equal.
+    pub(super) fn begin(&mut self, start: &Snapshot<'_>) -> Result<bool, ParameterError> {
         let time = start.time();
+        self.sample_times.equally_spaced()?;
         self.sample_times.start_at(time);
         let is_same = !self.system.is_other(start.system_mark());
         let goes_on = is_same && self.start.is_some() && self.end.is_some_and(|end| self.is_near(end, time));
@@ -86,7 +90,7 @@ impl Stretch {
             self.start = Some(time);
         }
         self.system = start.system_mark();
-        !goes_on
+        Ok(!goes_on)
     }
 
     /// Forgets the start of the stretch, which then does not count.

@@ -174,7 +174,7 @@ impl Received {
 impl Observer for WallStress {
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
         self.walls.find(start)?;
-        if self.stretch.begin(start) {
+        if self.stretch.begin(start)? {
             self.sample(start, None);
         }
         Ok(())

@@ -32,14 +32,13 @@ use crate::{Disk, ParameterError};
 /// A driving guarantees:
 /// 1. A kick changes velocities and angular velocities, and nothing else: it neither moves, turns, renames,
 ///    reorders nor resizes disks, nor changes their masses, kinds or images. A driving that also moves disks
-///    must leave them inside the walls and without overlaps, and must declare this to the check.
+///    must leave them inside the walls and without overlaps.
 /// 2. A kick treats disks alike wherever they are in the list, and works without disks, too. If a driving
 ///    remembers something about a disk, it identifies the disk by its [id](crate::Disk::id), since sinks and
 ///    inlets change the order.
 /// 3. The same driving gives the same kicks to the same disks, to the bit: its random numbers are its own.
 /// 4. The clock advances: after a kick, it returns a later time, and returns the same time at each call until
 ///    the next kick. A run that is cut into pieces has the same kicks.
-/// 5. If it promises to conserve momentum, the total momentum stays the same, up to rounding.
 ///
 /// The engine refuses disks that overlap, a change of their number, and a clock that stands still.
 ///
@@ -260,10 +259,8 @@ crate::gate::from_file! {
     WhiteNoise {
         noise: f64, rotational_noise: f64, times: SampleTimes, seed: u64, latest: (f64, u64), energy: f64
     } => {
-        non_negative("noise", noise)?;
-        non_negative("rotational noise", rotational_noise)?;
-        crate::quantity::finite("energy of the kicks", energy)?;
-        Ok(Self { noise, rotational_noise, times, seed, latest, energy })
+        let noise = Self::new(noise, times, seed)?.with_rotational_noise(rotational_noise)?;
+        Ok(Self { latest, energy: crate::quantity::finite("energy of the kicks", energy)?, ..noise })
     }
 }
 

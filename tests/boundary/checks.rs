@@ -210,3 +210,28 @@ fn a_thrown_piston_may_graze_its_stop() -> Outcome {
     }
     Ok(())
 }
+
+/// A later response takes the place of an earlier one, so a block that took centers has its corners again.
+#[test]
+fn responses_of_a_part_replace_each_other() -> Outcome {
+    let block = || Part::block([(4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0)].map(DVec2::from));
+    let walls = |part| Ok(Container::closed(10.0, 10.0)?.with_part("block", part)?.wall_count());
+    let count = |part| -> Result<usize, Box<dyn std::error::Error>> { walls(part) };
+    let (plain, centers) = (count(block()?)?, count(block()?.absorbing_centers())?);
+    assert!(centers < plain);
+    assert_eq!(count(block()?.absorbing_centers().absorbing())?, plain);
+    assert_eq!(count(block()?.absorbing().absorbing_centers())?, centers);
+    Ok(())
+}
+
+/// Nothing would move, and pegs that come later get the next names.
+#[test]
+fn a_container_without_walls_is_not_shaken() -> Outcome {
+    let refused =
+        Container::periodic(10.0, 10.0)?.shaken_vertically(granular_edmd::wall::Sinusoidal::new(0.1, 1.0)?);
+    assert!(refused.is_err());
+    let peg = |x: f64| granular_edmd::Disk::new(DVec2::new(x, 5.0), 0.5);
+    let pegs = Container::closed(10.0, 10.0)?.with_pegs([peg(2.0)?, peg(4.0)?])?.with_pegs([peg(8.0)?])?;
+    assert_eq!(pegs.part_names().collect::<Vec<_>>(), ["peg 0", "peg 1", "peg 2"]);
+    Ok(())
+}

@@ -8,11 +8,11 @@ use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::laws;
 use granular_edmd::observable::{
-    Accumulator, CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange,
-    EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Observable, Observer,
-    ObserverError, OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled, Series, Snapshot, Stress,
-    TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, measured_by, on_collision,
-    on_sample, stop_when, stop_when_sampled,
+    Accumulator, Arrivals, ByCollisions, CenterOfMass, Collision, CollisionCounts, CollisionHistograms,
+    Crossings, EnergyChange, EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement,
+    Observable, Observer, ObserverError, OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled,
+    Series, Snapshot, Stress, Temperatures, TimeCorrelation, Velocities, VelocityDistribution, Verdict,
+    WallStress, measured_by, on_collision, on_sample, stop_when, stop_when_sampled,
 };
 use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
@@ -266,6 +266,7 @@ fn all_observers_keep_their_contract() -> Outcome {
     assert!(measures.0.0.samples() > 50 && measures.2.0.samples() > 50);
     assert!(measures.3.impulse().count() > 10);
     laws::check(&mut stop_when(|_: &Collision| true)).unwrap();
+    laws::check(&mut ByCollisions::new(5, Series::new(Temperatures, times)).unwrap()).unwrap();
     laws::check(&mut stop_when_sampled(times, |_: &Snapshot<'_>| true)).unwrap();
     laws::check(&mut Tally { verdict: Some("disk full"), ..Tally::default() }).unwrap();
     laws::check(&mut ()).unwrap();
@@ -445,4 +446,22 @@ fn displacements_are_those_of_the_same_disks() -> Result<(), Box<dyn std::error:
     // Five of eight at speed 1, three at 3, in half of the samples.
     assert!(products[1] > 1.5 && products[1] < 4.0, "{products:?}");
     Ok(())
+}
+
+/// Rates need equal intervals: a clock at equal ratios is refused when the run starts, by name.
+#[test]
+fn observers_of_intervals_refuse_ratios() {
+    let times = SampleTimes::at_ratio(1.0, 2.0).unwrap();
+    let line = [DVec2::new(0.0, 4.0), DVec2::new(8.0, 4.0)];
+    let (mut arrivals, mut crossings) =
+        (Arrivals::at(["floor"], times), Crossings::new(line, times).unwrap());
+    let observers: [&mut dyn Observer; 2] = [&mut arrivals, &mut crossings];
+    for observer in observers {
+        let container = Container::closed(8.0, 8.0).unwrap();
+        let disks = initial::lattice(&container, 4, 0.5).unwrap();
+        let mut run = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
+        let error =
+            std::error::Error::source(&run.run_until(3.0, observer).unwrap_err()).map(ToString::to_string);
+        assert!(error.as_ref().is_some_and(|text| text.contains("equal intervals")), "{error:?}");
+    }
 }

@@ -161,3 +161,12 @@ fn the_collisions_before_an_error_can_be_played_back() {
         assert!((time - 1e-3 / (1e-3 * 5.0_f64.sqrt())).abs() < 1e-6, "{time}");
     }
 }
+
+/// An end before the present is refused, and says nothing about the run.
+#[test]
+fn an_end_in_the_past_is_refused() {
+    let mut replay = Replay::new(gas(), 1.0).unwrap();
+    replay.run_until(2.0).unwrap();
+    assert!(matches!(replay.run_until(1.0), Err(RunError::End { .. })));
+    assert!(replay.run_until(3.0).is_ok());
+}

@@ -90,8 +90,10 @@ impl Container {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with_pegs(self, disks: impl IntoIterator<Item = Disk>) -> Result<Self, WallError> {
+        let number = |name: &str| name.strip_prefix("peg ")?.parse::<usize>().ok();
+        let first = self.part_names().filter_map(number).max().map_or(0, |last| last.saturating_add(1));
         let peg = |(number, disk): (usize, Disk)| Ok((format!("peg {number}"), Part::peg_of(&disk)?));
-        let pegs: Result<Vec<_>, WallError> = disks.into_iter().enumerate().map(peg).collect();
+        let pegs: Result<Vec<_>, WallError> = (first..).zip(disks).map(peg).collect();
         self.with_parts(pegs?)
     }
 

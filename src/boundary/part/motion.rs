@@ -66,8 +66,6 @@ impl Part {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with_piston(self, direction: DVec2, piston: Piston) -> Result<Self, WallError> {
-        let turning = self.travel.angular_velocity();
-        accept(turning == 0.0, "angular velocity of a part with a mass", "0", turning)?;
         self.with_motion(direction, Stroke::from(piston))
     }
 
@@ -112,8 +110,6 @@ impl Part {
         if finite("angular velocity", angular_velocity)? == 0.0 {
             return Ok(Self { travel: Travel { turning: None, ..self.travel }, ..self });
         }
-        let is_free = self.travel.piston().is_none();
-        accept(is_free, "angular velocity of a part with a mass", "0", angular_velocity)?;
         let turn = std::f64::consts::TAU / angular_velocity.abs();
         let range = "such that a turn takes from 1e-60 to 1e60";
         accept((1e-60..=1e60).contains(&turn), "angular velocity", range, angular_velocity)?;
@@ -231,8 +227,10 @@ impl Part {
         !self.all_bricks().all(holds)
     }
 
-    /// Returns the part, or an error if the part would jump into disks.
+    /// Returns the part, or an error if the part would jump into disks, or has a mass and turns.
     fn safe(self) -> Result<Self, WallError> {
+        let (turning, has_mass) = (self.travel.angular_velocity(), self.travel.piston().is_some());
+        accept(turning == 0.0 || !has_mass, "angular velocity of a part with a mass", "0", turning)?;
         let Travel { along: Some(Along { direction, motion }), turning } = &self.travel else {
             return Ok(self);
         };

@@ -272,10 +272,9 @@ pub enum BoundaryFault {
         early_by: f64,
     },
     /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, whose
-    /// radius is zero or NaN, or whose masses are not positive; or a thermal surface with a tangential mass.
+    /// radius is zero or NaN, or whose mass is not positive.
     #[error(
-        "the surface of wall {wall} needs a unit normal, a radius other than 0, positive masses, and no tangential mass if it is \
-         thermal; it has the normal ({}, {}) and the velocity {}",
+        "the surface of wall {wall} needs a unit normal, a radius other than 0, and a positive mass; it has the normal ({}, {}) and the velocity {}",
         Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
     )]
     Surface {
