@@ -298,6 +298,10 @@ impl Promises {
     /// # Errors
     /// The first broken promise.
     pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
+        // First, since friction of the wrong sign gains energy, too.
+        if self.opposed_slip {
+            check_friction_opposes_slip(contact, impulse)?;
+        }
         if self.energy_gain { check_separation(contact, impulse) } else { check_impulse(contact, impulse) }?;
         if let Some(static_friction) = self.static_friction {
             check_friction_cone(contact, impulse, static_friction)?;
@@ -305,7 +309,7 @@ impl Promises {
         if let Some(coefficient) = self.rolling_friction {
             check_rolling(contact, impulse, coefficient)?;
         }
-        if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
+        Ok(())
     }
 
     /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and in its mirror

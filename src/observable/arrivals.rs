@@ -61,6 +61,9 @@ impl Arrivals {
 
     /// Returns the mean number of arrivals per unit of time, with its error.
     ///
+    /// Arrivals that are fed at regular times make up for each other from one interval to the next, and the
+    /// error is then too large, up to tenfold: run several seeds for the true scatter.
+    ///
     /// # Errors
     /// If no interval is complete yet.
     pub fn rate(&self) -> Result<Estimate, ParameterError> {
