@@ -8,6 +8,7 @@
 //! [`watch_it`]: self::watch_it
 //! [`believe_it`]: self::believe_it
 //! [`draw_it`]: self::draw_it
+//! [`from_python`]: self::from_python
 //! [`bring_your_own`]: self::bring_your_own
 //! [`when_it_stalls`]: self::when_it_stalls
 //! [`when_it_is_slow`]: self::when_it_is_slow
@@ -63,6 +64,10 @@ pub mod draw_it {}
 #[doc(alias("extension", "plugin", "custom"))]
 #[doc = include_str!("../docs/guide/bring_your_own.md")]
 pub mod bring_your_own {}
+
+#[doc(alias("Python", "numpy", "pandas"))]
+#[doc = include_str!("../docs/guide/from_python.md")]
+pub mod from_python {}
 
 #[doc(alias("inelastic collapse", "Zeno", "endless bouncing"))]
 #[doc = include_str!("../docs/guide/when_it_stalls.md")]

@@ -89,6 +89,8 @@ __all__ = [
     "WallStress",
     "WhiteNoise",
     "__version__",
+    "_run_study",
+    "_vibrated_box",
     "block_average",
     "convert",
     "disks_from_radii",
@@ -644,3 +646,9 @@ class DirectSimulation:
     @disks.setter
     def disks(self, disks: Disks, /) -> None: ...
 def run_program(arguments: Sequence[str]) -> int: ...
+def _vibrated_box(parameters: Mapping[str, Any], seed: int) -> Simulation: ...
+def _run_study(
+    plan: Mapping[str, Any] | str,
+    out: _Path,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[int, int]: ...

@@ -58,6 +58,18 @@ pub(crate) struct PySimulation {
 }
 
 impl PySimulation {
+    /// Creates the simulation of parts of the library.
+    pub(crate) fn known(
+        rule: PyRule,
+        boundary: Container,
+        disks: Vec<Disk>,
+        gravity: Gravity,
+        seed: u64,
+    ) -> PyResult<Self> {
+        let builder = Simulation::builder(rule.rule.clone(), boundary).disks(disks).gravity(gravity);
+        Ok(Self { run: builder.seed(seed).build().map_err(invalid)?, rule })
+    }
+
     fn list(&self) -> Vec<Disk> {
         self.run.disks()
     }
