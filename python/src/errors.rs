@@ -38,7 +38,8 @@ pub(crate) fn sentence(error: &dyn Error) -> String {
         }
         source = cause.source();
     }
-    text
+    // Python has the initial states without their module.
+    text.replace("initial::", "")
 }
 
 thread_local! {

@@ -143,6 +143,7 @@ def test_another_seed_is_another_future():
         ge.Container.closed(5, 5, floor=[ge.BiParabolic(0.1, 10), ge.Smooth(0.2)]),
         ge.Container.open(9).with_part("gate", ge.Part.polyline([(1, 1), (8, 1)])).with_periodic_sides(),
         ge.Disks([[1, 1], [3, 1]], 0.5, kinds=[0, 7]),
+        ge.block_average(np.arange(64.0) % 5),
     ],
 )
 def test_parts_are_data_and_equal_their_copies(part):
@@ -278,6 +279,14 @@ def test_pegs_and_walls_by_name():
     assert stress.table()
     with pytest.raises(ge.RunError, match="north"):
         run.run_for(1.0, observe=ge.Arrivals(["north"], every=1.0))
+
+
+def test_crossings_of_a_gas_at_rest_are_as_frequent_both_ways():
+    run, crossings = gas(), ge.Crossings(((10, 0), (10, 20)), every=5.0)
+    run.run_until(500.0, observe=crossings)
+    forward, backward, flux = (crossings.results[name] for name in ["forward_rate", "backward_rate", "flux"])
+    assert forward.mean == pytest.approx(20 * 0.25 / math.sqrt(math.tau), rel=0.1)
+    assert forward.mean - backward.mean == pytest.approx(flux.mean) and abs(flux.mean) < 5 * flux.error
 
 
 def test_files_are_read_and_converted(tmp_path):
