@@ -27,6 +27,9 @@ use run::{Observers, Wishes};
 
 type Engine = Simulation<SharedRule, Container>;
 
+/// The function `resume` and its arguments, as `pickle` takes them.
+type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>, PyRule, PyContainer));
+
 /// An argument that is gravity: a number, downward, or a vector.
 struct AnyGravity(Gravity);
 
@@ -277,10 +280,7 @@ impl PySimulation {
         }
         Ok(Self { run: resumption.build().map_err(unusable)?, rule: rule.0 })
     }
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, PyRule, PyContainer))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let resume = py.get_type::<Self>().getattr("resume")?;
         Ok((resume, (self.checkpoint(py)?, self.rule.clone(), self.boundary())))
     }

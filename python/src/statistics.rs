@@ -9,7 +9,7 @@ use crate::errors::{ParameterError, invalid};
 
 /// A mean and its standard error, which accounts for correlated samples.
 #[pyclass(name = "Estimate", module = "granular_edmd", frozen)]
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct PyEstimate(pub(crate) Estimate);
 
 impl Data for PyEstimate {
