@@ -8,6 +8,7 @@
 //! [`watch_it`]: self::watch_it
 //! [`believe_it`]: self::believe_it
 //! [`draw_it`]: self::draw_it
+//! [`from_python`]: self::from_python
 //! [`bring_your_own`]: self::bring_your_own
 //! [`when_it_stalls`]: self::when_it_stalls
 //! [`when_it_is_slow`]: self::when_it_is_slow
@@ -18,7 +19,6 @@
 //! [`rest`]: self::rest
 //! [`validation`]: self::validation
 //! [`performance`]: self::performance
-//! [`architecture`]: self::architecture
 //! [`stability`]: self::stability
 #![doc = "[`write_files`]: https://docs.rs/granular-edmd-files/latest/granular_edmd_files/guide/write_files/index.html"]
 #![doc = "[`recipes`]: https://docs.rs/granular-edmd-files/latest/granular_edmd_files/guide/recipes/index.html"]
@@ -64,6 +64,10 @@ pub mod draw_it {}
 #[doc = include_str!("../docs/guide/bring_your_own.md")]
 pub mod bring_your_own {}
 
+#[doc(alias("Python", "numpy", "pandas"))]
+#[doc = include_str!("../docs/guide/from_python.md")]
+pub mod from_python {}
+
 #[doc(alias("inelastic collapse", "Zeno", "endless bouncing"))]
 #[doc = include_str!("../docs/guide/when_it_stalls.md")]
 pub mod when_it_stalls {}
@@ -102,11 +106,6 @@ pub mod rest {}
 #[doc(alias("literature", "tests"))]
 #[doc = include_str!("../docs/validation.md")]
 pub mod validation {}
-
-#[doc(alias("Verlet", "neighbor", "cell list", "design"))]
-#[doc = "[performance-details.md]: crate::guide::performance_details"]
-#[doc = include_str!("../docs/architecture.md")]
-pub mod architecture {}
 
 #[doc(alias("benchmark", "LAMMPS"))]
 #[doc = "[performance-details.md]: crate::guide::performance_details"]

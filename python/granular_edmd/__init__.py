@@ -15,3 +15,6 @@ choose the units: with the diameter and the mass of a disk as 1, all lengths, ma
 
 from ._granular_edmd import *  # noqa: F403
 from ._granular_edmd import __version__ as __version__
+from .study import read_tables as read_tables
+from .study import run_study as run_study
+from .study import vibrated_box as vibrated_box

@@ -89,6 +89,8 @@ __all__ = [
     "WallStress",
     "WhiteNoise",
     "__version__",
+    "_run_study",
+    "_vibrated_box",
     "block_average",
     "convert",
     "disks_from_radii",
@@ -391,6 +393,12 @@ def TemperaturesAboutFlow(corners: _Corners, columns: int, rows: int) -> Observa
 
 @final
 class Estimate:
+    @staticmethod
+    def from_dict(data: Any) -> Estimate: ...
+    def to_dict(self, /) -> Any: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+    def __reduce__(self, /) -> tuple[Any, ...]: ...
     @property
     def mean(self, /) -> float: ...
     @property
@@ -644,3 +652,9 @@ class DirectSimulation:
     @disks.setter
     def disks(self, disks: Disks, /) -> None: ...
 def run_program(arguments: Sequence[str]) -> int: ...
+def _vibrated_box(parameters: Mapping[str, Any], seed: int) -> Simulation: ...
+def _run_study(
+    plan: Mapping[str, Any] | str,
+    out: _Path,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[int, int]: ...

@@ -63,18 +63,18 @@ pub(crate) fn kind(number: f64) -> PyResult<Kind> {
 }
 
 /// Returns numbers as an array.
-pub(crate) fn to_array<'py, T: numpy::Element>(
-    py: Python<'py>,
+pub(crate) fn to_array<T: numpy::Element>(
+    py: Python<'_>,
     numbers: impl IntoIterator<Item = T>,
-) -> Bound<'py, PyArray1<T>> {
+) -> Bound<'_, PyArray1<T>> {
     PyArray1::from_vec(py, numbers.into_iter().collect())
 }
 
 /// Returns vectors as an array of shape (count, 2).
-pub(crate) fn to_rows<'py>(
-    py: Python<'py>,
+pub(crate) fn to_rows(
+    py: Python<'_>,
     vectors: impl IntoIterator<Item = DVec2>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let flat: Vec<f64> = vectors.into_iter().flat_map(|vector| vector.to_array()).collect();
     let count = flat.len() / 2;
     PyArray1::from_vec(py, flat).reshape([count, 2])

@@ -38,7 +38,8 @@ pub(crate) fn sentence(error: &dyn Error) -> String {
         }
         source = cause.source();
     }
-    text
+    // Python has the initial states without their module.
+    text.replace("initial::", "")
 }
 
 thread_local! {
@@ -52,7 +53,7 @@ pub(crate) fn call<T>(code: impl FnOnce(Python<'_>) -> PyResult<T>) -> Option<T>
     let keep = |error| {
         RAISED.with_borrow_mut(|raised| {
             raised.get_or_insert(error);
-        })
+        });
     };
     Python::attach(code).map_err(keep).ok()
 }

@@ -20,6 +20,7 @@ mod program;
 mod rule;
 mod simulation;
 mod statistics;
+mod study;
 
 /// Event-driven molecular dynamics of granular disks.
 #[pyo3::pymodule]
@@ -72,6 +73,8 @@ mod _granular_edmd {
     use crate::simulation::{PySamples, PySimulation};
     #[pymodule_export]
     use crate::statistics::{PyEstimate, averaged};
+    #[pymodule_export]
+    use crate::study::{run_study, vibrated_box};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

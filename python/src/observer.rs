@@ -11,7 +11,7 @@ pub(crate) use measures::{
 };
 
 use edmd::Kind;
-use edmd::observable::{BetweenKinds, ByCollisions, Observer, OfKind, Table};
+use edmd::observable::{BetweenKinds, ByCollisions, Heading, Observer, OfKind, Table};
 use edmd::statistics::Estimate;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
@@ -150,7 +150,7 @@ impl PyObserver {
     fn __repr__(&self) -> String {
         let names = self.0.as_ref().and_then(|watch| Some(watch.table()?.headings()));
         let names = names.unwrap_or_default();
-        let names: Vec<&str> = names.iter().map(|heading| heading.name()).collect();
+        let names: Vec<&str> = names.iter().map(Heading::name).collect();
         format!("<Observer of {}>", names.join(", "))
     }
 }

@@ -31,7 +31,7 @@ pub(crate) struct PyRule {
 }
 
 impl PyRule {
-    fn of(rule: impl CollisionRule + Send + Sync + 'static) -> Self {
+    pub(crate) fn of(rule: impl CollisionRule + Send + Sync + 'static) -> Self {
         Self { rule: Arc::new(rule), function: None }
     }
 

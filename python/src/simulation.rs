@@ -27,6 +27,9 @@ use run::{Observers, Wishes};
 
 type Engine = Simulation<SharedRule, Container>;
 
+/// The function `resume` and its arguments, as `pickle` takes them.
+type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>, PyRule, PyContainer));
+
 /// An argument that is gravity: a number, downward, or a vector.
 struct AnyGravity(Gravity);
 
@@ -58,6 +61,18 @@ pub(crate) struct PySimulation {
 }
 
 impl PySimulation {
+    /// Creates the simulation of parts of the library.
+    pub(crate) fn known(
+        rule: PyRule,
+        boundary: Container,
+        disks: Vec<Disk>,
+        gravity: Gravity,
+        seed: u64,
+    ) -> PyResult<Self> {
+        let builder = Simulation::builder(rule.rule.clone(), boundary).disks(disks).gravity(gravity);
+        Ok(Self { run: builder.seed(seed).build().map_err(invalid)?, rule })
+    }
+
     fn list(&self) -> Vec<Disk> {
         self.run.disks()
     }
@@ -265,10 +280,7 @@ impl PySimulation {
         }
         Ok(Self { run: resumption.build().map_err(unusable)?, rule: rule.0 })
     }
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, PyRule, PyContainer))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let resume = py.get_type::<Self>().getattr("resume")?;
         Ok((resume, (self.checkpoint(py)?, self.rule.clone(), self.boundary())))
     }

@@ -4,12 +4,24 @@ use edmd::statistics::{Estimate, block_average};
 use pyo3::prelude::*;
 
 use crate::arguments::Column;
+use crate::data::{Data, data_class, from_data, to_data};
 use crate::errors::{ParameterError, invalid};
 
 /// A mean and its standard error, which accounts for correlated samples.
 #[pyclass(name = "Estimate", module = "granular_edmd", frozen)]
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct PyEstimate(pub(crate) Estimate);
+
+impl Data for PyEstimate {
+    fn data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_data(py, &self.0)
+    }
+    fn of_data(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        from_data(data).map(Self)
+    }
+}
+
+data_class!(PyEstimate);
 
 #[pymethods]
 impl PyEstimate {

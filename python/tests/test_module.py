@@ -143,6 +143,7 @@ def test_another_seed_is_another_future():
         ge.Container.closed(5, 5, floor=[ge.BiParabolic(0.1, 10), ge.Smooth(0.2)]),
         ge.Container.open(9).with_part("gate", ge.Part.polyline([(1, 1), (8, 1)])).with_periodic_sides(),
         ge.Disks([[1, 1], [3, 1]], 0.5, kinds=[0, 7]),
+        ge.block_average(np.arange(64.0) % 5),
     ],
 )
 def test_parts_are_data_and_equal_their_copies(part):
@@ -278,6 +279,15 @@ def test_pegs_and_walls_by_name():
     assert stress.table()
     with pytest.raises(ge.RunError, match="north"):
         run.run_for(1.0, observe=ge.Arrivals(["north"], every=1.0))
+
+
+def test_crossings_are_those_of_a_gas_that_drifts():
+    run, crossings = gas(), ge.Crossings(((10, 0), (10, 20)), every=5.0)
+    run.run_until(500.0, observe=crossings)
+    forward, backward, flux = (crossings.results[name].mean for name in ["forward_rate", "backward_rate", "flux"])
+    drift, temperature = run.velocities[:, 0].mean(), run.velocities.var()
+    assert 0.5 * (forward + backward) == pytest.approx(5.0 * math.sqrt(temperature / math.tau), rel=0.05)
+    assert abs(flux) == pytest.approx(5.0 * abs(drift), rel=0.05) and forward - backward == pytest.approx(flux)
 
 
 def test_files_are_read_and_converted(tmp_path):

@@ -40,7 +40,11 @@ watch! {
     WallStress;
     Arrivals: |own| ["rate" => own.rate().ok()];
     EnergyChange: |own| ["disks" => Some(own.disks().estimate())];
-    Crossings: |own| ["flux" => own.flux().ok()];
+    Crossings: |own| [
+        "flux" => own.flux().ok(),
+        "forward_rate" => own.rates().ok().map(|[forward, _]| forward),
+        "backward_rate" => own.rates().ok().map(|[_, backward]| backward)
+    ];
     MeanSquaredDisplacement: |own| ["diffusion_coefficient" => Some(own.diffusion_coefficient())];
     Stress: |own| [
         "pressure" => Some(own.tensor().pressure),
