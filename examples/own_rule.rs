@@ -18,8 +18,8 @@ struct Viscous {
 
 impl CollisionRule for Viscous {
     fn impulse(&self, contact: &Contact) -> Impulse {
-        // The engine handles the geometry. A rule sees the speeds, effective masses and radii of one contact. For friction,
-        // `collision::Friction` takes a normal impulse and adds the tangential one.
+        // The engine handles the geometry. A rule sees the speeds, effective masses and radii of one contact.
+        // For friction, `collision::Friction` takes a normal impulse and adds the tangential one.
         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
         Impulse::new(contact.normal_impulse(restitution), 0.0)
     }

@@ -262,8 +262,8 @@ impl Promises {
         Self { exchange: false, ..self }
     }
 
-    /// Returns the same promises for a rule that acts differently on the mirror image of a contact, as one for
-    /// chiral grains does.
+    /// Returns the same promises for a rule that acts differently on the mirror image of a contact, as one
+    /// for chiral grains does.
     pub const fn with_handedness(self) -> Self {
         Self { mirror: false, ..self }
     }

@@ -198,9 +198,9 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 1. `next_sample` is never NaN. Its value is infinite if no sample is requested.
 /// 2. After a sample, `next_sample` returns a time later than the sample's.
 /// 3. After `on_start`, the time of `next_sample` is at or after the start, up to rounding.
-/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`, and in `on_collision` to the time
-///    of the collision. The engine calls `next_sample` only after these three, and would notice a change at any
-///    other time too late.
+/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`, and in `on_collision` to the
+///    time of the collision. The engine calls `next_sample` only after these three, and would notice a change
+///    at any other time too late.
 /// 5. Samples do not depend on how a run is cut into pieces: if a run starts at the time at which the
 ///    previous one ended, `next_sample` keeps its value.
 ///

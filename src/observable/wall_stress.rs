@@ -167,7 +167,8 @@ impl Received {
         let is_known = |share: f64, converged: bool| converged || share < SMALL * error;
         let converged =
             is_known(load.standard_error(), load.is_converged()) && is_known(swing, square.is_converged());
-        Estimate::blocked(whole.mean(), error, whole.samples(), (error / naive).powi(2), converged)
+        let ratio = error / naive;
+        Estimate::blocked(whole.mean(), error, whole.samples(), ratio * ratio, converged)
     }
 }
 

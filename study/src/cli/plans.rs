@@ -19,8 +19,8 @@ use crate::{
 /// Largest number of values of a ramp that `check` prints in full.
 const MOST_VALUES: usize = 60;
 
-/// Returns the plan of the program `granular-edmd`: the paper's box where it has no roll, one and two, in half
-/// a minute on two cores.
+/// Returns the plan of the program `granular-edmd`: the paper's box where it has no roll, one and two, in
+/// half a minute on two cores.
 ///
 /// # Errors
 /// None: all its numbers are possible.
