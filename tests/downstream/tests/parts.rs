@@ -3,6 +3,7 @@
 use granular_edmd::collision::RollingFriction;
 use granular_edmd::observable::{Crossings, OfKind};
 use granular_edmd::prelude::*;
+use granular_edmd::simulation::Warning;
 use granular_edmd::wall::Piston;
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
@@ -57,7 +58,8 @@ fn couples_damp_spins_under_a_lid() -> Outcome {
     let mut run = Simulation::builder(rule, cell()?).disks(spinning).build()?;
     run.run_until(200.0, &mut ())?;
     assert!(rotation(&run.disks()) < 0.2 * before);
-    assert_eq!(run.warnings(), []);
+    // The lid rests on its upper stop at first, which absorbs what the disks give it.
+    assert!(matches!(run.warnings()[..], [Warning::WallOnStop { .. }]), "{:?}", run.warnings());
     Ok(())
 }
 
