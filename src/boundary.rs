@@ -249,8 +249,8 @@ pub trait Boundary {
     ///
     /// Observers find walls by their [`name`](WallView::name). The default name is the index, and nothing
     /// else is known: a boundary of several walls gives names, such as "floor", and a boundary that knows its
-    /// free [`area`](Self::area) the points of walls that move. For an index without a wall, the name may be
-    /// a number.
+    /// free [`area`](Self::area) the points of walls that move. The library asks for indices below
+    /// [`wall_count`](Self::wall_count) only.
     fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
         let _ = time;
         WallView::new(format!("wall {wall}"))

@@ -5,9 +5,9 @@ use std::fmt;
 
 use glam::DVec2;
 
-use super::Wall;
 use super::brick::Brick;
 use super::part::Pose;
+use super::{Boundary, Wall};
 
 /// A wall at one time, as pictures, files, messages and observers see it.
 ///
@@ -69,6 +69,15 @@ impl<'a> WallView<'a> {
     pub fn new(name: impl Into<Cow<'a, str>>) -> Self {
         let (point, side, motion, energy, label) = (None, None, None, None, None);
         Self { name: name.into(), point, side, motion, energy, label, outline: Outline::Line(Vec::new()) }
+    }
+
+    /// Returns the view of a wall, or its index where a boundary answered with a wall that it does not have.
+    pub(crate) fn of<B: Boundary + ?Sized>(boundary: &'a B, wall: usize, time: f64) -> Self {
+        if wall < boundary.wall_count() {
+            boundary.wall(wall, time)
+        } else {
+            Self::new(format!("wall {wall}"))
+        }
     }
 
     /// Returns the same view with a point of the wall.

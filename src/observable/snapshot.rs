@@ -168,7 +168,7 @@ impl<'a> Snapshot<'a> {
     /// Returns the view of a wall. Without a boundary, nothing is known about it.
     pub fn wall(&self, wall: usize) -> WallView<'_> {
         let unknown = || WallView::new(format!("wall {wall}"));
-        self.walls.map_or_else(unknown, |walls| walls.boundary.wall(wall, walls.time))
+        self.walls.map_or_else(unknown, |walls| WallView::of(walls.boundary, wall, walls.time))
     }
 
     /// Iterates over the views of all walls, in the order of their indices.

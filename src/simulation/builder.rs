@@ -6,7 +6,7 @@ use super::cells::{CellSize, Cells};
 use super::engine::{Engine, Parts};
 use super::state::{Bodies, Clock, Identities, Ledger};
 use super::{BuildError, Simulation};
-use crate::boundary::{Boundary, Domain, Overlap, Probe};
+use crate::boundary::{Boundary, Domain, Overlap, Probe, WallView};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
 use crate::quantity::{accept, finite};
@@ -235,11 +235,11 @@ fn check_inside(boundary: &dyn Boundary, disks: &[Disk], offset: f64) -> Result<
         if let Some(Overlap { with: wall, depth }) = boundary.overlap(&Probe::of(state, offset))
             && (depth.is_nan() || depth > TOUCHING * radius)
         {
-            let wall = boundary.wall(wall, offset).to_string();
+            let wall = WallView::of(boundary, wall, offset).to_string();
             return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });
         }
         if let Some(wall) = boundary.tight_fit(radius) {
-            let wall = boundary.wall(wall, offset).to_string();
+            let wall = WallView::of(boundary, wall, offset).to_string();
             return Err(BuildError::TightFit { disk, radius, wall });
         }
     }

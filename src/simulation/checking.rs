@@ -14,7 +14,7 @@ use super::engine::Engine;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::forecasting::HORIZON;
 use super::state::{FARTHEST, Forecast};
-use crate::boundary::{Boundary, FirstTouch, Overlap, Probe, Reaction};
+use crate::boundary::{Boundary, FirstTouch, Overlap, Probe, Reaction, WallView};
 use crate::collision::{CollisionRule, Material};
 use crate::observable::{Collision, Partner};
 use crate::scheduler::EventScheduler;
@@ -241,7 +241,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the name of the partner if it is a wall.
     pub(super) fn name_of(&self, partner: Partner) -> Option<String> {
         let Partner::Wall(wall) = partner else { return None };
-        Some(self.parts.boundary.wall(wall, self.engine.clock.now).to_string())
+        Some(WallView::of(&self.parts.boundary, wall, self.engine.clock.now).to_string())
     }
 
     /// Repeats the search that returned an impossible touch, in order to report the touch.

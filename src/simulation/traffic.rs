@@ -13,7 +13,7 @@ use super::engine::Engine;
 use super::errors::{BuildError, Outcome, RunError};
 use super::prediction::nearest_image;
 use super::{Inlet, Simulation};
-use crate::boundary::{Boundary, Probe};
+use crate::boundary::{Boundary, Probe, WallView};
 use crate::collision::CollisionRule;
 use crate::disk::MOST_DISKS;
 use crate::observable::Observer;
@@ -205,7 +205,7 @@ pub(super) fn check_inlets(boundary: &dyn Boundary, inlets: &[Inlet]) -> Result<
         }
         for (disk, model) in inlet.models().iter().enumerate() {
             if let Some(wall) = boundary.tight_fit(model.radius()) {
-                let wall = boundary.wall(wall, 0.0).to_string();
+                let wall = WallView::of(boundary, wall, 0.0).to_string();
                 return Err(BuildError::TightFit { disk, radius: model.radius(), wall });
             }
         }
