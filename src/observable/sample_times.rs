@@ -103,8 +103,8 @@ impl SampleTimes {
     /// Creates a clock whose sampling times are `first`, `first * ratio`, `first * ratio²` and so on, as for
     /// a gas that cools.
     ///
-    /// Observers of intervals, such as [`WallStress`](super::WallStress), and drivings need equally spaced
-    /// times.
+    /// Observers of intervals, such as [`WallStress`](super::WallStress), and white noise need equally spaced
+    /// times, and refuse others.
     ///
     /// # Errors
     /// If the first time is not finite and positive, or the ratio is not in (1, 1e9].
