@@ -107,16 +107,10 @@ pub mod rest {}
 #[doc = include_str!("../docs/validation.md")]
 pub mod validation {}
 
-#[doc(alias("benchmark", "LAMMPS"))]
-#[doc = "[performance-details.md]: crate::guide::performance_details"]
+#[doc(alias("benchmark", "profile", "LAMMPS"))]
 #[doc = "[images/scaling.png]: data:image/png,#docs/images/scaling.png"]
 #[doc = include_str!("../docs/performance.md")]
 pub mod performance {}
-
-#[doc(alias("profile", "optimization"))]
-#[doc = "[performance.md]: crate::guide::performance"]
-#[doc = include_str!("../docs/performance-details.md")]
-pub mod performance_details {}
 
 #[doc(alias("semver", "compatibility"))]
 #[doc = include_str!("../docs/stability.md")]
