@@ -513,8 +513,6 @@ fn wishes_that_cannot_be_are_refused() {
         (&["--until", "-1"], 2, "it cannot go until -1"),
         (&["--ramp", "4"], 2, "index of a ramp must be below the number of ramps, but is 4"),
         (&["--value", "1"], 2, "index of a value"),
-        (&["--start", "none.xyz"], 1, "cannot open none.xyz"),
-        (&["--start", "plan.toml"], 1, "the file must be extended XYZ, a dump"),
         (&["--out", "mine.csv"], 1, "cannot write mine.csv"),
         (&["--out", "no/where.csv"], 1, "cannot write no/where.csv"),
     ] {
@@ -622,7 +620,7 @@ fn files_of_disks_are_converted() {
     assert_eq!(code(&scratch.runs(&["convert", "none.xyz", "b.csv"])), Some(1));
 }
 
-/// A trajectory is of the format that its name says, and starts from any file of disks.
+/// A trajectory is of the format that its name says.
 #[test]
 fn a_trajectory_is_what_its_name_says() {
     let scratch = Scratch::new("trajectory-names");
@@ -643,9 +641,8 @@ fn a_trajectory_is_what_its_name_says() {
         );
         assert!(!scratch.0.join(name).exists());
     }
-    let output = of(&["--out", "more.xyz", "--start", "run.lammpstrj"]);
-    assert_eq!(code(&output), Some(0), "{}", said(&output));
-    let start = scratch.runs(&["convert", "more.xyz", "more.csv"]);
+    assert_eq!(code(&of(&["--out", "run.xyz"])), Some(0));
+    let start = scratch.runs(&["convert", "run.xyz", "run-as.csv"]);
     assert!(
         code(&start) == Some(0) && said(&start).contains("no place for the box, time, gravity"),
         "{}",

@@ -115,13 +115,7 @@ pub(super) struct Place {
     /// an earlier value, and only the folder of a study has this state.
     #[arg(long, default_value_t = 0)]
     pub(super) value: usize,
-    /// File from which the run starts instead: a checkpoint, or any file that `convert` reads. `convert
-    /// --shrink` makes a start from disks that overlap. The run has no observer and no limit of
-    /// collisions; an experiment with a driving is refused.
-    #[arg(long)]
-    pub(super) start: Option<PathBuf>,
-    /// Absolute time at which the run ends. By default, this is the end of the value. From a file at a time
-    /// outside the value, or with a plan alone, the run has the number of cycles of the value.
+    /// Absolute time at which the run ends; the end of the value if not given.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
 }
@@ -136,7 +130,7 @@ pub(super) struct Trajectory {
     pub(super) out: PathBuf,
     #[command(flatten)]
     pub(super) place: Place,
-    /// Number of cycles, which may go beyond the end of the value, unless the experiment has a driving.
+    /// Largest number of cycles; the value may end earlier.
     #[arg(long, default_value_t = 100)]
     pub(super) cycles: u32,
 }

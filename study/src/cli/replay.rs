@@ -1,9 +1,7 @@
-//! The commands that play a value again, from its start or from a file: `replay` writes its collisions,
-//! `trajectory` writes frames.
+//! The commands that play a value again: `replay` writes its collisions, `trajectory` writes frames.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
-use std::error::Error;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -15,41 +13,26 @@ use granular_edmd::collision::{CollisionRule, Regime};
 use granular_edmd::observable::{
     Collision, Observer, Partner, SampleTimes, Snapshot, on_collision, on_sample,
 };
-use granular_edmd::simulation::{Checkpoint, CheckpointError, RunError};
-use granular_edmd_files::{ByEnding, Reader, Recorder};
+use granular_edmd::simulation::RunError;
+use granular_edmd_files::{ByEnding, Recorder};
 
 use super::arguments::{Place, Replay, Trajectory};
 use super::convert::Ending;
 use super::{End, Failure, Watch, chain, end_at_once, read, say, tell, wrote};
-use crate::execution::value::play::{Found, Pause, Player};
-use crate::{Experiment, ExperimentError, Plan, PlanError, Progress, Run, Scalar, Study, StudyError};
+use crate::execution::value::play::{Found, Pause};
+use crate::{Experiment, Plan, PlanError, Progress, Run, Scalar, Study, StudyError};
 
-/// A run at its start.
+/// A value at its start.
 struct Source<E: Experiment> {
+    found: Found<E>,
     run: Run<E>,
-    /// The value that the run belongs to; `None` if the run starts from a file.
-    found: Option<Found<E>>,
-    cycle: f64,
     /// Time at which the run ends.
     end: f64,
 }
 
 impl<E: Experiment> Source<E> {
     /// Opens a value of a plan, or of the study in a folder, at its start.
-    fn open(path: &Path, place: &Place) -> Result<Self, Failure> {
-        let source = match &place.start {
-            Some(file) => Self::from_file(path, place, file)?,
-            None => Self::of_value(path, place)?,
-        };
-        let (start, end, until) = (source.run.time(), source.end, place.until.unwrap_or(source.end));
-        if until > start && until <= end {
-            return Ok(Self { end: until, ..source });
-        }
-        let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
-        Err(PlanError::Refused(message).into())
-    }
-
-    fn of_value(path: &Path, &Place { ramp, value, .. }: &Place) -> Result<Self, Failure> {
+    fn open(path: &Path, &Place { ramp, value, until }: &Place) -> Result<Self, Failure> {
         let found = if path.is_dir() {
             Study::open(path)?.find(ramp, value)?
         } else {
@@ -61,29 +44,19 @@ impl<E: Experiment> Source<E> {
             }
             Found::first(path, plan, ramp)?
         };
-        let ((run, end), cycle) = (found.start()?, found.experiment().cycle());
-        Ok(Self { run, found: Some(found), cycle, end })
-    }
-
-    fn from_file(path: &Path, &Place { ramp, value, .. }: &Place, file: &Path) -> Result<Self, Failure> {
-        // A study knows the times of the value, unless others before it are still to be done. A start file
-        // needs only the plan, so nothing else about the folder is an error here.
-        let study = if path.is_dir() { Study::<E>::open(path).ok() } else { None };
-        let known = study.and_then(|study| study.find(ramp, value).ok()?.start().ok());
-        let path = if path.is_dir() { &path.join("plan.toml") } else { path };
-        let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
-        let (experiment, seed) = (plan.experiment(ramp, value)?, plan.ramp_seed(ramp));
-        let run = begun(&experiment, file, seed);
-        let run = run.map_err(|source| StudyError::Build { ramp, value, source })?;
-        let is_within = |(first, end): &(Run<E>, f64)| (first.time()..*end).contains(&run.time());
-        let later = run.time() + plan.protocol().cycles() as f64 * experiment.cycle();
-        let end = known.filter(is_within).map_or(later, |(_, end)| end);
-        Ok(Self { run, found: None, cycle: experiment.cycle(), end })
+        let (run, end) = found.start()?;
+        let (start, until) = (run.time(), until.unwrap_or(end));
+        if until > start && until <= end {
+            return Ok(Self { found, run, end: until });
+        }
+        let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
+        Err(PlanError::Refused(message).into())
     }
 
     /// Returns a display of the simulated time, in cycles.
     fn clock(&self) -> impl Fn(f64) + use<E> {
-        let (watch, start, end, cycle) = (Watch::new(), self.run.time(), self.end, self.cycle);
+        let cycle = self.found.experiment().cycle();
+        let (watch, start, end) = (Watch::new(), self.run.time(), self.end);
         move |time| {
             let [done, total] = [time, end].map(|time| ((time - start) / cycle) as u64);
             watch.show(&Progress { ramp: 0, value: 0, done, total });
@@ -91,48 +64,11 @@ impl<E: Experiment> Source<E> {
     }
 }
 
-/// Starts from a file: a checkpoint, or disks.
-fn begun<E: Experiment>(experiment: &E, path: &Path, seed: u64) -> Result<Run<E>, ExperimentError> {
-    if experiment.driving(seed)?.is_some() {
-        return Err("its driving is not in a file, so it cannot start from one".into());
-    }
-    let (rule, boundary) = (experiment.rule()?, experiment.boundary()?);
-    let state = match Checkpoint::read(path) {
-        Err(error) if is_no_checkpoint(&error) => Reader::new().read(path)?,
-        checkpoint => {
-            let run = Simulation::resume(&checkpoint?, rule, boundary).build()?;
-            let is_same = run.gravity() == experiment.gravity();
-            return if is_same { Ok(run) } else { Err("the checkpoint has another gravity".into()) };
-        }
-    };
-    for note in state.notes() {
-        tell(&note);
-    }
-    if state.domain().is_some_and(|domain| domain != boundary.domain()) {
-        tell(&format!("{} is of another box", path.display()));
-    }
-    if state.gravity().is_some_and(|gravity| gravity != experiment.gravity()) {
-        tell(&format!("{} has another gravity; the run takes the gravity of the plan", path.display()));
-    }
-    let builder = Simulation::builder(rule, boundary).gravity(experiment.gravity());
-    let builder = builder.starting_at(state.time().unwrap_or(0.0)).seed(seed);
-    Ok(builder.disks(state.into_disks()).build()?)
-}
-
-/// Returns whether a file is not a checkpoint or cannot be read. In the second case, the reader of disks
-/// gives a better error.
-fn is_no_checkpoint(error: &CheckpointError) -> bool {
-    match error {
-        CheckpointError::File { source, .. } => matches!(**source, CheckpointError::NotACheckpoint),
-        error => matches!(error, CheckpointError::Io { .. }),
-    }
-}
-
 /// Prints the error with which a run ended. The id of the disk is added, since errors name disks by index and
 /// tables by id.
-fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &(dyn Error + 'static)) {
-    let id = match error.downcast_ref() {
-        Some(RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. }) => run.disk(*disk),
+fn tell_end<R: CollisionRule, B: Boundary>(run: &Simulation<R, B>, error: &RunError) {
+    let id = match error {
+        RunError::Stalled { disk, .. } | RunError::FalseContact { disk, .. } => run.disk(*disk),
         _ => None,
     };
     let id = id.map_or_else(String::new, |disk| format!("; that disk has the id {}", disk.id()));
@@ -165,35 +101,18 @@ fn row(number: u64, it: &Collision, boundary: &impl Boundary) -> String {
 pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Failure> {
     let Trajectory { plan, out, place, cycles } = wishes;
     Ending::need(out, Ending::is_trajectory)?;
-    let Source { run, found, cycle, .. } = Source::<E>::open(plan, place)?;
+    let Source { found, run, end } = Source::<E>::open(plan, place)?;
+    let (cycle, disks) = (found.experiment().cycle(), run.len());
     let (times, count) = (SampleTimes::every(cycle)?, Rc::new(Cell::new(0)));
     let (recorder, counted) = (Recorder::create(out, ByEnding, times)?, Rc::clone(&count));
     let counter = on_sample(times, move |_: &Snapshot<'_>| counted.set(counted.get() + 1));
     // The run lasts half a cycle longer, so that rounding cannot lose the last frame.
-    let end = run.time() + cycle * (f64::from(*cycles) + 0.5);
-    let end = place.until.map_or(end, |until| end.min(until));
-    let value = found.as_ref().map(Found::value);
-    let mut player = Player::new(value.as_ref(), run, Box::new((recorder, counter)))?;
-    play(&mut player, end)?;
-    if player.is_over() && !player.is_driven() {
-        player = player.beyond();
-        play(&mut player, end)?;
-    }
-    let (frames, disks) = (count.get(), player.run().len());
-    if player.is_over() && frames < *cycles {
-        tell(&format!(
-            "the value ended at {}; without its driving, the run cannot go on",
-            player.run().time()
-        ));
-    }
-    say(&format!("{frames} frames of {disks} disks are in {}", out.display()))?;
+    let end = end.min(run.time() + cycle * (f64::from(*cycles) + 0.5));
+    let value = found.value();
+    let mut played = value.played(run, Box::new((recorder, counter)))?;
+    while played.play(end)? == Pause::Slice {}
+    say(&format!("{} frames of {disks} disks are in {}", count.get(), out.display()))?;
     Ok(End::Done)
-}
-
-/// Plays until a time or the end of the value.
-fn play<E: Experiment>(player: &mut Player<'_, E>, until: f64) -> Result<(), Failure> {
-    while player.play(until)? == Pause::Slice {}
-    Ok(())
 }
 
 /// Default number of collisions to write.
@@ -246,23 +165,23 @@ fn rows<E: Experiment>(
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
 ) -> Result<(), Failure> {
     let show = source.clock();
-    let Source { run, found, end, .. } = source;
+    let Source { found, run, end } = source;
     let last = wishes.last.unwrap_or(if wishes.from.is_some() { usize::MAX } else { FEW });
     let caught = Rc::new(RefCell::new(VecDeque::new()));
-    let value = found.as_ref().map(Found::value);
+    let value = found.value();
     let catcher = wishes.catcher::<E>(&run, last, Rc::clone(&caught));
-    let mut player = Player::new(value.as_ref(), run, catcher)?;
+    let mut played = value.played(run, catcher)?;
     let (mut kept, mut text) = (VecDeque::new(), HEADINGS.to_owned() + "\n");
     loop {
-        let paused = player.play(end);
-        let boundary = player.run().boundary();
+        let paused = played.play(end);
+        let boundary = played.run().boundary();
         kept.extend(caught.borrow_mut().drain(..).map(|(number, it)| row(number, &it, boundary) + "\n"));
         kept.drain(..kept.len().saturating_sub(last));
-        show(player.run().time());
+        show(played.run().time());
         let is_over = !matches!(paused, Ok(Pause::Slice));
         // If the run ends with an error, the collisions before the error are still written.
         if let Err(error) = paused {
-            tell_end(player.run(), &*error);
+            tell_end(played.run(), &error);
         }
         if is_over || (last == usize::MAX && kept.len() >= BATCH) {
             text.extend(kept.drain(..));

@@ -53,7 +53,7 @@ pub(super) struct Work<S, O> {
 }
 
 /// A value that is being run.
-pub(super) struct Active<'a, E: Experiment> {
+pub(crate) struct Active<'a, E: Experiment> {
     value: &'a Value<'a, E>,
     work: WorkOf<E>,
     run: Run<E>,

@@ -1,13 +1,11 @@
 //! Values that are played again: the code that runs the values of a study runs them, beside an observer of
-//! the caller instead of the experiment's companion, and nothing is saved. Also plain runs, which begin or go
-//! on outside a value.
+//! the caller instead of the experiment's companion, and nothing is saved.
 
-use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
 use granular_edmd::observable::Observer;
-use granular_edmd::simulation::{Limits, RunEnd};
+use granular_edmd::simulation::{RunEnd, RunError};
 
 use super::{Active, Value};
 use crate::experiment::record::Record;
@@ -86,85 +84,29 @@ pub(crate) enum Pause {
     Over,
 }
 
-/// A value or a plain run that is being played.
-pub(crate) struct Player<'a, E: Experiment> {
-    way: Way<'a, E>,
-    is_over: bool,
-}
-
-enum Way<'a, E: Experiment> {
-    Value(Box<Active<'a, E>>),
-    Plain(Box<Run<E>>, Box<dyn Observer>),
-}
-
-impl<'a, E: Experiment> Player<'a, E> {
-    /// Creates a player of a value that is in its first state, or of a plain run, with this companion.
-    pub(crate) fn new(
-        value: Option<&'a Value<'a, E>>,
+impl<'a, E: Experiment> Value<'a, E> {
+    /// Begins the value in its first state, with this companion.
+    pub(crate) fn played(
+        &'a self,
         run: Run<E>,
         companion: Box<dyn Observer>,
-    ) -> Result<Self, StudyError> {
-        let Some(value) = value else {
-            return Ok(Self { way: Way::Plain(Box::new(run), companion), is_over: false });
-        };
-        let mut active = value.begin_alone(run)?;
+    ) -> Result<Active<'a, E>, StudyError> {
+        let mut active = self.begin_alone(run)?;
         active.riders.companion = Some(companion);
-        Ok(Self { way: Way::Value(Box::new(active)), is_over: false })
+        Ok(active)
     }
+}
 
+impl<E: Experiment> Active<'_, E> {
     pub(crate) const fn run(&self) -> &Run<E> {
-        match &self.way {
-            Way::Value(active) => &active.run,
-            Way::Plain(run, _) => run,
-        }
-    }
-
-    /// Returns true if the value has ended.
-    pub(crate) const fn is_over(&self) -> bool {
-        self.is_over
-    }
-
-    pub(crate) const fn is_driven(&self) -> bool {
-        matches!(&self.way, Way::Value(active) if active.riders.driving.is_some())
-    }
-
-    /// Returns the player of a plain run, which goes on beyond the end of the value.
-    pub(crate) fn beyond(self) -> Self {
-        let way = match self.way {
-            Way::Value(active) => {
-                let Active { run, riders, .. } = *active;
-                Way::Plain(Box::new(run), riders.companion.unwrap_or_else(|| Box::new(())))
-            }
-            plain @ Way::Plain(..) => plain,
-        };
-        Self { way, is_over: false }
+        &self.run
     }
 
     /// Plays on, at most to the absolute time `until`.
     ///
     /// # Errors
     /// The error with which the value ends.
-    pub(crate) fn play(&mut self, until: f64) -> Result<Pause, Box<dyn Error>> {
-        if self.is_over {
-            return Ok(Pause::Over);
-        }
-        let paused = match &mut self.way {
-            Way::Value(active) => active.play(until),
-            Way::Plain(run, companion) => {
-                let limits = Limits::until(until).with_wall_clock(SLICE);
-                let ended = run.run(&limits, companion);
-                ended
-                    .map_err(Into::into)
-                    .map(|end| if end == RunEnd::WallClock { Pause::Slice } else { Pause::Reached })
-            }
-        };
-        self.is_over = matches!(paused, Ok(Pause::Over) | Err(_));
-        paused
-    }
-}
-
-impl<E: Experiment> Active<'_, E> {
-    fn play(&mut self, until: f64) -> Result<Pause, Box<dyn Error>> {
+    pub(crate) fn play(&mut self, until: f64) -> Result<Pause, RunError> {
         let (protocol, steps) = (self.value.study.plan.protocol(), self.work.steps);
         let start = self.work.start.time(protocol.cycles_of(steps) as f64, self.value.experiment.cycle());
         if self.is_done() {
