@@ -10,7 +10,7 @@ use crate::errors::ParameterError;
 
 /// Returns a value as dictionaries, lists, numbers and strings.
 pub(crate) fn to_data<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    Ok(pythonize::pythonize(py, value)?)
+    pythonize::pythonize(py, value).map_err(|error| ParameterError::new_err(error.to_string()))
 }
 
 /// Returns the value that such data describe.

@@ -17,6 +17,7 @@ mod motion;
 mod observable;
 mod observer;
 mod program;
+mod replay;
 mod rule;
 mod simulation;
 mod statistics;
@@ -64,6 +65,8 @@ mod _granular_edmd {
     };
     #[pymodule_export]
     use crate::program::run_program;
+    #[pymodule_export]
+    use crate::replay::PyReplay;
     #[pymodule_export]
     use crate::rule::{
         PyContact, PyRule, contact_duration, elastic, elastic_below, frictional, least_rebound,

@@ -1,7 +1,5 @@
 //! Observables of Rust, and snapshots for observables in Python.
 
-use std::sync::Arc;
-
 use edmd::observable::{
     CenterOfMass, Energies, Grid, Heading, HexaticOrder, Observable, OfKind, OrderParameters, Snapshot,
     Tabular, Temperatures, TemperaturesAboutFlow,
@@ -9,8 +7,10 @@ use edmd::observable::{
 use edmd::{Disk, Kind};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
+use serde::{Deserialize, Serialize};
 
 use crate::arguments::{Pair, region};
+use crate::data::{Data, data_class, from_data, to_data};
 use crate::disks::{Disks, disk_columns};
 use crate::errors::invalid;
 
@@ -31,16 +31,53 @@ impl<T: Tabular + Send + Sync> Numbers for T {
     }
 }
 
+/// One observable of the library.
+#[derive(Clone, Serialize, Deserialize)]
+enum Part {
+    OrderParameters(OrderParameters),
+    CenterOfMass(CenterOfMass),
+    Energies(Energies),
+    Temperatures(Temperatures),
+    HexaticOrder(HexaticOrder),
+    TemperaturesAboutFlow(TemperaturesAboutFlow),
+    OfKind(OfKind<PyObservable>),
+}
+
+impl Part {
+    fn known(&self) -> &dyn Numbers {
+        match self {
+            Self::OrderParameters(own) => own,
+            Self::CenterOfMass(own) => own,
+            Self::Energies(own) => own,
+            Self::Temperatures(own) => own,
+            Self::HexaticOrder(own) => own,
+            Self::TemperaturesAboutFlow(own) => own,
+            Self::OfKind(own) => own,
+        }
+    }
+}
+
 /// A quantity that is measured in a snapshot, as numbers with names.
 ///
 /// `Energies()` and the like create one. `Series` also takes a function of a `Snapshot`.
 #[pyclass(name = "Observable", module = "granular_edmd", frozen)]
-#[derive(Clone)]
-pub(crate) struct PyObservable(Vec<Arc<dyn Numbers>>);
+#[derive(Clone, Serialize, Deserialize)]
+pub(crate) struct PyObservable(Vec<Part>);
+
+impl Data for PyObservable {
+    fn data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_data(py, self)
+    }
+    fn of_data(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        from_data(data)
+    }
+}
+
+data_class!(PyObservable);
 
 impl PyObservable {
-    fn of(observable: impl Tabular + Send + Sync + 'static) -> Self {
-        Self(vec![Arc::new(observable)])
+    fn of(part: Part) -> Self {
+        Self(vec![part])
     }
 
     /// Returns an observable, or several of a list as one; `None` if the object is something else.
@@ -72,13 +109,13 @@ impl Observable for PyObservable {
     type Value = Vec<f64>;
 
     fn measure(&self, snapshot: &Snapshot<'_>) -> Vec<f64> {
-        self.0.iter().flat_map(|part| part.numbers(snapshot)).collect()
+        self.0.iter().flat_map(|part| part.known().numbers(snapshot)).collect()
     }
 }
 
 impl Tabular for PyObservable {
     fn headings(&self) -> Vec<Heading> {
-        self.0.iter().flat_map(|part| part.headings()).collect()
+        self.0.iter().flat_map(|part| part.known().headings()).collect()
     }
     fn add_numbers(&self, value: &Vec<f64>, row: &mut Vec<f64>) {
         row.extend(value);
@@ -94,7 +131,7 @@ impl PyObservable {
     }
     /// Returns the same observable of the disks of one kind.
     fn of_kind(&self, kind: u16) -> Self {
-        Self::of(OfKind::new(Kind::new(kind), self.clone()))
+        Self::of(Part::OfKind(OfKind::new(Kind::new(kind), self.clone())))
     }
     fn __repr__(&self) -> String {
         format!("<Observable of {}>", self.names().join(", "))
@@ -108,7 +145,7 @@ macro_rules! observables {
         #[pyfunction]
         #[pyo3(name = $name)]
         pub(crate) fn $function() -> PyObservable {
-            PyObservable::of($observable)
+            PyObservable::of(Part::$observable($observable))
         }
     )+};
 }
@@ -126,7 +163,7 @@ observables! {
 #[pyfunction]
 #[pyo3(name = "HexaticOrder")]
 pub(crate) fn hexatic_order(range: f64) -> PyResult<PyObservable> {
-    HexaticOrder::new(range).map(PyObservable::of).map_err(invalid)
+    HexaticOrder::new(range).map(Part::HexaticOrder).map(PyObservable::of).map_err(invalid)
 }
 
 /// Returns the temperatures about the mean flow in the cells of a grid over a region, given by its lower left
@@ -138,7 +175,8 @@ pub(crate) fn temperatures_about_flow(
     columns: usize,
     rows: usize,
 ) -> PyResult<PyObservable> {
-    Ok(PyObservable::of(TemperaturesAboutFlow::new(grid(corners, columns, rows)?)))
+    let flow = TemperaturesAboutFlow::new(grid(corners, columns, rows)?);
+    Ok(PyObservable::of(Part::TemperaturesAboutFlow(flow)))
 }
 
 pub(crate) fn grid(corners: (Pair, Pair), columns: usize, rows: usize) -> PyResult<Grid> {

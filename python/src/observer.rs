@@ -16,8 +16,11 @@ use edmd::statistics::Estimate;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::de::{Deserialize, Deserializer};
+use serde::ser::{Error, Serialize, Serializer};
 
 use crate::arguments::{Column, to_array};
+use crate::data::{Data, data_class, from_data, to_data};
 use crate::errors::invalid;
 use crate::statistics::{PyEstimate, averaged};
 
@@ -35,6 +38,11 @@ pub(crate) trait Watch: Observer + Send + Sync {
         Vec::new()
     }
 
+    /// Returns the observer as data, unless it has a function of Python or an open file.
+    fn saved(&self) -> Option<&dyn Saved> {
+        None
+    }
+
     /// Returns the table as arrays by the names of the columns.
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let table = self.table().ok_or_else(|| PyTypeError::new_err("this observer has no table"))?;
@@ -47,15 +55,44 @@ pub(crate) trait Watch: Observer + Send + Sync {
     }
 }
 
+/// A watch that can be saved, by the name of its type.
+#[typetag::serde]
+pub(crate) trait Saved: Sync {
+    fn watch(self: Box<Self>) -> Box<dyn Watch>;
+}
+
+impl Serialize for Box<dyn Watch> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let unsaved = "an observer with a function of Python or an open file cannot be saved: keep its table";
+        self.saved().ok_or_else(|| S::Error::custom(unsaved))?.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Box<dyn Watch> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Box::<dyn Saved>::deserialize(deserializer).map(Saved::watch)
+    }
+}
+
 /// Passes everything on to the watch inside an adapter.
 macro_rules! adapters {
-    ($($adapter:ident),+) => {$(
+    ($($adapter:ident $name:literal),+) => {$(
+        #[typetag::serde(name = $name)]
+        impl Saved for $adapter<Box<dyn Watch>> {
+            fn watch(self: Box<Self>) -> Box<dyn Watch> {
+                self
+            }
+        }
+
         impl Watch for $adapter<Box<dyn Watch>> {
             fn table(&self) -> Option<&dyn Table> {
                 self.inner().table()
             }
             fn results(&self) -> Vec<Named> {
                 self.inner().results()
+            }
+            fn saved(&self) -> Option<&dyn Saved> {
+                self.inner().saved().map(|_| self as &dyn Saved)
             }
             fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
                 self.inner().columns(py)
@@ -64,11 +101,13 @@ macro_rules! adapters {
     )+};
 }
 
-adapters!(OfKind, BetweenKinds, ByCollisions);
+adapters!(OfKind "OfKind", BetweenKinds "BetweenKinds", ByCollisions "ByCollisions");
 
 /// An observer of runs: give it to `run_until(…, observe=…)`, and read its table or results afterwards.
 ///
-/// A run takes the observer out of the object and puts it back at its end. The next run continues it.
+/// A run takes the observer out of the object and puts it back at its end. The next run continues it. To save
+/// a run with what it has measured, pickle both together: `pickle.dumps((simulation, observers))`. Observers
+/// with functions of Python and with open files cannot be pickled or copied.
 #[pyclass(name = "Observer", module = "granular_edmd")]
 pub(crate) struct PyObserver(pub(crate) Option<Box<dyn Watch>>);
 
@@ -89,6 +128,17 @@ impl PyObserver {
         adapter(self.0.take().ok_or_else(absent)?).map(Self::of)
     }
 }
+
+impl Data for PyObserver {
+    fn data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_data(py, self.0.as_ref().ok_or_else(absent)?)
+    }
+    fn of_data(data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        from_data(data).map(|watch| Self(Some(watch)))
+    }
+}
+
+data_class!(PyObserver);
 
 /// Returns the exception for an observer that is in use.
 pub(crate) fn absent() -> PyErr {

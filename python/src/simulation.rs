@@ -25,7 +25,7 @@ use crate::observable::{PyObservable, PySnapshot};
 use crate::rule::{AnyRule, PyRule, SharedRule};
 use run::{Observers, Wishes};
 
-type Engine = Simulation<SharedRule, Container>;
+pub(crate) type Engine = Simulation<SharedRule, Container>;
 
 /// The function `resume` and its arguments, as `pickle` takes them.
 type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>, PyRule, PyContainer));
@@ -56,8 +56,8 @@ impl<'py> FromPyObject<'_, 'py> for AnyGravity {
 /// `time`.
 #[pyclass(name = "Simulation", module = "granular_edmd")]
 pub(crate) struct PySimulation {
-    run: Engine,
-    rule: PyRule,
+    pub(crate) run: Engine,
+    pub(crate) rule: PyRule,
 }
 
 impl PySimulation {

@@ -125,6 +125,49 @@ def test_checkpoints_pickle_and_copies_continue_with_the_same_bits():
     ge.Simulation.resume(run.checkpoint(), ge.Elastic(), box, another_rule=True)
 
 
+def test_observers_are_saved_with_their_run():
+    box = ge.Container.closed(20, 30)
+    disks = ge.with_maxwellian_velocities(ge.lattice(box, 60, 0.5), 1.0, 1).with_(kinds=np.arange(60) % 2)
+    times = ge.SampleTimes(0.7, start=0.1)
+    series = ge.Series([ge.Energies(), ge.HexaticOrder(1.5).of_kind(1)], every=times)
+    watches = [series, ge.EnergyChange().between_kinds(0, 1), ge.CollisionCounts(), ge.Stress(0.5)]
+    watches += [ge.Series(ge.Energies(), every=1.0).by_collisions(7), ge.WallStress({"floor": 20.0}, 0.9)]
+    watches += [ge.PairCorrelation(3.0, 10, 0.5), ge.MeanSquaredDisplacement(5, 0.5), ge.Arrivals(["floor"], 1.0)]
+    watches += [ge.VelocityCorrelation(5, 0.5), ge.Crossings(((0, 9), (20, 9)), 1.0), ge.Fields(((0, 0), (20, 30)), 2, 3, 0.5)]
+    watches += [ge.CollisionHistograms(3.0, 3.0, 8, walls=["floor"]), ge.VelocityDistribution(4.0, 8, 0.5)]
+    watches += [ge.HeightProfile(0, 30, 5, 0.5), ge.EnergyChangeProfile(0, 30, 5, 0.5)]
+    run = ge.Simulation(ge.Smooth(restitution=0.9), box, disks, gravity=0.01)
+    run.run_until(3.3, observe=watches)
+    twin, copies = pickle.loads(pickle.dumps((run, watches)))
+    for each, observers in [(run, watches), (twin, copies)]:
+        each.run_until(7.9, observe=observers)
+    assert same(run, twin) and watches == copies and len(series["time"]) == 12
+    for function in [ge.Series(len, every=1.0), ge.OnCollision(print).of_kind(1)]:
+        with pytest.raises(ge.ParameterError, match="function of Python"):
+            copy.copy(function)
+
+
+def test_a_replay_finds_the_collisions_of_a_disk_and_the_first_difference():
+    run = gas(ge.Elastic())
+    whole = ge.Replay(run, every=1.0)
+    whole.run_until(20.0)
+    run.run_until(20.0)
+    assert same(whole.at(20.0), run) and whole.at(21.0) is None
+    number, collision = whole.last_collisions_of(7, until=20.0, count=3)[-1]
+    before = whole.before_collision(number)
+    assert before.collisions == number - 1 and 7 in collision.ids
+    assert before.run_until(20.0, max_collisions=1) == "collisions" and before.time == collision.time
+    assert whole.collisions(0.0, 20.0)[-1][0] == run.collisions
+    other = gas(ge.Elastic())
+    other.disks = other.disks.with_(velocities=other.velocities + np.eye(100, 2) * 1e-10)
+    shifted = ge.Replay(other, every=1.0)
+    shifted.run_until(20.0)
+    apart = whole.differences(shifted, tolerance=1e-6)["apart"]
+    assert 0 < apart[1] <= 20.0 and apart[2] > 1e-6
+    with pytest.raises(ge.ParameterError, match="interval"):
+        ge.Replay(run, every=0.0)
+
+
 def test_another_seed_is_another_future():
     box = ge.Container.closed(9, 9, floor=ge.Thermal(1.0))
     run = ge.Simulation(ge.Elastic(), box, ge.lattice(box, 20, 0.5), gravity=1.0)

@@ -130,7 +130,7 @@ pub(crate) fn stop_when(function: Bound<'_, PyAny>, every: Every) -> PyResult<Py
 
 /// A collision that has just happened.
 #[pyclass(name = "Collision", module = "granular_edmd", frozen)]
-pub(crate) struct PyCollision(Collision);
+pub(crate) struct PyCollision(pub(crate) Collision);
 
 #[pymethods]
 impl PyCollision {
@@ -153,6 +153,12 @@ impl PyCollision {
     #[getter]
     fn wall(&self) -> Option<usize> {
         if let Partner::Wall(wall) = self.0.partner { Some(wall) } else { None }
+    }
+    /// The id of the disk, and the id of the other disk, or `None` for a wall.
+    #[getter]
+    fn ids(&self) -> (u64, Option<u64>) {
+        let [disk, partner] = self.0.ids;
+        (disk, matches!(self.0.partner, Partner::Disk(_)).then_some(partner))
     }
     /// The contact before the collision.
     #[getter]

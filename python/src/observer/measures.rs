@@ -12,16 +12,26 @@ use edmd::observable::{
 use edmd_files::{ByEnding, Recorder};
 use pyo3::prelude::*;
 
-use super::{Named, PyObserver, Watch};
+use super::{Named, PyObserver, Saved, Watch};
 use crate::arguments::{Every, Pair, region, vector};
 use crate::errors::{invalid, unreadable};
 use crate::observable::{PyObservable, grid};
 
-/// Makes measures watches, some of them with results that are single numbers.
+/// Makes measures watches that can be saved by these names, some of them with results that are single numbers.
 macro_rules! watch {
-    ($($measure:ty $(: |$own:ident| [$($name:literal => $value:expr),+])?;)+) => {$(
+    ($($label:literal: $measure:ty $(: |$own:ident| [$($name:literal => $value:expr),+])?;)+) => {$(
+        #[typetag::serde(name = $label)]
+        impl Saved for $measure {
+            fn watch(self: Box<Self>) -> Box<dyn Watch> {
+                self
+            }
+        }
+
         impl Watch for $measure {
             fn table(&self) -> Option<&dyn Table> {
+                Some(self)
+            }
+            fn saved(&self) -> Option<&dyn Saved> {
                 Some(self)
             }
             $(fn results(&self) -> Vec<Named> {
@@ -32,21 +42,44 @@ macro_rules! watch {
     )+};
 }
 
+/// Makes accumulators with a clock watches.
+macro_rules! watch_sampled {
+    ($($accumulator:ty: $name:literal);+) => {$(
+        #[typetag::serde(name = $name)]
+        impl Saved for Sampled<$accumulator> {
+            fn watch(self: Box<Self>) -> Box<dyn Watch> {
+                self
+            }
+        }
+
+        impl Watch for Sampled<$accumulator> {
+            fn table(&self) -> Option<&dyn Table> {
+                Some(&**self)
+            }
+            fn saved(&self) -> Option<&dyn Saved> {
+                Some(self)
+            }
+        }
+    )+};
+}
+
 watch! {
-    Series<PyObservable>;
-    TimeCorrelation<Velocities>;
-    CollisionCounts;
-    CollisionHistograms;
-    WallStress;
-    Arrivals: |own| ["rate" => own.rate().ok()];
-    EnergyChange: |own| ["disks" => Some(own.disks().estimate())];
-    Crossings: |own| [
+    "Series": Series<PyObservable>;
+    "VelocityCorrelation": TimeCorrelation<Velocities>;
+    "CollisionCounts": CollisionCounts;
+    "CollisionHistograms": CollisionHistograms;
+    "WallStress": WallStress;
+    "Arrivals": Arrivals: |own| ["rate" => own.rate().ok()];
+    "EnergyChange": EnergyChange: |own| ["disks" => Some(own.disks().estimate())];
+    "Crossings": Crossings: |own| [
         "flux" => own.flux().ok(),
         "forward_rate" => own.rates().ok().map(|[forward, _]| forward),
         "backward_rate" => own.rates().ok().map(|[_, backward]| backward)
     ];
-    MeanSquaredDisplacement: |own| ["diffusion_coefficient" => Some(own.diffusion_coefficient())];
-    Stress: |own| [
+    "MeanSquaredDisplacement": MeanSquaredDisplacement: |own| [
+        "diffusion_coefficient" => Some(own.diffusion_coefficient())
+    ];
+    "Stress": Stress: |own| [
         "pressure" => Some(own.tensor().pressure),
         "xx" => Some(own.tensor().xx),
         "xy" => Some(own.tensor().xy),
@@ -55,17 +88,17 @@ watch! {
     ];
 }
 
-impl<A: Accumulator + Table + Send + Sync> Watch for Sampled<A> {
-    fn table(&self) -> Option<&dyn Table> {
-        Some(&**self)
-    }
+watch_sampled! {
+    PairCorrelation: "PairCorrelation"; VelocityDistribution: "VelocityDistribution";
+    HeightProfile: "HeightProfile"; EnergyChangeProfile: "EnergyChangeProfile"; Fields: "Fields"
 }
 
 impl Watch for Recorder {}
 
 fn sampled<A>(accumulator: A, every: Every) -> PyObserver
 where
-    A: Accumulator + Table + Send + Sync + 'static,
+    A: Accumulator,
+    Sampled<A>: Watch + 'static,
 {
     PyObserver::of(Sampled::new(accumulator, every.0))
 }
