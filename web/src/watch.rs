@@ -93,8 +93,8 @@ impl Watch {
         if self.recent.len() > NAMED {
             self.recent.pop_front();
         }
-        self.profile.add(&snapshot);
-        if self.profile.samples() >= FEWEST as u64 {
+        // A profile of the scene's own box does not fail.
+        if self.profile.add(&snapshot).is_ok() && self.profile.samples() >= FEWEST as u64 {
             self.layer = self.profile.densest_layer();
             self.profile.clear();
         }
