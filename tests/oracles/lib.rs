@@ -1,5 +1,5 @@
-//! Brute force: all pairs of disks, with each image of a periodic domain, areas by many chords or points, steps along
-//! polynomials, long random series, and gases without correlations.
+//! Brute force: all pairs of disks, with each image of a periodic domain, areas by many chords or points,
+//! steps along polynomials, long random series, and gases without correlations.
 
 use granular_edmd::boundary::{Domain, Region};
 use granular_edmd::collision::{Encounter, collide};
@@ -83,8 +83,8 @@ pub fn area_between(disk: &Disk, domain: &Domain, low: f64, high: f64) -> f64 {
     area
 }
 
-/// Returns the area of a rectangle that is free, by many points. Each row is shifted, since rows that are alike
-/// would count too many or too few points along a slanted wall.
+/// Returns the area of a rectangle that is free, by many points. Each row is shifted, since rows that are
+/// alike would count too many or too few points along a slanted wall.
 pub fn free_area(region: &Region, is_free: &dyn Fn(DVec2) -> bool) -> f64 {
     const LINES: u32 = 450;
     let at = |k: u32, shift: f64| (f64::from(k) + shift) / f64::from(LINES);
