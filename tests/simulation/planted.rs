@@ -713,8 +713,8 @@ fn one_event_that_the_scheduler_lost_is_noticed_before_disks_overlap() {
             self.honest.earliest()
         }
     }
-    let (mut lost, mut errors) = (0, 0);
-    for sets_until_lost in few((0..1400).step_by(2), 5) {
+    let mut errors = 0;
+    for sets_until_lost in (0..1400).step_by(2) {
         let scheduler = Forgetful { honest: LinearScan::new(), sets_until_lost };
         let builder = Simulation::builder(Elastic, walls()).disks(gas(&walls(), 40)).scheduler(scheduler);
         let mut run = builder.build().unwrap();
@@ -724,12 +724,10 @@ fn one_event_that_the_scheduler_lost_is_noticed_before_disks_overlap() {
             deepest = deepest.max(deepest_overlap(&run.boundary().domain(), &run.disks()));
             Ok::<(), RunError>(())
         });
-        lost += 1;
         errors += u32::from(end.is_err());
         assert!(end.is_err() || deepest < 1e-9, "{sets_until_lost}: {deepest}");
     }
-    // Of all 700, 58 % are noticed; of a fifth of them, by chance, 4 % more or less.
-    assert!(2 * errors > lost, "{errors} of {lost}");
+    assert!(errors > 400, "{errors}");
 }
 
 /// A scheduler that names nothing at all has no events, so that its epoch alone shows it.
