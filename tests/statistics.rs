@@ -63,7 +63,7 @@ fn errors_called_converged_hold_the_mean() {
 #[test]
 fn errors_called_converged_hold_the_mean_of_two_time_scales() {
     let (fast, slow) = (0.5, 89.0 / 91.0);
-    for length in [30.0, 50.0, 75.0, 100.0, 150.0, 300.0, 1000.0] {
+    for length in [30.0, 50.0, 75.0, 100.0, 150.0, 300.0] {
         let both = |seed| {
             let parts = Autoregressive::new(seed, fast).zip(Autoregressive::new(!seed, slow));
             let sum = parts.map(|(fast, slow)| 0.7_f64.sqrt() * fast + 0.3_f64.sqrt() * slow);

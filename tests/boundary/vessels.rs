@@ -124,7 +124,7 @@ fn vessels_that_move_keep_the_contract() {
     for (name, part) in around {
         vessels.push((name.to_owned(), Container::around([("outside", part.unwrap())]).unwrap()));
     }
-    check(17, vessels);
+    check(19, vessels);
 }
 
 /// A part that is put in late begins where it was built, whatever the time origin is and whenever it is set.

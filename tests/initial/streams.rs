@@ -16,7 +16,7 @@ use rand::Rng;
 use super::disks;
 
 /// Number of seeds, which count up from 0 as in real use.
-const SEEDS: u64 = 4000;
+const SEEDS: u64 = 1000;
 
 /// The numbers are those of an independent program.
 #[test]

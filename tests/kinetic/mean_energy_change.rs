@@ -1,21 +1,21 @@
 //! The mean energy loss per collision: two ways to it, and the paper's figures of it.
 
 use granular_edmd::collision::{
-    CollisionRule, Contact, Elastic, Encounter, Frictional, Impulse, RollingFriction, Rough, RulesByKind,
-    Smooth, collide, from_fn,
+    CollisionRule, Contact, Elastic, Frictional, Impulse, RollingFriction, Rough, RulesByKind, Smooth,
+    from_fn,
 };
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{
     IsoLine, Maxwellian, MonteCarlo, effective_inelasticity, friction_of_largest_loss,
     frictionless_energy_change, mean_energy_change, sticking_fraction,
 };
-use granular_edmd::statistics::{Estimate, RunningMean};
+use granular_edmd::simulation::BoxedRule;
+use granular_edmd::statistics::Estimate;
 use granular_edmd::{Disk, Kind, ParameterError};
+use oracles::mean_over_colliding_disks;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
-use rand::{Rng, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 use support::cases;
 
 type Outcome = Result<(), ParameterError>;
@@ -75,7 +75,8 @@ fn distances(points: u32, samples: u64) -> Vec<f64> {
     (0..points)
         .map(|seed| {
             let (rule, gas) = point();
-            let estimate = MonteCarlo::new(seed.into()).with_samples(samples).mean_energy_change(&rule, &gas);
+            let monte_carlo = MonteCarlo::new(seed.into()).with_samples(samples);
+            let estimate = oracles::mean_energy_change(&monte_carlo, &(Box::new(rule) as BoxedRule), &gas);
             let distance = distance(&estimate, mean_energy_change(&rule, &gas), &gas);
             assert!(distance.abs() < 6.0, "{distance} standard errors for {rule:?}, {gas:?}: {estimate:?}");
             distance
@@ -105,42 +106,20 @@ fn monte_carlo_and_closed_form_agree_everywhere() {
     assert!(far <= 1 && (0.9..1.1).contains(&mean_square));
 }
 
-fn gaussian(generator: &mut Xoshiro256PlusPlus) -> f64 {
-    (0..12).map(|_| generator.next_u64() as f64 / 2f64.powi(64)).sum::<f64>() - 6.0
-}
-
-/// A disk of the gas, with unit temperatures.
-fn thermal(disk: Disk, rotational_temperature: f64, generator: &mut Xoshiro256PlusPlus) -> Disk {
-    let velocity = DVec2::new(gaussian(generator), gaussian(generator)) / disk.mass().sqrt();
-    let spin = gaussian(generator) * (rotational_temperature / disk.moment_of_inertia()).sqrt();
-    disk.with_velocity(velocity).unwrap().with_angular_velocity(spin).unwrap()
-}
-
-/// Two thermal disks in contact collide. The energies of the disks themselves are weighted with the rate of
-/// the collision. (The normal variables are sums of 12 uniform ones: moments up to the third are exact, and
-/// the fourth is 3 % low.)
+/// Two thermal disks in contact collide.
 #[test]
 fn closed_form_is_the_mean_over_colliding_disks() -> Outcome {
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(11);
-    let energy = |disk: &Disk| disk.translational_energy() + disk.rotational_energy();
     let ring = disk(4.0, 1.0).with_position(DVec2::new(0.8, 0.6))?;
     for (partner, rotational) in [(disk(1.0, 0.5).with_position(DVec2::X)?, 1.0), (ring, 0.2)] {
         let rule = Frictional::from_inelasticity(0.05, 0.2, 0.5)?.with_dynamic_friction(0.3)?;
         let gas =
             Maxwellian::new(1.0)?.with_rotational_temperature(rotational)?.with_partners(&ring, &partner);
-        let first = ring.with_position(DVec2::ZERO)?;
-        let (mut rate, mut loss) = (0.0, 0.0);
-        for _ in 0..200_000 {
-            let before = [first, partner].map(|disk| thermal(disk, rotational, &mut generator));
-            let Encounter { first: one, second: other, contact, .. } = collide(&rule, &before[0], &before[1]);
-            let weight = contact.closing_speed().max(0.0);
-            rate += weight;
-            loss += weight * (energy(&one) + energy(&other) - energy(&before[0]) - energy(&before[1]));
-        }
+        let pair = [ring.with_position(DVec2::ZERO)?, partner];
+        let mean = mean_over_colliding_disks(&(Box::new(rule) as BoxedRule), pair, rotational, 11)?;
         // A collision scatters by about as much as its mean, which gives 0.003, and as much again for the
-        // fourth moment.
+        // fourth moment of the velocities.
         let exact = mean_energy_change(&rule, &gas);
-        assert!((loss / rate / exact - 1.0).abs() < 0.02, "{} and {exact}", loss / rate);
+        assert!((mean / exact - 1.0).abs() < 0.02, "{mean} and {exact}");
     }
     Ok(())
 }
@@ -155,29 +134,19 @@ fn monte_carlo_sees_all_of_a_contact() -> Outcome {
     let lossy = Frictional::from_inelasticity(0.4, 0.0, 0.0)?;
     let of_size =
         from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(contact.effective_radius()), 0.0));
-    let rules: [Box<dyn CollisionRule + Sync>; 4] = [
+    let rules: [BoxedRule; 4] = [
         Box::new(RollingFriction::new(Elastic, 0.3)?),
         Box::new(RollingFriction::new(frictional, 0.3)?),
         Box::new(RulesByKind::new(frictional).with(Kind::DEFAULT, kind, lossy)),
         Box::new(of_size),
     ];
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(12);
     for (rule, partner) in rules.iter().flat_map(|rule| [(rule, disk(1.0, 0.5)), (rule, large)]) {
         let gas = Maxwellian::new(1.0)?.with_rotational_temperature(0.7)?;
         let gas = gas.with_partners(&disk(1.0, 0.5), &partner);
         let second = partner.with_position((0.5 + partner.radius()) * DVec2::new(0.8, 0.6))?;
-        let mut changes = RunningMean::default();
-        let mut closing = RunningMean::default();
-        for _ in 0..200_000 {
-            let before = [disk(1.0, 0.5), second].map(|disk| thermal(disk, 0.7, &mut generator));
-            let encounter = collide(rule, &before[0], &before[1]);
-            let weight = encounter.contact.closing_speed().max(0.0);
-            closing.push(weight);
-            changes.push(weight * encounter.impulse.energy_change(&encounter.contact));
-        }
-        let estimate = MonteCarlo::new(6).mean_energy_change(rule, &gas);
+        let estimate = oracles::mean_energy_change(&MonteCarlo::new(6), rule, &gas);
         // The largest part of the sum's error is that of the changes, 0.5 %; the fourth moment adds 0.3 %.
-        let sum = changes.mean() / closing.mean();
+        let sum = mean_over_colliding_disks(rule, [disk(1.0, 0.5), second], 0.7, 12)?;
         assert!((estimate.mean() / sum - 1.0).abs() < 0.02, "{estimate:?} and {sum}");
     }
     Ok(())

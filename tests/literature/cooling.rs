@@ -10,8 +10,10 @@ use granular_edmd::collision::{CollisionRule, Elastic, Frictional, Rough, Smooth
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{DirectSimulation, Maxwellian, mean_energy_change};
 use granular_edmd::observable::Temperatures;
+use granular_edmd::simulation::BoxedRule;
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::{Disk, Simulation, initial};
+use oracles::run_directly;
 
 use crate::gas::{Gas, contact_value, periodic_gas, run_for, with_spins};
 use crate::{Outcome, agrees, measured};
@@ -46,15 +48,16 @@ fn cool<R: CollisionRule + Copy>(
 
 /// Lets 20 000 disks without correlations cool for some more than this many collisions each, and returns the
 /// number of these, both temperatures, and the fourth cumulant.
-fn cool_directly<R: CollisionRule>(
-    rule: R,
+fn cool_directly(
+    rule: impl CollisionRule + Send + Sync + 'static,
     rotational_temperature: f64,
     collisions: f64,
 ) -> Result<(f64, Pair, f64), Box<dyn std::error::Error>> {
     let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; 20_000];
     let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, 1)?)?;
     let count = disks.len() as f64;
-    let mut gas = DirectSimulation::new(rule, with_spins(disks, rotational_temperature, 1)?, 1.0, 2)?;
+    let disks = with_spins(disks, rotational_temperature, 1)?;
+    let mut gas = DirectSimulation::new(Box::new(rule) as BoxedRule, disks, 1.0, 2)?;
     let mean = |disks: &[Disk], of: fn(&Disk) -> f64| disks.iter().map(of).sum::<f64>() / count;
     loop {
         let collided = 2.0 * gas.collisions() as f64 / count;
@@ -64,7 +67,8 @@ fn cool_directly<R: CollisionRule>(
             let rotational = 2.0 * mean(gas.disks(), Disk::rotational_energy);
             return Ok((collided, [temperature, rotational], fourth / (8.0 * temperature.powi(2)) - 1.0));
         }
-        gas.run_until(gas.time() + 0.02 / temperature.sqrt())?;
+        let end = gas.time() + 0.02 / temperature.sqrt();
+        run_directly(&mut gas, end)?;
     }
 }
 

@@ -7,8 +7,9 @@ use granular_edmd::collision::{CollisionRule, Frictional, Rough, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::DirectSimulation;
 use granular_edmd::observable::{EnergyChange, SampleTimes, Snapshot, on_sample};
-use granular_edmd::simulation::{Driving, Limits, WhiteNoise};
+use granular_edmd::simulation::{BoxedRule, Driving, Limits, WhiteNoise};
 use granular_edmd::{Disk, Simulation, initial};
+use oracles::run_directly;
 
 use crate::gas::{collision_rate, periodic_gas};
 use crate::{Outcome, agrees, measured};
@@ -69,19 +70,24 @@ fn by_events<R: CollisionRule>(rule: R, noise: f64, count: usize, packing: f64, 
 }
 
 /// Returns the means of a gas without correlations, in the same units.
-fn by_direct_simulation<R: CollisionRule>(rule: R, noise: f64, count: usize, times: f64) -> Means {
+fn by_direct_simulation(
+    rule: impl CollisionRule + Send + Sync + 'static,
+    noise: f64,
+    count: usize,
+    times: f64,
+) -> Means {
     let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; count];
     let disks = initial::without_drift(initial::with_maxwellian_velocities(disks, 1.0, 1)?)?;
     // The unit of time is a mean free time at temperature 1.
-    let mut gas = DirectSimulation::new(rule, disks, 0.5 / PI.sqrt(), 3)?;
+    let mut gas = DirectSimulation::new(Box::new(rule) as BoxedRule, disks, 0.5 / PI.sqrt(), 3)?;
     let mut noise = WhiteNoise::new(noise, SampleTimes::every(0.1)?, 4)?;
     let mut moments = Moments::default();
     for step in 1..=(10.0 * times) as u32 {
-        gas.run_until(0.1 * (f64::from(step) - 0.5))?;
+        run_directly(&mut gas, 0.1 * (f64::from(step) - 0.5))?;
         if step > 300 && step.is_multiple_of(5) {
             moments.add(gas.disks());
         }
-        gas.run_until(0.1 * f64::from(step))?;
+        run_directly(&mut gas, 0.1 * f64::from(step))?;
         noise.kick(gas.disks_mut())?;
     }
     Ok(moments.means())

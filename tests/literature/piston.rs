@@ -80,11 +80,11 @@ fn fluctuation(values: &[[f64; 4]], [disks, width, pressure]: [f64; 3]) -> (f64,
     (square.mean() / expected, square.standard_error() / square.mean())
 }
 
-/// At six loads, from a dilute gas to a dense fluid. With periodic sides, the force of the lid is that of the
-/// pressure in the bulk, far from lid and floor, on the whole width.
+/// At three loads, from a dilute gas to a dense fluid; the long runs have three others. With periodic sides,
+/// the force of the lid is that of the pressure in the bulk, far from lid and floor, on the whole width.
 #[test]
 fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
-    for pressure in [0.07, 0.2, 0.5, 1.0, 1.8, 2.6] {
+    for pressure in [0.07, 0.5, 1.8] {
         let force = pressure * WIDTH;
         let mut run = under_a_lid([DISKS, WIDTH, MASS, pressure], 0.0, 1)?;
         run.run_until(1000.0, &mut ())?;
@@ -175,7 +175,7 @@ fn a_heavy_lid_swings_adiabatically() -> Outcome {
     let (mass, force, height) = (10.0 * gas, pressure * width, disks / (width * density_at(pressure)));
     let guess = frequency_of_swings(3.0, height, force, [gas, mass]);
     let (mut adiabatic, mut isothermal) = (BlockedMean::new(), 0.0);
-    for seed in 0..8 {
+    for seed in 0..4 {
         let mut run = under_a_lid([disks, width, mass, pressure], -0.15, 10 * seed + 1)?;
         let interval = 0.05 / guess;
         let mut series = Series::new(measured_by(look), SampleTimes::every(interval)?);

@@ -1,10 +1,14 @@
-//! Brute force: all pairs of disks, with each image of a periodic domain, areas by many chords, steps along
-//! polynomials, and long random series.
+//! Brute force: all pairs of disks, with each image of a periodic domain, areas by many chords or points,
+//! steps along polynomials, long random series, and gases without correlations.
 
-use granular_edmd::Disk;
-use granular_edmd::boundary::Domain;
+use granular_edmd::boundary::{Domain, Region};
+use granular_edmd::collision::{Encounter, collide};
 use granular_edmd::glam::DVec2;
+use granular_edmd::kinetic::{DirectSimulation, Maxwellian, MonteCarlo};
 use granular_edmd::roots::first_descent_of_quartic;
+use granular_edmd::simulation::BoxedRule;
+use granular_edmd::statistics::Estimate;
+use granular_edmd::{Disk, ParameterError};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -79,6 +83,20 @@ pub fn area_between(disk: &Disk, domain: &Domain, low: f64, high: f64) -> f64 {
     area
 }
 
+/// Returns the area of a rectangle that is free, by many points. Each row is shifted, since rows that are
+/// alike would count too many or too few points along a slanted wall.
+pub fn free_area(region: &Region, is_free: &dyn Fn(DVec2) -> bool) -> f64 {
+    const LINES: u32 = 450;
+    let at = |k: u32, shift: f64| (f64::from(k) + shift) / f64::from(LINES);
+    let size = region.max - region.min;
+    let point = |row: u32, column: u32| {
+        let share = DVec2::new(at(column, (0.618_034 * f64::from(row)).fract()), at(row, 0.5));
+        is_free(region.min + size * share)
+    };
+    let free = (0..LINES).map(|row| (0..LINES).filter(|&column| point(row, column)).count()).sum::<usize>();
+    size.x * size.y * free as f64 / f64::from(LINES * LINES)
+}
+
 /// An autoregressive series of variance 1 and this correlation of neighbors.
 pub struct Autoregressive {
     generator: Xoshiro256PlusPlus,
@@ -90,25 +108,73 @@ impl Autoregressive {
     /// Creates the series of a seed.
     pub fn new(seed: u64, correlation: f64) -> Self {
         let mut series = Self { generator: Xoshiro256PlusPlus::seed_from_u64(seed), correlation, state: 0.0 };
-        series.state = series.normal();
+        series.state = normal(&mut series.generator);
         series
     }
+}
 
-    /// Returns the sum of 12 uniform numbers.
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
+/// Returns the sum of 12 uniform numbers less 6: its variance is 1, and its fourth moment 3 % low.
+fn normal(generator: &mut Xoshiro256PlusPlus) -> f64 {
+    let mut uniform = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
 }
 
 impl Iterator for Autoregressive {
     type Item = f64;
 
     fn next(&mut self) -> Option<f64> {
-        let kick = self.normal() * (1.0 - self.correlation * self.correlation).sqrt();
+        let kick = normal(&mut self.generator) * (1.0 - self.correlation * self.correlation).sqrt();
         self.state = self.correlation * self.state + kick;
         Some(self.state)
     }
+}
+
+/// Returns the mean energy change of 200 000 collisions of two disks in contact, from the energies of the
+/// disks themselves, weighted with the rate of the collision. Their velocities are thermal, at temperature 1.
+///
+/// # Errors
+/// If the temperature of the spins is negative.
+pub fn mean_over_colliding_disks(
+    rule: &BoxedRule,
+    pair: [Disk; 2],
+    rotational_temperature: f64,
+    seed: u64,
+) -> Result<f64, ParameterError> {
+    let generator = &mut Xoshiro256PlusPlus::seed_from_u64(seed);
+    let energy = |disk: &Disk| disk.translational_energy() + disk.rotational_energy();
+    let (mut rate, mut change) = (0.0, 0.0);
+    for _ in 0..200_000 {
+        let [first, second] = pair.map(|disk| thermal(disk, rotational_temperature, generator));
+        let (first, second) = (first?, second?);
+        let Encounter { first: one, second: other, contact, .. } = collide(rule, &first, &second);
+        let weight = contact.closing_speed().max(0.0);
+        rate += weight;
+        change += weight * (energy(&one) + energy(&other) - energy(&first) - energy(&second));
+    }
+    Ok(change / rate)
+}
+
+fn thermal(
+    disk: Disk,
+    rotational_temperature: f64,
+    generator: &mut Xoshiro256PlusPlus,
+) -> Result<Disk, ParameterError> {
+    let velocity = DVec2::new(normal(generator), normal(generator)) / disk.mass().sqrt();
+    let spin = normal(generator) * (rotational_temperature / disk.moment_of_inertia()).sqrt();
+    disk.with_velocity(velocity)?.with_angular_velocity(spin)
+}
+
+/// Estimates the mean energy change: the library's generic code, compiled here.
+pub fn mean_energy_change(monte_carlo: &MonteCarlo, rule: &BoxedRule, gas: &Maxwellian) -> Estimate {
+    monte_carlo.mean_energy_change(rule, gas)
+}
+
+/// Runs a gas without correlations until this time: the library's generic code, compiled here.
+///
+/// # Errors
+/// As [`DirectSimulation::run_until`].
+pub fn run_directly(gas: &mut DirectSimulation<BoxedRule>, time: f64) -> Result<(), ParameterError> {
+    gas.run_until(time)
 }
 
 /// Returns the value of a polynomial, given by its coefficients from the constant term up.

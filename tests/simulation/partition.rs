@@ -8,6 +8,7 @@ use granular_edmd::observable::{
 };
 use granular_edmd::wall::Piston;
 use granular_edmd::{Disk, Simulation, initial};
+use support::cases::few;
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
@@ -41,7 +42,7 @@ fn energy(disks: &[Disk]) -> f64 {
 fn parts_with_a_mass_keep_the_contract() -> Outcome {
     let loaded = Piston::new(MASS, [-8.0, 8.0])?.with_force(0.3)?.with_spring(5.0, 1.0)?;
     for mut walls in [partition(Piston::new(MASS, [-11.0, 11.0])?)?, partition(loaded)?, peg()?] {
-        for seed in 0..3 {
+        for seed in few(0..3, 3) {
             assert_eq!(laws::check(&mut walls, 0.4, 1.0, seed), Ok(()));
         }
     }

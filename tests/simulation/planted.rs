@@ -16,6 +16,7 @@ use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BoundaryFault, BuildError, RunError};
 use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
 use granular_edmd::{Disk, Flight, Simulation, initial};
+use oracles::deepest_overlap;
 use support::cases::few;
 
 fn walls() -> Container {
@@ -720,15 +721,7 @@ fn one_event_that_the_scheduler_lost_is_noticed_before_disks_overlap() {
         let mut deepest = 0.0_f64;
         let end = (1..=300).map(|step| 0.1 * f64::from(step)).try_for_each(|time| {
             run.run_until(time, &mut ())?;
-            let disks = run.disks();
-            let overlap = |(one, other): (&Disk, &Disk)| {
-                one.radius() + other.radius() - one.position().distance(other.position())
-            };
-            let pairs = disks
-                .iter()
-                .enumerate()
-                .flat_map(|(number, one)| disks[number + 1..].iter().map(move |other| (one, other)));
-            deepest = pairs.map(overlap).fold(deepest, f64::max);
+            deepest = deepest.max(deepest_overlap(&run.boundary().domain(), &run.disks()));
             Ok::<(), RunError>(())
         });
         errors += u32::from(end.is_err());

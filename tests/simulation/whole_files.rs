@@ -46,7 +46,7 @@ fn a_name_of_the_greatest_length_is_written() {
 /// A file made of parts of two writes would have a wrong checksum.
 #[test]
 fn two_writers_of_one_file_do_not_disturb_each_other_nor_a_reader() {
-    const WRITES: u32 = 1500;
+    const WRITES: u32 = 400;
     let scratch = Scratch::new("writers");
     let path = &scratch.path("file");
     let states = [1, 40].map(checkpoint);

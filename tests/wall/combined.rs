@@ -7,6 +7,7 @@ use granular_edmd::wall::{
     check_finite, first_touch,
 };
 use proptest::prelude::*;
+use support::cases::few;
 
 fn sine(frequency: f64) -> Sinusoidal {
     Sinusoidal::new(0.1, frequency).unwrap()
@@ -27,7 +28,7 @@ fn keeps_its_contract(motion: &impl WallMotion) {
 fn all_keep_the_contract() {
     let arcs = BiParabolic::new(0.1, 7.0).unwrap();
     let saw = Sawtooth::new(0.1, 3.0).unwrap();
-    for start in [-2.7, 0.0, 0.3, 5.0] {
+    for start in few([0.0, -2.7, 0.3, 5.0], 3) {
         keeps_its_contract(&Combined::new(sine(10.0)).delayed_until(start).unwrap());
         keeps_its_contract(&Combined::new(arcs).delayed_until(start).unwrap());
         keeps_its_contract(&Combined::new(saw).delayed_until(start).unwrap());

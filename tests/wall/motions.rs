@@ -9,6 +9,7 @@ use granular_edmd::wall::laws::check;
 use granular_edmd::wall::{
     AccelerationBounds, BiParabolic, Combined, Fixed, Sinusoidal, WallMotion, WallState, check_finite,
 };
+use support::cases::few;
 
 const AMPLITUDE: f64 = 0.1;
 const FREQUENCY: f64 = 10.0;
@@ -221,7 +222,7 @@ fn a_missing_wall_is_named() {
 #[test]
 fn motions_begin_at_their_start() {
     fn check_one(motion: impl WallMotion + Copy + Send + Sync + 'static) {
-        for start in [0.0, 1e-9, 0.7, -3.0, 628.318_530_7, 12_345.678, 1e9] {
+        for start in few([0.0, 1e-9, 0.7, -3.0, 628.318_530_7, 12_345.678, 1e9], 3) {
             let late = Combined::new(motion).starting_at(start).unwrap();
             check(&late, 0.0, 20.0).unwrap();
             let phase = motion.period().map_or(start, |period| start % period);

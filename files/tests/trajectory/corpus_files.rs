@@ -9,6 +9,7 @@ use granular_edmd_files::{ByEnding, Reader, Recorder, State};
 
 use crate::corpus::shown;
 use crate::scratch::Scratch;
+use support::cases::few;
 use support::report::report;
 
 pub(crate) fn path(name: &str) -> PathBuf {
@@ -247,12 +248,12 @@ fn files_of_version_0_3() {
 #[test]
 fn damaged_gsd_is_read_or_refused() {
     let bytes = fs::read(path("hoomd_plain.gsd")).unwrap();
-    for cut in 0..bytes.len() {
+    for cut in few(0..bytes.len(), 5) {
         let error = Reader::new().read_from(&bytes[..cut]).unwrap_err();
         assert!(!report(&error).is_empty(), "{cut}");
     }
-    for place in 0..bytes.len() {
-        for byte in [0, 1, 0xff] {
+    for place in few(0..bytes.len(), 5) {
+        for byte in [1, 0xff] {
             let mut changed = bytes.clone();
             changed[place] ^= byte;
             let _ = Reader::new().read_from(changed.as_slice());

@@ -3,6 +3,7 @@
 use granular_edmd::ParameterError;
 use granular_edmd::glam::DVec2;
 use granular_edmd_study::analysis::StateCriteria;
+use support::cases::few;
 
 use crate::parts::clusters::{Cluster, Clusters, distinct_clusters, k_means};
 use crate::{NOISE, Outcome, Random, figure_4};
@@ -14,7 +15,7 @@ fn fit(clusters: usize, seed: u64, points: &[DVec2]) -> Result<Clusters, Paramet
 
 #[test]
 fn one_cloud_of_any_width_is_one_cluster() -> Outcome {
-    for seed in 0..4 {
+    for seed in few(0..4, 3) {
         for spread in [0.1, 1.0, 2.5, 10.0] {
             let cloud = Random::new(seed).cloud((0.0, 0.0), spread * NOISE, 500);
             assert_eq!(distinct_clusters(&cloud, NOISE, seed)?.len(), 1, "seed {seed} spread {spread}");

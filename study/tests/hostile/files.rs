@@ -67,7 +67,7 @@ fn plans_that_cannot_be_read_are_errors() {
 }
 
 proptest! {
-    #![proptest_config(config(2000))]
+    #![proptest_config(config(1000))]
 
     #[test]
     fn any_plan_is_read_or_refused(edits in prop::collection::vec(edit(), 1..6)) {

@@ -138,7 +138,7 @@ impl Experiment for Slow {
 /// A stop cuts sampling intervals in pieces, of which neither the bytes nor the observer tell.
 #[test]
 fn a_stop_within_a_sampling_interval_changes_nothing() {
-    let plan = Plan::new(Slow { cycle: 5000.0 }, Protocol::new(1, 2, 1).unwrap(), 1).unwrap();
+    let plan = Plan::new(Slow { cycle: 2000.0 }, Protocol::new(1, 2, 1).unwrap(), 1).unwrap();
     let (whole, cut) = (Scratch::new("slices-not"), Scratch::new("slices"));
     let study = Study::create(&whole.0, &plan).unwrap();
     assert!(study.run(&Control::default()).unwrap().is_complete());

@@ -11,6 +11,8 @@ use granular_edmd::simulation::{BoxedBoundary, BoxedRule, Inlet, Limits, Rescali
 use granular_edmd::wall::{Piston, Sinusoidal};
 use granular_edmd::{Disk, Gravity, Kind, Simulation, initial};
 
+use oracles::free_area;
+
 use super::log::{Log, State};
 use support::report::report;
 
@@ -81,19 +83,9 @@ impl Setting {
         states.iter().map(|state| self.free_area(region, state)).sum::<f64>() / states.len() as f64
     }
 
-    /// Returns the free area of a rectangle in a state, by many points. Each row is shifted, since rows that
-    /// are alike would count too many or too few points along a slanted wall.
+    /// Returns the free area of a rectangle in a state, by many points.
     pub(super) fn free_area(&self, region: &Region, state: &State) -> f64 {
-        const LINES: u32 = 450;
-        let at = |k: u32, shift: f64| (f64::from(k) + shift) / f64::from(LINES);
-        let size = region.max - region.min;
-        let is_free = |row: u32, column: u32| {
-            let share = DVec2::new(at(column, (0.618_034 * f64::from(row)).fract()), at(row, 0.5));
-            (self.is_free)(region.min + size * share, state)
-        };
-        let free =
-            (0..LINES).map(|row| (0..LINES).filter(|&column| is_free(row, column)).count()).sum::<usize>();
-        size.x * size.y * free as f64 / f64::from(LINES * LINES)
+        free_area(region, &|place| (self.is_free)(place, state))
     }
 }
 
@@ -106,7 +98,8 @@ pub(super) fn rectangle(left: f64, bottom: f64, right: f64, top: f64) -> Region 
 }
 
 fn rectangle_has(region: &Region, place: DVec2) -> bool {
-    place.cmpge(region.min).all() && place.cmple(region.max).all()
+    let Region { min, max, .. } = region;
+    place.x >= min.x && place.x <= max.x && place.y >= min.y && place.y <= max.y
 }
 
 fn rough() -> Result<ContactDuration<Frictional>, Failure> {
