@@ -3,16 +3,12 @@
 //! [`check`] sends disks on random flights between the walls. It takes the gap between a disk and the nearest
 //! wall from [`overlap`](Boundary::overlap), and compares all other results with this gap: a touch is its
 //! first root along the flight, the normal its gradient, and the free area the area in which it is positive.
-//! [`check_fingerprints`] compares two boundaries.
 
 mod area;
 mod flight;
-mod pair;
 mod reaction;
 mod surface;
 mod trial;
-
-pub use pair::check_fingerprints;
 
 use area::check_areas;
 use flight::check_flights;
