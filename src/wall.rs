@@ -219,11 +219,10 @@ pub trait WallMotion {
         None
     }
 
-    /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`].
-    ///
-    /// The default examines the first period, or the first thousand pieces if these end earlier.
+    /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`]; by default, it does
+    /// not.
     fn jumps(&self) -> bool {
-        motion::seen_to_jump(self)
+        false
     }
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.

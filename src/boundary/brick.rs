@@ -17,7 +17,7 @@ use super::Region;
 use super::area::Curve;
 use crate::Fingerprint;
 
-/// Length by which bricks reach beyond their ends, relative to their coordinates and sizes. Without it,
+/// Rounding of lengths, relative to coordinates and sizes. Bricks reach beyond their ends by it: otherwise,
 /// rounding could leave a hole between two bricks that meet.
 const MARGIN: f64 = 1e-12;
 
@@ -108,10 +108,25 @@ struct Sight {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
     pub(super) distance: f64,
+    /// The distance, negative behind the brick.
+    pub(super) signed_distance: f64,
     pub(super) normal: DVec2,
-    /// True if the given point is on a free side.
-    pub(super) is_free: bool,
-    pub(super) weight: f64,
+    weight: f64,
+    /// Largest difference between two distances for which two bricks count as equally far away.
+    rounding: f64,
+}
+
+impl Nearest {
+    /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
+    /// equally near and seen less edge-on.
+    ///
+    /// Two bricks that meet at the nearest point are equally far away up to rounding. The brick that is seen
+    /// more broadside then decides: the brick whose straight extension is farther from the position.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        let nearer = other.distance - self.distance;
+        let is_tie = nearer.abs() <= other.rounding;
+        if is_tie { self.weight > other.weight } else { nearer > 0.0 }
+    }
 }
 
 /// Geometry.
@@ -215,7 +230,9 @@ impl Brick {
             Shape::Segment(segment) => segment.sight(place),
             Shape::Arc(arc) => arc.sight(place),
         };
-        Nearest { distance, normal, is_free: self.free.has(side), weight }
+        let signed_distance = if self.free.has(side) { distance } else { -distance };
+        let rounding = MARGIN * (distance + place.length());
+        Nearest { distance, signed_distance, normal, weight, rounding }
     }
 
     /// Returns whether a point of the brick may be within `reach` of a region.

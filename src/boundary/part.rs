@@ -9,7 +9,7 @@ pub(super) use travel::{Phase, Pose, Travel, Turning};
 
 use glam::DVec2;
 
-use super::brick::{Brick, Nearest};
+use super::brick::Brick;
 use super::surface::Conduct;
 use super::{Region, Surface, Thermal, WallError};
 use crate::collision::CollisionRule;
@@ -253,9 +253,9 @@ impl Part {
 
     /// Returns the number of the nearest brick and the distance from it, negative behind the brick.
     pub(super) fn nearest(&self, place: DVec2) -> Option<(usize, f64)> {
-        let sights = self.all_bricks().map(|brick| Sighted::new(brick, place)).enumerate();
-        let nearest = sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
-        nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
+        let all = self.all_bricks().map(|brick| brick.nearest(place)).enumerate();
+        let nearest = all.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
+        nearest.map(|(brick, nearest)| (brick, nearest.signed_distance))
     }
 
     /// Returns the surface of the part with this normal and radius, where the part moves at this velocity.
@@ -280,42 +280,6 @@ impl Part {
             .flatten()
             .fold(part, |part, kind| part.text("only for").number(kind.number().into()));
         Some(self.all_bricks().fold(kinds, |part, brick| part.part(brick.fingerprint())))
-    }
-}
-
-/// A brick as seen from a position.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sighted {
-    nearest: Nearest,
-    /// Largest difference between two distances for which two bricks count as equally far away.
-    rounding: f64,
-}
-
-impl Sighted {
-    pub(super) fn new(brick: &Brick, place: DVec2) -> Self {
-        const ROUNDING: f64 = 1e-12;
-        let nearest = brick.nearest(place);
-        Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
-    }
-
-    /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
-    /// equally near and seen less edge-on.
-    ///
-    /// Two bricks that meet at the nearest point are equally far away up to rounding. The brick that is seen
-    /// more broadside then decides: the brick whose straight extension is farther from the position.
-    pub(super) fn is_better_than(&self, other: &Self) -> bool {
-        let nearer = other.nearest.distance - self.nearest.distance;
-        let is_tie = nearer.abs() <= other.rounding;
-        if is_tie { self.nearest.weight > other.nearest.weight } else { nearer > 0.0 }
-    }
-
-    pub(super) fn distance(&self) -> f64 {
-        self.nearest.distance
-    }
-
-    /// Returns the distance from the brick, negative behind it.
-    pub(super) fn signed_distance(&self) -> f64 {
-        if self.nearest.is_free { self.nearest.distance } else { -self.nearest.distance }
     }
 }
 

@@ -56,24 +56,24 @@ impl Boundary for Container {
     }
 
     fn state(&self) -> Vec<f64> {
+        let parts = self.placed().iter().filter_map(|placed| placed.part.travel().piston());
         let own = self.planes.iter().filter_map(|plane| plane.motion.stroke());
-        own.chain(self.parts.iter().flat_map(|parts| parts.pistons())).flat_map(Stroke::numbers).collect()
+        own.chain(parts).flat_map(Stroke::numbers).collect()
     }
 
     fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
         let (numbers, rest) = state.as_chunks::<3>();
-        let pistons = self.planes.iter_mut().filter(|plane| plane.motion.stroke().is_some());
-        let pistons: Vec<_> = pistons.collect();
-        let of_parts = self.parts.iter().flat_map(|parts| parts.pistons()).count();
-        let is_whole = rest.is_empty() && numbers.len() == pistons.len() + of_parts;
+        let parts = self.parts.iter_mut().flat_map(|parts| parts.motions());
+        let motions = self.planes.iter_mut().map(|plane| &mut plane.motion).chain(parts);
+        let pistons: Vec<_> = motions.filter(|motion| motion.stroke().is_some()).collect();
+        let is_whole = rest.is_empty() && numbers.len() == pistons.len();
         accept(is_whole, "state of the walls", "three numbers for each piston", state.len() as f64)?;
-        let (own, of_parts) = numbers.split_at(pistons.len());
-        for (plane, &numbers) in pistons.into_iter().zip(own) {
-            if let Some(stroke) = plane.motion.stroke() {
-                plane.motion = Motion::of(stroke.with_numbers(numbers)?);
+        for (motion, &numbers) in pistons.into_iter().zip(numbers) {
+            if let Some(stroke) = motion.stroke() {
+                *motion = Motion::of(stroke.with_numbers(numbers)?);
             }
         }
-        self.parts.as_mut().map_or(Ok(()), |parts| parts.set_pistons(of_parts))
+        Ok(())
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {

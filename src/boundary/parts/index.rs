@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::PlacedBrick;
+use super::{Placed, PlacedBrick};
 use crate::boundary::{Domain, Region};
 
 /// Number of cells for each brick. A brick is then alone in most of its cells.
@@ -37,26 +37,11 @@ pub(super) struct Entry {
 }
 
 impl Index {
-    /// The index without bricks.
-    pub(super) const EMPTY: Self = Self {
-        corner: DVec2::ZERO,
-        density: DVec2::ONE,
-        columns: 1,
-        rows: 1,
-        starts: Vec::new(),
-        entries: Vec::new(),
-    };
-
-    /// Enters walls into the cells of a grid. The rectangle that `bounds` returns holds a wall at all times,
-    /// and `is_near` decides whether the wall may come into a cell's region.
-    pub(super) fn new(
-        domain: &Domain,
-        bricks: &[PlacedBrick],
-        bounds: impl Fn(&PlacedBrick) -> Region,
-        is_near: impl Fn(&PlacedBrick, &Region) -> bool,
-    ) -> Self {
+    /// Enters bricks into the cells of a grid into which they may come at some time.
+    pub(super) fn new(domain: &Domain, bricks: &[PlacedBrick], placed: &[Placed]) -> Self {
+        let travel = |of: &PlacedBrick| placed[of.part].part.travel();
         let images: Vec<(u32, DVec2, Region)> = (0..)
-            .zip(bricks.iter().map(bounds))
+            .zip(bricks.iter().map(|of| travel(of).bounds(&of.brick)))
             .flat_map(|(wall, bounds)| {
                 domain.images_of(&bounds).map(move |image| (wall, image, bounds.shifted(image)))
             })
@@ -71,8 +56,9 @@ impl Index {
         let mut index = Self { corner: min, density, columns, rows, starts: vec![0], entries: Vec::new() };
         let mut cells = vec![Vec::new(); columns * rows];
         for (wall, image, bounds) in images {
+            let of = &bricks[wall as usize];
             for cell in index.cells(&bounds) {
-                if is_near(&bricks[wall as usize], &index.region(cell).shifted(-image)) {
+                if travel(of).may_reach(&of.brick, &index.region(cell).shifted(-image), 0.0) {
                     cells[cell].push(Entry { wall, image });
                 }
             }

@@ -1,7 +1,5 @@
 //! Overlaps with the parts of a container, and the area that the parts leave free.
 //!
-//! Overlaps with the parts of a container.
-//!
 //! The nearest brick of a part decides whether a position is behind the part. If the disk reaches a brick of
 //! the part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away,
 //! a table decides: it lists, for each cell of the index, the parts that fill the cell.
@@ -11,7 +9,7 @@ use glam::DVec2;
 use super::index::{Entry, Index};
 use super::{Parts, Placed};
 use crate::boundary::area::{Curve, Field, meet};
-use crate::boundary::part::Sighted;
+use crate::boundary::brick::Nearest;
 use crate::boundary::{Overlap, Probe, Region};
 
 impl Parts {
@@ -30,8 +28,8 @@ impl Parts {
             // If the disk does not reach the nearest brick of these cells, a nearer brick may lie in other
             // cells.
             match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
-                Some((wall, sighted)) if sighted.distance() <= radius => {
-                    Some(Overlap::new(wall, radius - sighted.signed_distance()))
+                Some((wall, nearest)) if nearest.distance <= radius => {
+                    Some(Overlap::new(wall, radius - nearest.signed_distance))
                 }
                 _ => self.depth(entries[0].0, position, radius, time),
             }
@@ -50,13 +48,12 @@ impl Parts {
     }
 
     /// Returns the nearest of these bricks at rest, with the index of its wall.
-    fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
-        let sights = entries.map(|entry| {
+    fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Nearest)> {
+        let all = entries.map(|entry| {
             let wall = entry.wall as usize;
-            let sighted = Sighted::new(&self.bricks[wall].brick, position - entry.image);
-            (wall + self.first, sighted)
+            (wall + self.first, self.bricks[wall].brick.nearest(position - entry.image))
         });
-        sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a })
+        all.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a })
     }
 
     /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
