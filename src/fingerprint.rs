@@ -9,8 +9,8 @@ use std::fmt;
 /// depend. A part without a name and numbers, such as a closure, has no fingerprint, and two such parts
 /// cannot be distinguished. Parts with different results must have different fingerprints, and parts made
 /// alike must have equal ones; for rules, [`collision::laws::check_fingerprints`] compares the fingerprints
-/// with the impulses. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every
-/// platform.
+/// with the impulses. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on
+/// every platform.
 ///
 /// [`collision::laws::check_fingerprints`]: crate::collision::laws::check_fingerprints
 ///

@@ -157,8 +157,8 @@ impl AccelerationBounds {
 /// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and motions of one type made from
 ///    equal numbers have equal fingerprints.
 ///
-/// [`laws::check`] tests the first six between two phases. A container calls the methods in any order and from
-/// any thread.
+/// [`laws::check`] tests the first six between two phases. A container calls the methods in any order and
+/// from any thread.
 ///
 /// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number

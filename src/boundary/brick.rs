@@ -1,5 +1,15 @@
 //! Bricks: the shapes of which parts are built, and the first touch of a disk with a brick.
 
+/// Evaluates an expression for the shape of a brick, a segment or an arc.
+macro_rules! of_shape {
+    ($brick:expr, $shape:ident => $value:expr) => {
+        match $brick.shape {
+            Shape::Segment($shape) => $value,
+            Shape::Arc($shape) => $value,
+        }
+    };
+}
+
 mod constructors;
 mod first_touch;
 mod path;
@@ -202,12 +212,10 @@ impl Brick {
     /// the start, or the center and the radius of a circle. A circle that turns about its center stays where
     /// it is.
     pub(super) fn anchor(&self) -> (DVec2, DVec2) {
+        let whole = |arc: Arc| (arc.center, arc.radius * ASLANT);
         match self.shape {
             Shape::Segment(segment) => (segment.from, DVec2::ZERO),
-            Shape::Arc(arc) => match arc.ends() {
-                Some([(start, _), _]) => (start, DVec2::ZERO),
-                None => (arc.center, arc.radius * ASLANT),
-            },
+            Shape::Arc(arc) => arc.ends().map_or(whole(arc), |[(start, _), _]| (start, DVec2::ZERO)),
         }
     }
 
@@ -226,10 +234,7 @@ impl Brick {
     }
 
     pub(super) fn nearest(&self, place: DVec2) -> Nearest {
-        let Sight { distance, normal, side, weight } = match self.shape {
-            Shape::Segment(segment) => segment.sight(place),
-            Shape::Arc(arc) => arc.sight(place),
-        };
+        let Sight { distance, normal, side, weight } = of_shape!(self, shape => shape.sight(place));
         let signed_distance = if self.free.has(side) { distance } else { -distance };
         let rounding = MARGIN * (distance + place.length());
         Nearest { distance, signed_distance, normal, weight, rounding }
@@ -237,26 +242,17 @@ impl Brick {
 
     /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
-        match self.shape {
-            Shape::Segment(segment) => segment.is_near(region, reach),
-            Shape::Arc(arc) => arc.is_near(region, reach),
-        }
+        of_shape!(self, shape => shape.is_near(region, reach))
     }
 
     /// Returns a rectangle around the brick.
     pub(super) fn bounds(&self) -> Region {
-        match self.shape {
-            Shape::Segment(segment) => segment.bounds(),
-            Shape::Arc(arc) => arc.bounds(),
-        }
+        of_shape!(self, shape => shape.bounds())
     }
 
     /// Returns a lower and an upper bound on the distances of the brick's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
-        match self.shape {
-            Shape::Segment(segment) => segment.distances(place),
-            Shape::Arc(arc) => arc.distances(place),
-        }
+        of_shape!(self, shape => shape.distances(place))
     }
 
     pub(super) fn fingerprint(&self) -> Fingerprint {

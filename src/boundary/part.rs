@@ -54,9 +54,8 @@ pub struct Part {
     surface_speed: f64,
     /// Absolute time at which the motion has phase 0.
     start: f64,
-    /// The kinds of the disks that the part stops, in order, unless it stops all. Files have an empty list
-    /// for all.
-    #[cfg_attr(feature = "serde", serde(rename = "only_for", serialize_with = "list"))]
+    /// The kinds of the disks that the part stops, in order, unless it stops all.
+    #[cfg_attr(feature = "serde", serde(rename = "only_for"))]
     kinds: Option<Vec<Kind>>,
 }
 
@@ -241,11 +240,6 @@ impl Part {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
 
-    /// Returns a rectangle around the part in its original position.
-    pub(super) fn bounds(&self) -> Region {
-        Region::enclosing(self.all_bricks().map(Brick::bounds))
-    }
-
     /// Returns a rectangle that holds the part at all times.
     pub(super) fn swept_bounds(&self) -> Region {
         Region::enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
@@ -280,14 +274,5 @@ impl Part {
             .flatten()
             .fold(part, |part, kind| part.text("only for").number(kind.number().into()));
         Some(self.all_bricks().fold(kinds, |part, brick| part.part(brick.fingerprint())))
-    }
-}
-
-#[cfg(feature = "serde")]
-#[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
-fn list<S: serde::Serializer>(kinds: &Option<Vec<Kind>>, serializer: S) -> Result<S::Ok, S::Error> {
-    match kinds.as_deref() {
-        Some([]) => Err(serde::ser::Error::custom("a part that is only for no kinds cannot be written")),
-        kinds => serde::Serialize::serialize(kinds.unwrap_or_default(), serializer),
     }
 }

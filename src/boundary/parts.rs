@@ -23,7 +23,7 @@ pub(super) struct Parts {
     /// The container's domain, and the number of its own walls.
     domain: Domain,
     first: usize,
-    placed: Vec<Placed>,
+    pub(super) placed: Vec<Placed>,
     bricks: Vec<PlacedBrick>,
     index: Index,
     /// The parts that move and that disks may not overlap.
@@ -97,14 +97,6 @@ impl Parts {
         Some(Box::new(parts))
     }
 
-    pub(super) fn placed(&self) -> &[Placed] {
-        &self.placed
-    }
-
-    pub(super) fn into_placed(self) -> Vec<Placed> {
-        self.placed
-    }
-
     pub(super) fn wall_count(&self) -> usize {
         self.bricks.len()
     }
@@ -116,23 +108,25 @@ impl Parts {
         }
     }
 
-    /// Returns the part to which a wall belongs and its brick, if there is such a wall.
-    fn owner(&self, wall: usize) -> Option<(&Placed, &Brick)> {
-        let PlacedBrick { part, brick } = self.bricks.get(wall.checked_sub(self.first)?)?;
-        Some((&self.placed[*part], brick))
+    /// Returns the part of a brick, and the brick of this number among all.
+    fn owner(&self, number: usize) -> (&Placed, &Brick) {
+        let PlacedBrick { part, brick } = &self.bricks[number];
+        (&self.placed[*part], brick)
     }
 
-    /// Returns the view of a wall, if there is such a wall.
-    pub(super) fn view(&self, wall: usize, time: f64) -> Option<WallView<'_>> {
-        let (placed, brick) = self.owner(wall)?;
+    /// Returns the view of a wall.
+    pub(super) fn view(&self, wall: usize, time: f64) -> WallView<'_> {
+        let (placed, brick) = self.owner(wall - self.first);
         let (part, phase) = (&placed.part, placed.phase.after(time));
         let (count, number, pose) = (part.bricks().len(), wall - placed.first, part.travel().pose(phase));
         let (anchor, aside) = brick.anchor();
         let mut view = WallView::new(placed.name.as_str()).with_point(pose.outward(anchor) + aside);
         if number < count {
-            view = view.with_brick((count > 1).then_some(number), *brick, pose);
-        } else {
-            view = view.with_corner((count > 1).then_some(number - count));
+            view = view.with_brick(*brick, pose);
+        }
+        if count > 1 {
+            view =
+                view.with_number(if number < count { ("brick", number) } else { ("corner", number - count) });
         }
         // The bricks of a part move together.
         if let Some((displacement, phase)) = part.travel().moved(phase).filter(|_| number == 0) {
@@ -141,7 +135,7 @@ impl Parts {
         if let Some(piston) = part.travel().piston() {
             view = view.with_energy(piston.energy(time));
         }
-        Some(view)
+        view
     }
 
     pub(super) fn tight_fit(&self, radius: f64) -> Option<usize> {
@@ -158,7 +152,7 @@ impl Parts {
 
     /// Returns whether a disk with its center in a region may touch the part of a wall up to this time.
     pub(super) fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        let placed = &self.placed[self.bricks[wall - self.first].part];
+        let (placed, _) = self.owner(wall - self.first);
         let travel = placed.part.travel();
         let Some(piston) = travel.piston() else { return self.may_touch(region, radius) };
         let (reach, range) = (1.001 * radius, piston.range_until(until));

@@ -129,8 +129,8 @@ impl Plane {
     /// Changes the motion of the wall by this impulse. Returns whether the wall has a mass, so that its
     /// motion has changed.
     pub(super) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
-        let (along, phase) = (impulse.dot(self.normal), time + self.phase);
-        self.motion.change(|piston| piston.struck(along, phase))
+        let (normal, phase) = (self.normal, self.phase);
+        self.motion.change(|piston| piston.struck(impulse.dot(normal), time + phase))
     }
 
     /// Returns whether a disk with its center in `region` may touch the wall up to this time, unless another

@@ -74,7 +74,7 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     let (low, high) = check_constants(motion)?;
     check_finite(motion)?;
     row_of_pieces(motion, from)?;
-    let mut check = Check { motion, low, high, jumps: motion.jumps(), answers: Vec::new() };
+    let check = Check { motion, low, high, jumps: motion.jumps() };
     let mut phase = from;
     for _ in 0..MOST_PIECES {
         let until = check.piece(phase, to)?;
@@ -94,8 +94,6 @@ struct Check<'a, M: ?Sized> {
     low: f64,
     high: f64,
     jumps: bool,
-    /// The samples of the present piece.
-    answers: Vec<Sample>,
 }
 
 /// A phase, and the state at it.
@@ -107,12 +105,12 @@ struct Sample {
 
 impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks the piece that begins here, up to `to` at most, and returns its end.
-    fn piece(&mut self, start: f64, to: f64) -> Result<f64, Violation> {
+    fn piece(&self, start: f64, to: f64) -> Result<f64, Violation> {
         let whole = finite_bounds(self.motion, start)?;
         let length = whole.until.min(to) - start;
         let mut last = self.sample(start)?;
         let mut jumps = 0;
-        self.answers = vec![last];
+        let mut answers = vec![last];
         for k in 1..=SAMPLES {
             let share = if k == SAMPLES { 1.0 - LAST } else { f64::from(k) / f64::from(SAMPLES) };
             let next = self.sample(start + share * length)?;
@@ -130,11 +128,11 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 "between the phases {from:?} and {to:?} its displacement is not the integral of its \
                  velocity");
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
-            self.answers.push(next);
+            answers.push(next);
             last = next;
         }
         self.strength(start, length, &whole)?;
-        for sample in self.answers.iter().rev() {
+        for sample in answers.iter().rev() {
             let again = self.sample(sample.phase)?;
             require!(PART, "repeatable", again == *sample; "{sample:?} is {again:?} when asked for again");
         }

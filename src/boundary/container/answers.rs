@@ -25,9 +25,11 @@ impl Boundary for Container {
     }
 
     fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
-        let own = self.planes.get(wall).map(|plane| plane.view(time));
-        let view = own.or_else(|| self.parts.as_ref()?.view(wall, time));
-        view.unwrap_or_else(|| WallView::new(format!("wall {wall}")))
+        match (self.planes.get(wall), &self.parts) {
+            (Some(plane), _) => plane.view(time),
+            (None, Some(parts)) if wall < self.wall_count() => parts.view(wall, time),
+            _ => WallView::new(format!("wall {wall}")),
+        }
     }
 
     fn set_time_origin(&mut self, origin: f64) {
@@ -143,13 +145,9 @@ impl Container {
     pub(in crate::boundary) fn room(&self, radius: f64, time: f64) -> Region {
         let mut room = Region::new(self.corner, self.corner + DVec2::new(self.width, self.height));
         for plane in &self.planes {
-            let place = plane.place(time);
-            match plane.wall {
-                Wall::Left => room.min.x = place.x + radius,
-                Wall::Right => room.max.x = place.x - radius,
-                Wall::Floor => room.min.y = place.y + radius,
-                Wall::Lid => room.max.y = place.y - radius,
-            }
+            let edge = plane.place(time) + radius * plane.normal;
+            room.min = DVec2::select(plane.normal.cmpgt(DVec2::ZERO), edge, room.min);
+            room.max = DVec2::select(plane.normal.cmplt(DVec2::ZERO), edge, room.max);
         }
         room
     }
@@ -159,17 +157,10 @@ impl Container {
     pub(super) fn rectangle(&self, inward: impl Fn(&Plane) -> f64) -> Domain {
         let way = |wall| self.index(wall).map_or(0.0, |index| inward(&self.planes[index]));
         let DVec2 { x, y } = self.corner;
-        self.with_sides(Domain::new(
-            x + way(Wall::Left),
-            x + self.width - way(Wall::Right),
-            y + way(Wall::Floor),
-            y + self.height - way(Wall::Lid),
-        ))
-    }
-
-    /// Makes a rectangle periodic where the container has no walls.
-    fn with_sides(&self, domain: Domain) -> Domain {
-        let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };
-        if self.index(Wall::Floor).is_none() { domain.with_periodic_ends() } else { domain }
+        let (left, right) = (x + way(Wall::Left), x + self.width - way(Wall::Right));
+        let mut domain = Domain::new(left, right, y + way(Wall::Floor), y + self.height - way(Wall::Lid));
+        domain.periodic_sides = self.index(Wall::Left).is_none();
+        domain.periodic_ends = self.index(Wall::Floor).is_none();
+        domain
     }
 }

@@ -218,8 +218,7 @@ impl Travel {
     /// Returns a flight in the frame of the part, from a time on and for at most `longest`. `phase` is the
     /// phase at time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
-        let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
-        let path = Path::exact(place, velocity, pull, flight.radius());
+        let path = Path::of(flight, time);
         let look = match &self.along {
             Some(along) => along.look(&path, phase.along, time),
             None => Look { path, until: f64::INFINITY },

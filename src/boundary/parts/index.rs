@@ -128,14 +128,10 @@ impl Index {
     /// Returns the rectangle of a cell, slightly enlarged, so that rounding leaves no gap between two cells.
     fn region(&self, cell: usize) -> Region {
         const ROUNDING: f64 = 1e-6;
-        let (column, row) = (cell % self.columns, cell / self.columns);
-        let edge = |number: usize, count: usize, more: f64| match number {
-            0 if more < 0.0 => f64::NEG_INFINITY,
-            last if last == count && more > 0.0 => f64::INFINITY,
-            number => number as f64 + more,
-        };
-        let low = DVec2::new(edge(column, self.columns, -ROUNDING), edge(row, self.rows, -ROUNDING));
-        let high = DVec2::new(edge(column + 1, self.columns, ROUNDING), edge(row + 1, self.rows, ROUNDING));
+        let place = DVec2::new((cell % self.columns) as f64, (cell / self.columns) as f64);
+        let last = DVec2::new(self.columns as f64, self.rows as f64) - 1.0;
+        let low = DVec2::select(place.cmpeq(DVec2::ZERO), DVec2::NEG_INFINITY, place - ROUNDING);
+        let high = DVec2::select(place.cmpeq(last), DVec2::INFINITY, place + 1.0 + ROUNDING);
         Region::new(self.corner + low / self.density, self.corner + high / self.density)
     }
 }
