@@ -157,9 +157,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 /// - It calls `surface` for a touch that `first_touch` found, with the disk's position at that time.
 ///
 /// # Boundaries that break the contract
-/// [`laws::check`] tests promises 1 to 12, except for the points of walls, and
-/// [`laws::check_fingerprints`] tests 13; `docs/validation.md` says which planted faults they find. The
-/// engine notices many faults, too.
+/// [`laws::check`] tests promises 1 to 12, except for the points of walls; `docs/validation.md` says which
+/// planted faults it finds. The engine notices many faults, too.
 ///
 /// At each collision with a wall, a disk enlarged by 1e-9 of its radius must overlap a wall, by no more than
 /// 1e-6 of its radius. Three things therefore end a run with an error: an early or late touch, a disk that

@@ -1,21 +1,18 @@
 //! Fingerprints: the identity of a rule, a wall motion or a boundary, as a number that a checkpoint keeps.
 
-use std::any::type_name;
 use std::fmt;
-
-use crate::Violation;
-use crate::error::require;
 
 /// Identity of a part of a simulation: equal for parts made alike, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
 /// others. A custom part makes its fingerprint from its name and from all numbers on which its results
 /// depend. A part without a name and numbers, such as a closure, has no fingerprint, and two such parts
-/// cannot be distinguished. The checks of fingerprints, such as
-/// [`collision::laws::check_fingerprints`](crate::collision::laws::check_fingerprints), compare the
-/// fingerprints of two parts with their results: parts with different results must have different
-/// fingerprints, and parts of one type with the same result in every probe must have equal fingerprints. The
-/// hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
+/// cannot be distinguished. Parts with different results must have different fingerprints, and parts made
+/// alike must have equal ones; for rules, [`collision::laws::check_fingerprints`] compares the fingerprints
+/// with the impulses. The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on
+/// every platform.
+///
+/// [`collision::laws::check_fingerprints`]: crate::collision::laws::check_fingerprints
 ///
 /// ```
 /// use granular_edmd::Fingerprint;
@@ -73,22 +70,4 @@ impl fmt::Display for Fingerprint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:016x}", self.0)
     }
-}
-
-/// Checks that two parts have different fingerprints if any of their results differ, and the same fingerprint
-/// otherwise, if they are of one type.
-pub(crate) fn check_pair<A: ?Sized, B: ?Sized>(
-    part: &'static str,
-    fingerprints: [Option<Fingerprint>; 2],
-    difference: Option<String>,
-) -> Result<(), Violation> {
-    let [Some(one), Some(other)] = fingerprints else { return Ok(()) };
-    if let Some(difference) = difference {
-        require!(part, "fingerprint", one != other;
-            "two parts have the fingerprint {one}, but differ {difference}");
-    } else if type_name::<A>() == type_name::<B>() {
-        require!(part, "fingerprint", one == other;
-            "parts of one type that are alike in every probe have the fingerprints {one} and {other}");
-    }
-    Ok(())
 }

@@ -157,8 +157,8 @@ impl AccelerationBounds {
 /// 7. Motions with equal [fingerprints](Self::fingerprint) move alike, and motions of one type made from
 ///    equal numbers have equal fingerprints.
 ///
-/// [`laws::check`] tests the first six between two phases, and [`laws::check_fingerprints`] the last. A
-/// container calls the methods in any order and from any thread.
+/// [`laws::check`] tests the first six between two phases. A container calls the methods in any order and
+/// from any thread.
 ///
 /// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
@@ -219,11 +219,10 @@ pub trait WallMotion {
         None
     }
 
-    /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`].
-    ///
-    /// The default examines the first period, or the first thousand pieces if these end earlier.
+    /// Returns whether the displacement jumps where a piece ends, as for a [`Sawtooth`]; by default, it does
+    /// not.
     fn jumps(&self) -> bool {
-        motion::seen_to_jump(self)
+        false
     }
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.

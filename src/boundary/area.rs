@@ -53,7 +53,7 @@ impl Curve {
     pub(super) fn bounds(&self) -> Region {
         match *self {
             Self::Line(from, to) => Region::new(from.min(to), from.max(to)),
-            Self::Circle(center, radius) => Region::new(center - radius, center + radius),
+            Self::Circle(center, radius) => Region::around(center, radius),
         }
     }
 
@@ -109,11 +109,6 @@ fn root(square: f64) -> f64 {
     if square.abs() < ROUNDING { 0.0 } else { square.sqrt() }
 }
 
-/// Returns whether two rectangles have a point in common.
-pub(super) fn meet(one: &Region, other: &Region) -> bool {
-    one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
-}
-
 /// A region, with a test of whether a center in it is free.
 pub(super) struct Field<'a> {
     pub(super) region: Region,
@@ -132,7 +127,7 @@ impl Field<'_> {
             return 0.0;
         }
         let region = self.region;
-        self.curves.retain(|curve| meet(&curve.bounds(), &region));
+        self.curves.retain(|curve| curve.bounds().meets(&region));
         if self.curves.is_empty() && self.are_known {
             // A region without an upper end has no middle.
             let middle = region.min + 0.5 * size.min(DVec2::splat(1e300));
@@ -163,7 +158,7 @@ impl Field<'_> {
         for (index, (bounds, curve)) in curves.iter().enumerate() {
             heights.extend([bounds.min.y, bounds.max.y]);
             let later = curves[index + 1..].iter().take_while(|(other, _)| other.min.x <= bounds.max.x);
-            for (_, other) in later.filter(|(other, _)| meet(other, bounds)) {
+            for (_, other) in later.filter(|(other, _)| other.meets(bounds)) {
                 heights.extend(curve.meetings(other).map(|place| place.y));
             }
         }

@@ -1,5 +1,15 @@
 //! Bricks: the shapes of which parts are built, and the first touch of a disk with a brick.
 
+/// Evaluates an expression for the shape of a brick, a segment or an arc.
+macro_rules! of_shape {
+    ($brick:expr, $shape:ident => $value:expr) => {
+        match $brick.shape {
+            Shape::Segment($shape) => $value,
+            Shape::Arc($shape) => $value,
+        }
+    };
+}
+
 mod constructors;
 mod first_touch;
 mod path;
@@ -17,7 +27,7 @@ use super::Region;
 use super::area::Curve;
 use crate::Fingerprint;
 
-/// Length by which bricks reach beyond their ends, relative to their coordinates and sizes. Without it,
+/// Rounding of lengths, relative to coordinates and sizes. Bricks reach beyond their ends by it: otherwise,
 /// rounding could leave a hole between two bricks that meet.
 const MARGIN: f64 = 1e-12;
 
@@ -108,10 +118,25 @@ struct Sight {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
     pub(super) distance: f64,
+    /// The distance, negative behind the brick.
+    pub(super) signed_distance: f64,
     pub(super) normal: DVec2,
-    /// True if the given point is on a free side.
-    pub(super) is_free: bool,
-    pub(super) weight: f64,
+    weight: f64,
+    /// Largest difference between two distances for which two bricks count as equally far away.
+    rounding: f64,
+}
+
+impl Nearest {
+    /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
+    /// equally near and seen less edge-on.
+    ///
+    /// Two bricks that meet at the nearest point are equally far away up to rounding. The brick that is seen
+    /// more broadside then decides: the brick whose straight extension is farther from the position.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        let nearer = other.distance - self.distance;
+        let is_tie = nearer.abs() <= other.rounding;
+        if is_tie { self.weight > other.weight } else { nearer > 0.0 }
+    }
 }
 
 /// Geometry.
@@ -187,12 +212,10 @@ impl Brick {
     /// the start, or the center and the radius of a circle. A circle that turns about its center stays where
     /// it is.
     pub(super) fn anchor(&self) -> (DVec2, DVec2) {
+        let whole = |arc: Arc| (arc.center, arc.radius * ASLANT);
         match self.shape {
             Shape::Segment(segment) => (segment.from, DVec2::ZERO),
-            Shape::Arc(arc) => match arc.ends() {
-                Some([(start, _), _]) => (start, DVec2::ZERO),
-                None => (arc.center, arc.radius * ASLANT),
-            },
+            Shape::Arc(arc) => arc.ends().map_or(whole(arc), |[(start, _), _]| (start, DVec2::ZERO)),
         }
     }
 
@@ -211,35 +234,25 @@ impl Brick {
     }
 
     pub(super) fn nearest(&self, place: DVec2) -> Nearest {
-        let Sight { distance, normal, side, weight } = match self.shape {
-            Shape::Segment(segment) => segment.sight(place),
-            Shape::Arc(arc) => arc.sight(place),
-        };
-        Nearest { distance, normal, is_free: self.free.has(side), weight }
+        let Sight { distance, normal, side, weight } = of_shape!(self, shape => shape.sight(place));
+        let signed_distance = if self.free.has(side) { distance } else { -distance };
+        let rounding = MARGIN * (distance + place.length());
+        Nearest { distance, signed_distance, normal, weight, rounding }
     }
 
     /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
-        match self.shape {
-            Shape::Segment(segment) => segment.is_near(region, reach),
-            Shape::Arc(arc) => arc.is_near(region, reach),
-        }
+        of_shape!(self, shape => shape.is_near(region, reach))
     }
 
     /// Returns a rectangle around the brick.
     pub(super) fn bounds(&self) -> Region {
-        match self.shape {
-            Shape::Segment(segment) => segment.bounds(),
-            Shape::Arc(arc) => arc.bounds(),
-        }
+        of_shape!(self, shape => shape.bounds())
     }
 
     /// Returns a lower and an upper bound on the distances of the brick's points from a given point.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
-        match self.shape {
-            Shape::Segment(segment) => segment.distances(place),
-            Shape::Arc(arc) => arc.distances(place),
-        }
+        of_shape!(self, shape => shape.distances(place))
     }
 
     pub(super) fn fingerprint(&self) -> Fingerprint {

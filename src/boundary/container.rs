@@ -164,12 +164,8 @@ impl Container {
     /// If the container has no such wall, the motion of the piston has numbers that are not finite, the wall
     /// already has another motion, or the piston's highest stop is beyond the nearest position of the
     /// opposite wall.
-    pub fn with_piston(mut self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
-        let motion = Motion::new(Stroke::from(piston));
-        let motion = motion.map_err(|violation| WallError::Motion { violation })?;
-        self.plane_mut(wall)?.set_motion(motion)?;
-        self.check_stops()?;
-        self.changed()
+    pub fn with_piston(self, wall: Wall, piston: Piston) -> Result<Self, WallError> {
+        self.with_motion(wall, Stroke::from(piston))
     }
 
     /// Returns the same container with a wall at which disks collide by this rule instead of their own.

@@ -52,7 +52,7 @@ pub(super) fn finite_point(place: DVec2) -> Result<DVec2, ParameterError> {
 /// assert_eq!(domain.to_string(), "x from 0 to 60 (periodic), y from -0.1 to inf");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Domain {
     /// Left edge.
@@ -62,7 +62,7 @@ pub struct Domain {
     /// Lower edge.
     pub bottom: f64,
     /// Upper edge; infinite without a lid.
-    #[cfg_attr(feature = "serde", serde(with = "open_top", default = "open_top::open"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::gate::if_finite"))]
     pub top: f64,
     /// True if a disk that leaves on one side enters on the other.
     pub periodic_sides: bool,
@@ -140,27 +140,17 @@ impl Domain {
 
     /// Returns the shortest vector from `from` to `to`, across periodic sides where that is shorter.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
-        let mut separation = to - from;
-        if self.periodic_sides {
-            separation.x -= self.width() * (separation.x / self.width()).round();
-        }
-        if self.periodic_ends {
-            separation.y -= self.height() * (separation.y / self.height()).round();
-        }
-        separation
+        let (separation, periods) = (to - from, self.periods());
+        let whole = periods * (separation / periods).round();
+        separation - DVec2::select(periods.cmpgt(DVec2::ZERO), whole, DVec2::ZERO)
     }
 
     /// Returns a point moved into the rectangle by whole periods, in the directions in which the rectangle is
     /// periodic.
     pub fn wrapped(&self, place: DVec2) -> DVec2 {
-        let mut place = place;
-        if self.periodic_sides {
-            place.x = self.left + (place.x - self.left).rem_euclid(self.width());
-        }
-        if self.periodic_ends {
-            place.y = self.bottom + (place.y - self.bottom).rem_euclid(self.height());
-        }
-        place
+        let (low, periods) = (DVec2::new(self.left, self.bottom), self.periods());
+        let inside = low + (place - low).rem_euclid(periods);
+        DVec2::select(periods.cmpgt(DVec2::ZERO), inside, place)
     }
 
     /// Returns the position of a center in the domain; on the lower of two periodic edges if it is on the
@@ -213,31 +203,12 @@ impl fmt::Display for Domain {
     }
 }
 
-/// The upper edge as files store it. Some text formats have no infinite numbers, so text files hold `None`
-/// for an open top.
-#[cfg(feature = "serde")]
-mod open_top {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub(super) const fn open() -> f64 {
-        f64::INFINITY
-    }
-
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes fields by reference")]
-    pub(super) fn serialize<S: Serializer>(top: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-        if serializer.is_human_readable() {
-            Some(*top).filter(|top| top.is_finite()).serialize(serializer)
-        } else {
-            top.serialize(serializer)
-        }
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-        if deserializer.is_human_readable() {
-            Ok(Option::deserialize(deserializer)?.unwrap_or_else(open))
-        } else {
-            f64::deserialize(deserializer)
-        }
+crate::gate::from_file! {
+    Domain {
+        left: f64, right: f64, bottom: f64, top: Option<f64>, periodic_sides: bool, periodic_ends: bool
+    } => {
+        let top = top.unwrap_or(f64::INFINITY);
+        Ok(Self { left, right, bottom, top, periodic_sides, periodic_ends })
     }
 }
 
@@ -284,6 +255,11 @@ impl Region {
     /// the rectangle.
     pub(crate) fn contains(&self, place: DVec2) -> bool {
         place.cmpge(self.min).all() && place.cmplt(self.max).all()
+    }
+
+    /// Returns whether the rectangle has a point in common with another.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
     /// Returns the intersection of the rectangle with another, which has no area if the two are disjoint.

@@ -3,16 +3,12 @@
 //! [`check`] sends disks on random flights between the walls. It takes the gap between a disk and the nearest
 //! wall from [`overlap`](Boundary::overlap), and compares all other results with this gap: a touch is its
 //! first root along the flight, the normal its gradient, and the free area the area in which it is positive.
-//! [`check_fingerprints`] compares two boundaries.
 
 mod area;
 mod flight;
-mod pair;
 mod reaction;
 mod surface;
 mod trial;
-
-pub use pair::check_fingerprints;
 
 use area::check_areas;
 use flight::check_flights;
@@ -137,12 +133,9 @@ fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation>
     let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;
     require!(PART, "domain", is_rectangle;
         "the domain {domain} is not a rectangle with a finite bottom and sides");
-    let is_inside = domain.left <= interior.left
-        && interior.right <= domain.right
-        && domain.bottom <= interior.bottom
-        && interior.top <= domain.top
-        && domain.periodic_sides == interior.periodic_sides
-        && domain.periodic_ends == interior.periodic_ends;
+    let Region { min, max } = interior.region();
+    let are_alike = [domain, interior].map(|domain| [domain.periodic_sides, domain.periodic_ends]);
+    let is_inside = domain.contains(min, 0.0) && domain.contains(max, 0.0) && are_alike[0] == are_alike[1];
     require!(PART, "interior", is_inside; "the interior {interior} is not inside the domain {domain}");
     Ok(())
 }

@@ -9,7 +9,7 @@ pub(super) use travel::{Phase, Pose, Travel, Turning};
 
 use glam::DVec2;
 
-use super::brick::{Brick, Nearest};
+use super::brick::Brick;
 use super::surface::Conduct;
 use super::{Region, Surface, Thermal, WallError};
 use crate::collision::CollisionRule;
@@ -54,9 +54,8 @@ pub struct Part {
     surface_speed: f64,
     /// Absolute time at which the motion has phase 0.
     start: f64,
-    /// The kinds of the disks that the part stops, in order, unless it stops all. Files have an empty list
-    /// for all.
-    #[cfg_attr(feature = "serde", serde(rename = "only_for", serialize_with = "list"))]
+    /// The kinds of the disks that the part stops, in order, unless it stops all.
+    #[cfg_attr(feature = "serde", serde(rename = "only_for"))]
     kinds: Option<Vec<Kind>>,
 }
 
@@ -241,11 +240,6 @@ impl Part {
         self.travel.phase(origin).since(self.travel.phase(self.start))
     }
 
-    /// Returns a rectangle around the part in its original position.
-    pub(super) fn bounds(&self) -> Region {
-        Region::enclosing(self.all_bricks().map(Brick::bounds))
-    }
-
     /// Returns a rectangle that holds the part at all times.
     pub(super) fn swept_bounds(&self) -> Region {
         Region::enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
@@ -253,9 +247,9 @@ impl Part {
 
     /// Returns the number of the nearest brick and the distance from it, negative behind the brick.
     pub(super) fn nearest(&self, place: DVec2) -> Option<(usize, f64)> {
-        let sights = self.all_bricks().map(|brick| Sighted::new(brick, place)).enumerate();
-        let nearest = sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
-        nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
+        let all = self.all_bricks().map(|brick| brick.nearest(place)).enumerate();
+        let nearest = all.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
+        nearest.map(|(brick, nearest)| (brick, nearest.signed_distance))
     }
 
     /// Returns the surface of the part with this normal and radius, where the part moves at this velocity.
@@ -280,50 +274,5 @@ impl Part {
             .flatten()
             .fold(part, |part, kind| part.text("only for").number(kind.number().into()));
         Some(self.all_bricks().fold(kinds, |part, brick| part.part(brick.fingerprint())))
-    }
-}
-
-/// A brick as seen from a position.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sighted {
-    nearest: Nearest,
-    /// Largest difference between two distances for which two bricks count as equally far away.
-    rounding: f64,
-}
-
-impl Sighted {
-    pub(super) fn new(brick: &Brick, place: DVec2) -> Self {
-        const ROUNDING: f64 = 1e-12;
-        let nearest = brick.nearest(place);
-        Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
-    }
-
-    /// Returns whether this brick, rather than another, decides on which side a point is: it is nearer, or
-    /// equally near and seen less edge-on.
-    ///
-    /// Two bricks that meet at the nearest point are equally far away up to rounding. The brick that is seen
-    /// more broadside then decides: the brick whose straight extension is farther from the position.
-    pub(super) fn is_better_than(&self, other: &Self) -> bool {
-        let nearer = other.nearest.distance - self.nearest.distance;
-        let is_tie = nearer.abs() <= other.rounding;
-        if is_tie { self.nearest.weight > other.nearest.weight } else { nearer > 0.0 }
-    }
-
-    pub(super) fn distance(&self) -> f64 {
-        self.nearest.distance
-    }
-
-    /// Returns the distance from the brick, negative behind it.
-    pub(super) fn signed_distance(&self) -> f64 {
-        if self.nearest.is_free { self.nearest.distance } else { -self.nearest.distance }
-    }
-}
-
-#[cfg(feature = "serde")]
-#[expect(clippy::ref_option, reason = "serde passes a reference to the field")]
-fn list<S: serde::Serializer>(kinds: &Option<Vec<Kind>>, serializer: S) -> Result<S::Ok, S::Error> {
-    match kinds.as_deref() {
-        Some([]) => Err(serde::ser::Error::custom("a part that is only for no kinds cannot be written")),
-        kinds => serde::Serialize::serialize(kinds.unwrap_or_default(), serializer),
     }
 }

@@ -11,8 +11,7 @@ use index::Index;
 use super::brick::Brick;
 use super::part::{Part, Phase};
 use super::{Domain, Impact, Region, WallView};
-use crate::ParameterError;
-use crate::wall::Stroke;
+use crate::wall::Motion;
 
 /// Relative difference below which the radii of a disk and a hollow count as equal.
 const TIGHT: f64 = 1e-9;
@@ -24,7 +23,7 @@ pub(super) struct Parts {
     /// The container's domain, and the number of its own walls.
     domain: Domain,
     first: usize,
-    placed: Vec<Placed>,
+    pub(super) placed: Vec<Placed>,
     bricks: Vec<PlacedBrick>,
     index: Index,
     /// The parts that move and that disks may not overlap.
@@ -73,52 +72,29 @@ struct PlacedBrick {
 
 impl Parts {
     /// Returns parts in a container with this domain and this number of walls, or `None` without parts.
-    pub(super) fn new(placed: Vec<Placed>, domain: Domain, first: usize, origin: f64) -> Option<Box<Self>> {
+    pub(super) fn new(
+        mut placed: Vec<Placed>,
+        domain: Domain,
+        first: usize,
+        origin: f64,
+    ) -> Option<Box<Self>> {
         if placed.is_empty() {
             return None;
         }
-        let (index, bricks, moving, filled, hollows) = (Index::EMPTY, vec![], vec![], vec![], vec![]);
-        let has_patches = placed.iter().any(|placed| placed.part.is_patch());
+        let mut bricks = Vec::new();
+        for (part, placed) in placed.iter_mut().enumerate() {
+            placed.first = first + bricks.len();
+            bricks.extend(placed.part.all_bricks().map(|&brick| PlacedBrick { part, brick }));
+        }
+        let (index, hollows) = (Index::new(&domain, &bricks, &placed), hollows(first, &bricks, &placed));
+        let moves = |part: &Part| !part.travel().is_at_rest() && !part.takes_centers();
+        let moving = (0..).zip(&placed).filter(|(_, placed)| moves(&placed.part)).map(|(part, _)| part);
+        let (moving, has_patches) = (moving.collect(), placed.iter().any(|placed| placed.part.is_patch()));
+        let filled = Vec::new();
         let mut parts = Self { domain, first, placed, bricks, index, moving, has_patches, filled, hollows };
         parts.set_time_origin(origin);
-        parts.number();
+        parts.filled = parts.filled_cells();
         Some(Box::new(parts))
-    }
-
-    /// Numbers the walls, and builds their index.
-    fn number(&mut self) {
-        for (number, placed) in self.placed.iter_mut().enumerate() {
-            placed.first = self.first + self.bricks.len();
-            let bricks = placed.part.all_bricks();
-            self.bricks.extend(bricks.map(|&brick| PlacedBrick { part: number, brick }));
-        }
-        let part = |number: usize| &self.placed[number].part;
-        self.index = Index::new(
-            &self.domain,
-            &self.bricks,
-            |of| part(of.part).travel().bounds(&of.brick),
-            |of, region| part(of.part).travel().may_reach(&of.brick, region, 0.0),
-        );
-        let moves = |&number: &u32| {
-            let part = part(number as usize);
-            !part.travel().is_at_rest() && !part.takes_centers()
-        };
-        self.moving = (0..self.placed.len() as u32).filter(moves).collect();
-        let hollows = (self.first..).zip(&self.bricks).filter_map(|(wall, of)| {
-            let hollow = of.brick.hollow().filter(|_| !part(of.part).takes_centers())?;
-            Some((hollow, wall))
-        });
-        self.hollows = hollows.collect();
-        self.hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.filled = self.filled_cells();
-    }
-
-    pub(super) fn placed(&self) -> &[Placed] {
-        &self.placed
-    }
-
-    pub(super) fn into_placed(self) -> Vec<Placed> {
-        self.placed
     }
 
     pub(super) fn wall_count(&self) -> usize {
@@ -127,28 +103,30 @@ impl Parts {
 
     pub(super) fn set_time_origin(&mut self, origin: f64) {
         for placed in &mut self.placed {
-            placed.part.set_time_origin(origin);
+            placed.part.motion_mut().map(|motion| motion.change(|piston| piston.at_origin(origin)));
             placed.phase = placed.part.phase(origin);
         }
     }
 
-    /// Returns the part to which a wall belongs and its brick, if there is such a wall.
-    fn owner(&self, wall: usize) -> Option<(&Placed, &Brick)> {
-        let PlacedBrick { part, brick } = self.bricks.get(wall.checked_sub(self.first)?)?;
-        Some((&self.placed[*part], brick))
+    /// Returns the part of a brick, and the brick of this number among all.
+    fn owner(&self, number: usize) -> (&Placed, &Brick) {
+        let PlacedBrick { part, brick } = &self.bricks[number];
+        (&self.placed[*part], brick)
     }
 
-    /// Returns the view of a wall, if there is such a wall.
-    pub(super) fn view(&self, wall: usize, time: f64) -> Option<WallView<'_>> {
-        let (placed, brick) = self.owner(wall)?;
+    /// Returns the view of a wall.
+    pub(super) fn view(&self, wall: usize, time: f64) -> WallView<'_> {
+        let (placed, brick) = self.owner(wall - self.first);
         let (part, phase) = (&placed.part, placed.phase.after(time));
         let (count, number, pose) = (part.bricks().len(), wall - placed.first, part.travel().pose(phase));
         let (anchor, aside) = brick.anchor();
         let mut view = WallView::new(placed.name.as_str()).with_point(pose.outward(anchor) + aside);
         if number < count {
-            view = view.with_brick((count > 1).then_some(number), *brick, pose);
-        } else {
-            view = view.with_corner((count > 1).then_some(number - count));
+            view = view.with_brick(*brick, pose);
+        }
+        if count > 1 {
+            view =
+                view.with_number(if number < count { ("brick", number) } else { ("corner", number - count) });
         }
         // The bricks of a part move together.
         if let Some((displacement, phase)) = part.travel().moved(phase).filter(|_| number == 0) {
@@ -157,7 +135,7 @@ impl Parts {
         if let Some(piston) = part.travel().piston() {
             view = view.with_energy(piston.energy(time));
         }
-        Some(view)
+        view
     }
 
     pub(super) fn tight_fit(&self, radius: f64) -> Option<usize> {
@@ -174,7 +152,7 @@ impl Parts {
 
     /// Returns whether a disk with its center in a region may touch the part of a wall up to this time.
     pub(super) fn may_meet(&self, wall: usize, region: &Region, radius: f64, until: f64) -> bool {
-        let placed = &self.placed[self.bricks[wall - self.first].part];
+        let (placed, _) = self.owner(wall - self.first);
         let travel = placed.part.travel();
         let Some(piston) = travel.piston() else { return self.may_touch(region, radius) };
         let (reach, range) = (1.001 * radius, piston.range_until(until));
@@ -184,14 +162,17 @@ impl Parts {
         })
     }
 
-    /// Returns the pistons, in the order of their parts.
-    pub(super) fn pistons(&self) -> impl Iterator<Item = &Stroke> {
-        self.placed.iter().filter_map(|placed| placed.part.travel().piston())
+    /// Returns the motions along directions, in the order of their parts.
+    pub(super) fn motions(&mut self) -> impl Iterator<Item = &mut Motion> {
+        self.placed.iter_mut().filter_map(|placed| placed.part.motion_mut())
     }
+}
 
-    /// Sets the states of the pistons, in this order.
-    pub(super) fn set_pistons(&mut self, numbers: &[[f64; 3]]) -> Result<(), ParameterError> {
-        let pistons = self.placed.iter_mut().filter(|placed| placed.part.travel().piston().is_some());
-        pistons.zip(numbers).try_for_each(|(placed, &numbers)| placed.part.set_piston(numbers))
-    }
+/// Returns the radii of all arcs with disks inside, in order, each with the index of its wall.
+fn hollows(first: usize, bricks: &[PlacedBrick], placed: &[Placed]) -> Vec<(f64, usize)> {
+    let stops = |of: &PlacedBrick| !placed[of.part].part.takes_centers();
+    let hollow = |(wall, of): (usize, &PlacedBrick)| Some((of.brick.hollow().filter(|_| stops(of))?, wall));
+    let mut hollows: Vec<_> = (first..).zip(bricks).filter_map(hollow).collect();
+    hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    hollows
 }

@@ -119,13 +119,8 @@ impl Plane {
     }
 
     pub(super) fn set_time_origin(&mut self, origin: f64) {
-        self.phase = match self.motion.stroke() {
-            Some(stroke) => {
-                self.motion = Motion::of(stroke.at_origin(origin));
-                0.0
-            }
-            None => self.motion.phase(origin),
-        };
+        self.motion.change(|piston| piston.at_origin(origin));
+        self.phase = self.motion.phase(origin);
         if let Some(slide) = &mut self.slide {
             slide.set_time_origin(origin);
         }
@@ -134,9 +129,8 @@ impl Plane {
     /// Changes the motion of the wall by this impulse. Returns whether the wall has a mass, so that its
     /// motion has changed.
     pub(super) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
-        let Some(stroke) = self.motion.stroke() else { return false };
-        self.motion = Motion::of(stroke.struck(impulse.dot(self.normal), time + self.phase));
-        true
+        let (normal, phase) = (self.normal, self.phase);
+        self.motion.change(|piston| piston.struck(impulse.dot(normal), time + phase))
     }
 
     /// Returns whether a disk with its center in `region` may touch the wall up to this time, unless another
@@ -190,16 +184,12 @@ impl Plane {
     /// Returns the view of the wall at a time.
     pub(super) fn view(&self, time: f64) -> WallView<'_> {
         let view = WallView::new(self.wall.name()).with_side(self.wall).with_point(self.place(time));
-        let ((low, high), piston) = (self.motion.reach(), self.motion.stroke());
-        let view = match piston {
+        let ((low, high), phase) = (self.motion.reach(), self.motion.phase(time + self.phase));
+        let view = match self.motion.stroke() {
             Some(piston) => view.with_energy(piston.energy(time)),
+            None if low == high => return view,
             None => view,
         };
-        if low == high {
-            return view;
-        }
-        // The phase of a piston depends on the time origin, and has no meaning.
-        let phase = if piston.is_some() { 0.0 } else { self.motion.phase(time + self.phase) };
         // Adding zeros turns negative zeros into positive ones.
         view.with_motion(self.motion.state(time + self.phase).displacement * self.normal + DVec2::ZERO, phase)
     }

@@ -46,29 +46,18 @@ pub struct WallView<'a> {
     pub motion: Option<(DVec2, f64)>,
     /// Energy of a wall with a mass, kinetic and potential.
     pub energy: Option<f64>,
-    label: Option<Label>,
-    outline: Outline,
-}
-
-/// The number of a wall in a part of several bricks.
-#[derive(Debug, Clone, Copy)]
-enum Label {
-    Brick(usize),
-    Corner(usize),
-}
-
-/// The form of a wall. Points along arcs are computed on request.
-#[derive(Debug, Clone)]
-enum Outline {
-    Line(Vec<DVec2>),
-    Brick(Brick, Pose),
+    /// The number of a brick or a corner in a part of several bricks.
+    number: Option<(&'static str, usize)>,
+    line: Vec<DVec2>,
+    /// Points along arcs are computed on request.
+    brick: Option<(Brick, Pose)>,
 }
 
 impl<'a> WallView<'a> {
     /// Creates the view of a wall of this name, of which nothing else is known.
     pub fn new(name: impl Into<Cow<'a, str>>) -> Self {
-        let (point, side, motion, energy, label) = (None, None, None, None, None);
-        Self { name: name.into(), point, side, motion, energy, label, outline: Outline::Line(Vec::new()) }
+        let (point, side, motion, energy, number, brick) = (None, None, None, None, None, None);
+        Self { name: name.into(), point, side, motion, energy, number, line: Vec::new(), brick }
     }
 
     /// Returns the view of a wall, or its index where a boundary answered with a wall that it does not have.
@@ -107,28 +96,27 @@ impl<'a> WallView<'a> {
     /// Returns the same view with these points along the wall.
     #[must_use]
     pub fn with_line(self, line: Vec<DVec2>) -> Self {
-        Self { outline: Outline::Line(line), ..self }
+        Self { line, ..self }
     }
 
-    /// Returns the same view of a brick at this position, with its number if there are several.
-    pub(super) fn with_brick(self, number: Option<usize>, brick: Brick, pose: Pose) -> Self {
-        Self { label: number.map(Label::Brick), outline: Outline::Brick(brick, pose), ..self }
+    /// Returns the same view of a brick at this position.
+    pub(super) fn with_brick(self, brick: Brick, pose: Pose) -> Self {
+        Self { brick: Some((brick, pose)), ..self }
     }
 
-    /// Returns the same view of a corner with this number.
-    pub(super) fn with_corner(self, number: Option<usize>) -> Self {
-        Self { label: number.map(Label::Corner), ..self }
+    /// Returns the same view of a brick or a corner with this number.
+    pub(super) fn with_number(self, number: (&'static str, usize)) -> Self {
+        Self { number: Some(number), ..self }
     }
 
     /// Returns points along the wall, for pictures. It has no points at the edge of the domain, which is
     /// drawn anyway, and for single points. The points of an arc are at most three degrees apart.
     pub fn line(&self) -> Vec<DVec2> {
-        match &self.outline {
-            Outline::Line(line) => line.clone(),
-            Outline::Brick(brick, _) if brick.is_point() => Vec::new(),
-            Outline::Brick(brick, pose) => {
+        match self.brick {
+            Some((brick, pose)) if !brick.is_point() => {
                 brick.outline().into_iter().map(|place| pose.outward(place)).collect()
             }
+            _ => self.line.clone(),
         }
     }
 }
@@ -136,10 +124,7 @@ impl<'a> WallView<'a> {
 impl fmt::Display for WallView<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.name)?;
-        match self.label {
-            Some(Label::Brick(number)) => write!(formatter, ", brick {number}"),
-            Some(Label::Corner(number)) => write!(formatter, ", corner {number}"),
-            None => Ok(()),
-        }
+        let Some((kind, number)) = self.number else { return Ok(()) };
+        write!(formatter, ", {kind} {number}")
     }
 }

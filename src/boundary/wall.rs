@@ -128,20 +128,6 @@ pub enum WallError {
         /// Largest number.
         most: f64,
     },
-    /// The motion of a part is so small that it is lost in the rounding of the part's coordinates.
-    #[error(
-        "the part \"{name}\" moves back and forth by {}, which is lost in the rounding of its coordinates: it must be \
-         at least {}, or 0",
-        Rounded(*.stroke), Rounded(*.least)
-    )]
-    Stroke {
-        /// The name.
-        name: String,
-        /// Distance between the ends of the motion.
-        stroke: f64,
-        /// Smallest distance.
-        least: f64,
-    },
     /// Disks could push a part with a mass by friction along the direction in which it slides.
     #[error(
         "disks would rub the part \"{name}\", which has a mass, along its direction: give it a rule without friction, or \

@@ -1,16 +1,12 @@
 //! Checks of a wall motion's contract, for custom motions.
 //!
 //! [`check`] tests the whole contract between two phases. [`check_finite`] tests only that all numbers are
-//! finite and that pieces advance; a container runs this check on every motion. [`check_fingerprints`]
-//! compares two motions.
-
-use std::iter::successors;
+//! finite and that pieces advance; a container runs this check on every motion.
 
 use super::motion::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
 use crate::Violation;
 use crate::error::require;
-use crate::fingerprint::check_pair;
 
 /// Number of samples in a piece.
 const SAMPLES: u32 = 512;
@@ -78,7 +74,7 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     let (low, high) = check_constants(motion)?;
     check_finite(motion)?;
     row_of_pieces(motion, from)?;
-    let mut check = Check { motion, low, high, jumps: motion.jumps(), answers: Vec::new() };
+    let check = Check { motion, low, high, jumps: motion.jumps() };
     let mut phase = from;
     for _ in 0..MOST_PIECES {
         let until = check.piece(phase, to)?;
@@ -98,8 +94,6 @@ struct Check<'a, M: ?Sized> {
     low: f64,
     high: f64,
     jumps: bool,
-    /// The samples of the present piece.
-    answers: Vec<Sample>,
 }
 
 /// A phase, and the state at it.
@@ -111,12 +105,12 @@ struct Sample {
 
 impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks the piece that begins here, up to `to` at most, and returns its end.
-    fn piece(&mut self, start: f64, to: f64) -> Result<f64, Violation> {
+    fn piece(&self, start: f64, to: f64) -> Result<f64, Violation> {
         let whole = finite_bounds(self.motion, start)?;
         let length = whole.until.min(to) - start;
         let mut last = self.sample(start)?;
         let mut jumps = 0;
-        self.answers = vec![last];
+        let mut answers = vec![last];
         for k in 1..=SAMPLES {
             let share = if k == SAMPLES { 1.0 - LAST } else { f64::from(k) / f64::from(SAMPLES) };
             let next = self.sample(start + share * length)?;
@@ -134,11 +128,11 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 "between the phases {from:?} and {to:?} its displacement is not the integral of its \
                  velocity");
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
-            self.answers.push(next);
+            answers.push(next);
             last = next;
         }
         self.strength(start, length, &whole)?;
-        for sample in self.answers.iter().rev() {
+        for sample in answers.iter().rev() {
             let again = self.sample(sample.phase)?;
             require!(PART, "repeatable", again == *sample; "{sample:?} is {again:?} when asked for again");
         }
@@ -325,57 +319,4 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     fn speed_scale(&self, bounds: &AccelerationBounds) -> f64 {
         (bounds.min.abs().max(bounds.max.abs()) * (self.high - self.low)).sqrt()
     }
-}
-
-/// Number of phases at which two motions are compared, and the length of the interval in which they lie.
-const PHASES: u32 = 4000;
-const INTERVAL: f64 = 400.0;
-
-/// Number of later phases, each a fifth later than the previous one.
-const LATE: i32 = 40;
-
-/// Number of pieces of each motion in which the motions are compared.
-const PIECES: usize = 1000;
-
-/// Checks that two motions that move differently have different fingerprints, and that two motions of one
-/// type that move alike at every phase of the check have the same fingerprint. Motions without a fingerprint
-/// are not compared.
-///
-/// The motions are compared at four thousand phases from −1 to 399, at forty later phases up to 490 000, and
-/// in the first thousand pieces of both after phase −1. The check cannot see other differences. If two such
-/// motions are of one type, the check refuses different fingerprints. Motions of two types may move alike and
-/// have different fingerprints.
-///
-/// # Errors
-/// If the fingerprints contradict the values.
-///
-/// ```
-/// use granular_edmd::wall::{Sinusoidal, laws};
-/// laws::check_fingerprints(&Sinusoidal::new(0.1, 10.0)?, &Sinusoidal::new(0.1, 11.0)?)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn check_fingerprints<M, N>(first: &M, second: &N) -> Result<(), Violation>
-where
-    M: WallMotion + ?Sized,
-    N: WallMotion + ?Sized,
-{
-    let differ = |&phase: &f64| first.state(phase) != second.state(phase);
-    let phases = (0..PHASES).map(|k| INTERVAL * f64::from(k) / f64::from(PHASES) - 1.0);
-    let late = (0..LATE).map(|k| INTERVAL * libm::pow(1.2, f64::from(k)));
-    let mut phases = phases.chain(late).chain(phases_of(first)).chain(phases_of(second));
-    let mut difference = phases.find(differ).map(|phase| format!("at phase {phase:?}"));
-    if (first.reach(), first.period()) != (second.reach(), second.period()) {
-        difference = Some("in reach or period".to_owned());
-    }
-    check_pair::<M, N>(PART, [first.fingerprint(), second.fingerprint()], difference)
-}
-
-/// Returns phases at the start of each piece of a motion and within it.
-fn phases_of<M: WallMotion + ?Sized>(motion: &M) -> impl Iterator<Item = f64> + '_ {
-    let end = |&phase: &f64| Some(motion.acceleration(phase).until).filter(|until| *until > phase);
-    let starts = successors(Some(-1.0), end).take(PIECES).filter(|start| start.is_finite());
-    starts.flat_map(move |start| {
-        let length = motion.acceleration(start).until - start;
-        [start, start + 0.37 * length.min(INTERVAL)]
-    })
 }

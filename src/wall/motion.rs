@@ -1,5 +1,4 @@
-//! Motions in owned form, forwarding, and checks: finite numbers, pieces that advance, and whether a motion
-//! jumps.
+//! Motions in owned form, forwarding, and checks: finite numbers, and pieces that advance.
 
 use std::any::Any;
 use std::fmt;
@@ -56,13 +55,20 @@ impl Motion {
         self.as_any().downcast_ref()
     }
 
+    /// Changes the motion of a piston. Returns whether the motion is a piston's.
+    pub(crate) fn change(&mut self, change: impl FnOnce(&Stroke) -> Stroke) -> bool {
+        let Some(changed) = self.stroke().map(change) else { return false };
+        *self = Self::of(changed);
+        true
+    }
+
     /// Returns the phase at a time origin: the origin less whole periods.
     pub(crate) fn phase(&self, origin: f64) -> f64 {
         let (low, high) = self.reach();
         match self.period() {
             // A wall that never moves has the same position at all times. At phase 0, times lose none of
-            // their digits.
-            _ if low == high => 0.0,
+            // their digits. A piston knows its origin itself.
+            _ if low == high || self.stroke().is_some() => 0.0,
             // The remainder of two floats is exact, so the phase keeps all its digits, however late the time.
             Some(period) => origin % period,
             None => origin,
@@ -190,30 +196,4 @@ pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
 fn finite(quantity: &str, value: f64, phase: f64) -> Result<(), Violation> {
     require!(PART, "finite", value.is_finite(); "at phase {phase:?} its {quantity} is {value:?}");
     Ok(())
-}
-
-/// Returns whether the motion jumps at the end of a piece: its displacement then differs from the value to
-/// which its velocity shortly before the end leads.
-pub(super) fn seen_to_jump<M: WallMotion + ?Sized>(motion: &M) -> bool {
-    const PIECES: usize = 1000;
-    let (low, high) = motion.reach();
-    let end = motion.period().unwrap_or(f64::INFINITY);
-    let mut phase = 0.0;
-    for _ in 0..PIECES {
-        let until = motion.acceleration(phase).until;
-        if !(until.is_finite() && until > phase) {
-            return false;
-        }
-        let just_before = until - 1e-6 * (until - phase);
-        let (before, after) = (motion.state(just_before), motion.state(until));
-        let expected = before.displacement + (until - just_before) * before.velocity;
-        if (after.displacement - expected).abs() > 1e-6 * (high - low) {
-            return true;
-        }
-        if until >= end {
-            return false;
-        }
-        phase = until;
-    }
-    false
 }

@@ -113,9 +113,17 @@ crate::gate::from_file! {
     Oscillation { amplitude: f64, angular_frequency: f64 } => Self::new(amplitude, angular_frequency)
 }
 
-/// Defines the constructor and the two getters of a motion over an [`Oscillation`].
+/// Defines a motion over an [`Oscillation`], with its constructor and two getters.
 macro_rules! periodic {
-    ($motion:ident) => {
+    ($(#[$documentation:meta])* $motion:ident) => {
+        $(#[$documentation])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(transparent))]
+        pub struct $motion {
+            oscillation: Oscillation,
+        }
+
         impl $motion {
             /// Creates a motion of this amplitude A and angular frequency ω.
             ///
@@ -156,34 +164,29 @@ macro_rules! periodic_answers {
     };
 }
 
-/// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec. III).
-///
-/// With the half period $`H=\pi/\omega`$ and $`s = t/H`$,
-///
-/// ```math
-/// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
-/// ```
-///
-/// so it has the amplitude and the period of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and
-/// the acceleration is $`\mp 8A/H^2`$. The time of every contact is the root of a parabola, which is exact
-/// and needs no iteration.
-///
-/// ```
-/// use granular_edmd::wall::{BiParabolic, WallMotion};
-/// let base = BiParabolic::new(0.1, 10.0)?;
-/// let quarter = 0.25 * base.period().unwrap();
-/// assert!((base.state(quarter).displacement - 0.1).abs() < 1e-15);
-/// assert!((base.state(0.0).velocity - 4.0 * 0.1 * 10.0 / std::f64::consts::PI).abs() < 1e-14);
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(transparent))]
-pub struct BiParabolic {
-    oscillation: Oscillation,
+periodic! {
+    /// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec. III).
+    ///
+    /// With the half period $`H=\pi/\omega`$ and $`s = t/H`$,
+    ///
+    /// ```math
+    /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
+    /// ```
+    ///
+    /// so it has the amplitude and the period of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and
+    /// the acceleration is $`\mp 8A/H^2`$. The time of every contact is the root of a parabola, which is exact
+    /// and needs no iteration.
+    ///
+    /// ```
+    /// use granular_edmd::wall::{BiParabolic, WallMotion};
+    /// let base = BiParabolic::new(0.1, 10.0)?;
+    /// let quarter = 0.25 * base.period().unwrap();
+    /// assert!((base.state(quarter).displacement - 0.1).abs() < 1e-15);
+    /// assert!((base.state(0.0).velocity - 4.0 * 0.1 * 10.0 / std::f64::consts::PI).abs() < 1e-14);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    BiParabolic
 }
-
-periodic!(BiParabolic);
 
 impl BiParabolic {
     fn arc(&self, phase: f64) -> Arc {
@@ -223,23 +226,18 @@ impl WallMotion for BiParabolic {
 /// acceleration is monotonic on each piece and the values at its ends are the bounds.
 const PIECES: f64 = 16.0;
 
-/// Harmonic motion, z(t) = A sin ωt.
-///
-/// ```
-/// use granular_edmd::wall::{Sinusoidal, WallMotion};
-/// let base = Sinusoidal::new(0.1, 10.0)?;
-/// assert_eq!(base.state(0.0).velocity, 1.0);
-/// assert_eq!(base.reach(), (-0.1, 0.1));
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(transparent))]
-pub struct Sinusoidal {
-    oscillation: Oscillation,
+periodic! {
+    /// Harmonic motion, z(t) = A sin ωt.
+    ///
+    /// ```
+    /// use granular_edmd::wall::{Sinusoidal, WallMotion};
+    /// let base = Sinusoidal::new(0.1, 10.0)?;
+    /// assert_eq!(base.state(0.0).velocity, 1.0);
+    /// assert_eq!(base.reach(), (-0.1, 0.1));
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    Sinusoidal
 }
-
-periodic!(Sinusoidal);
 
 impl Sinusoidal {
     fn acceleration_at(&self, phase: f64) -> f64 {
@@ -265,28 +263,23 @@ impl WallMotion for Sinusoidal {
     periodic_answers!("Sinusoidal");
 }
 
-/// Triangular motion: from −A to A in half a period at constant speed, and back at the same speed.
-///
-/// The speed is $`2A\omega/\pi`$. At phase 0 the wall is in its middle position and rises, as in all
-/// oscillations.
-///
-/// ```
-/// use granular_edmd::wall::{Triangular, WallMotion};
-/// let base = Triangular::new(0.5, std::f64::consts::TAU)?;
-/// assert_eq!(base.state(0.0).displacement, 0.0);
-/// assert_eq!(base.state(0.125).displacement, 0.25);
-/// assert_eq!(base.state(0.0).velocity, 2.0);
-/// assert_eq!(base.state(0.5).velocity, -2.0);
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(transparent))]
-pub struct Triangular {
-    oscillation: Oscillation,
+periodic! {
+    /// Triangular motion: from −A to A in half a period at constant speed, and back at the same speed.
+    ///
+    /// The speed is $`2A\omega/\pi`$. At phase 0 the wall is in its middle position and rises, as in all
+    /// oscillations.
+    ///
+    /// ```
+    /// use granular_edmd::wall::{Triangular, WallMotion};
+    /// let base = Triangular::new(0.5, std::f64::consts::TAU)?;
+    /// assert_eq!(base.state(0.0).displacement, 0.0);
+    /// assert_eq!(base.state(0.125).displacement, 0.25);
+    /// assert_eq!(base.state(0.0).velocity, 2.0);
+    /// assert_eq!(base.state(0.5).velocity, -2.0);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    Triangular
 }
-
-periodic!(Triangular);
 
 impl WallMotion for Triangular {
     fn state(&self, phase: f64) -> WallState {
@@ -300,27 +293,22 @@ impl WallMotion for Triangular {
     periodic_answers!("Triangular");
 }
 
-/// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
-///
-/// The speed is $`A\omega/\pi`$. At phase 0 the wall is in its middle position, and half a period later it
-/// jumps. A disk always meets the rising wall, as in the theory of gases on fast vibrating walls.
-///
-/// ```
-/// use granular_edmd::wall::{Sawtooth, WallMotion};
-/// let base = Sawtooth::new(0.5, std::f64::consts::TAU)?;
-/// assert_eq!(base.state(0.0).displacement, 0.0);
-/// assert_eq!(base.state(0.5).displacement, -0.5);
-/// assert_eq!(base.state(0.3).velocity, 1.0);
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(transparent))]
-pub struct Sawtooth {
-    oscillation: Oscillation,
+periodic! {
+    /// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
+    ///
+    /// The speed is $`A\omega/\pi`$. At phase 0 the wall is in its middle position, and half a period later it
+    /// jumps. A disk always meets the rising wall, as in the theory of gases on fast vibrating walls.
+    ///
+    /// ```
+    /// use granular_edmd::wall::{Sawtooth, WallMotion};
+    /// let base = Sawtooth::new(0.5, std::f64::consts::TAU)?;
+    /// assert_eq!(base.state(0.0).displacement, 0.0);
+    /// assert_eq!(base.state(0.5).displacement, -0.5);
+    /// assert_eq!(base.state(0.3).velocity, 1.0);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    Sawtooth
 }
-
-periodic!(Sawtooth);
 
 impl WallMotion for Sawtooth {
     fn state(&self, phase: f64) -> WallState {

@@ -1,4 +1,5 @@
-//! Schedulers that break their contract: the check must notice each of them.
+//! The sentences in which the check of schedulers names a fault. The target `laws` plants the faults that it
+//! must find.
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
@@ -10,7 +11,6 @@ use granular_edmd::{Simulation, initial};
 #[derive(Default)]
 struct Liar {
     honest: LinearScan,
-    due: Vec<f64>,
     sets: usize,
     asked: bool,
     fault: Fault,
@@ -19,88 +19,35 @@ struct Liar {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 enum Fault {
     #[default]
-    None,
-    TiesToTheLargerIndex,
-    OneSetForgotten,
-    DeafToEarlierTimes,
-    DeafToTimesBeforeTheAnswer,
     NotANumber,
-    KeepsDisksAfterAReset,
-    SingleNumbers,
-    ZerosOfTwoKinds,
-    NobodyAtInfinity,
     SomebodyWithoutDisks,
-    IndicesOf16Bits,
     ConfusedByLookingAhead,
     TakesWhatWasNamed,
 }
-
-const FAULTS: [Fault; 13] = [
-    Fault::TiesToTheLargerIndex,
-    Fault::OneSetForgotten,
-    Fault::DeafToEarlierTimes,
-    Fault::DeafToTimesBeforeTheAnswer,
-    Fault::NotANumber,
-    Fault::KeepsDisksAfterAReset,
-    Fault::SingleNumbers,
-    Fault::ZerosOfTwoKinds,
-    Fault::NobodyAtInfinity,
-    Fault::SomebodyWithoutDisks,
-    Fault::IndicesOf16Bits,
-    Fault::ConfusedByLookingAhead,
-    Fault::TakesWhatWasNamed,
-];
 
 impl Liar {
     fn with(fault: Fault) -> Self {
         Self { fault, ..Self::default() }
     }
-
-    fn is_deaf_to(&self, disk: usize, due: f64) -> bool {
-        match self.fault {
-            Fault::OneSetForgotten => self.sets == 150,
-            Fault::DeafToEarlierTimes => due < self.due[disk],
-            Fault::DeafToTimesBeforeTheAnswer => due < self.honest.earliest().1,
-            _ => false,
-        }
-    }
-
-    /// Returns the last of those disks before which there is no other.
-    fn last_by(&self, is_before: impl Fn(f64, f64) -> bool) -> (usize, f64) {
-        let all = self.due.iter().copied().enumerate();
-        all.reduce(|first, next| if is_before(first.1, next.1) { first } else { next }).unwrap_or(NOTHING_DUE)
-    }
 }
 
 impl EventScheduler for Liar {
     fn reset(&mut self, due: &[f64]) {
-        let kept = if self.fault == Fault::KeepsDisksAfterAReset { self.due.get(due.len()..) } else { None };
-        self.due = [due, kept.unwrap_or_default()].concat();
-        self.honest.reset(&self.due);
+        self.honest.reset(due);
         self.asked = false;
     }
 
     fn set(&mut self, disk: usize, due: f64) {
         self.sets += 1;
-        if !self.is_deaf_to(disk, due) {
-            self.due[disk] = due;
-            self.honest.set(disk, due);
-        }
+        self.honest.set(disk, due);
         self.asked = false;
     }
 
     fn earliest(&self) -> (usize, f64) {
         let (disk, due) = self.honest.earliest();
         match self.fault {
-            Fault::TiesToTheLargerIndex => self.last_by(|first, next| first < next),
-            Fault::ZerosOfTwoKinds => self.last_by(|first, next| {
-                first < next || (first == next && first.is_sign_negative() >= next.is_sign_negative())
-            }),
             Fault::NotANumber if self.sets > 100 => (disk, f64::NAN),
-            Fault::SingleNumbers => (disk, f64::from(due as f32)),
-            Fault::NobodyAtInfinity if due == f64::INFINITY => NOTHING_DUE,
-            Fault::SomebodyWithoutDisks if self.due.is_empty() => (0, f64::INFINITY),
-            Fault::IndicesOf16Bits => (usize::from(disk as u16), due),
+            Fault::SomebodyWithoutDisks if (disk, due) == NOTHING_DUE => (0, f64::INFINITY),
             Fault::ConfusedByLookingAhead if self.asked => (disk, due + 1.0),
             _ => (disk, due),
         }
@@ -111,22 +58,7 @@ impl EventScheduler for Liar {
         if self.fault == Fault::TakesWhatWasNamed {
             disks.clear();
         }
-        // The named disks need not exist, and may be named twice.
-        disks.extend([usize::MAX, 3, 3]);
     }
-}
-
-#[test]
-fn each_fault_is_noticed() {
-    for fault in FAULTS {
-        let violation = check(|| Liar::with(fault));
-        assert!(violation.is_err(), "{fault:?} is not noticed");
-    }
-}
-
-#[test]
-fn the_same_scheduler_without_a_fault_passes() {
-    assert_eq!(check(Liar::default), Ok(()));
 }
 
 #[test]
@@ -142,9 +74,8 @@ fn a_violation_names_the_step_and_both_answers() {
 
 #[test]
 fn the_check_is_the_same_at_each_call() {
-    for fault in [Fault::TiesToTheLargerIndex, Fault::SingleNumbers, Fault::TakesWhatWasNamed] {
-        assert_eq!(check(|| Liar::with(fault)), check(|| Liar::with(fault)));
-    }
+    let violation = || check(Liar::default);
+    assert_eq!(violation(), violation());
 }
 
 #[test]

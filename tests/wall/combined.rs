@@ -1,7 +1,7 @@
 //! Motions that combine: the contract, the equations of the documentation, and what constructors refuse.
 
 use granular_edmd::ParameterError;
-use granular_edmd::wall::laws::{check, check_fingerprints};
+use granular_edmd::wall::laws::check;
 use granular_edmd::wall::{
     Approach, BiParabolic, Combined, Fixed, Sawtooth, Sinusoidal, Tabulated, Triangular, WallMotion,
     check_finite, first_touch,
@@ -49,17 +49,6 @@ fn all_keep_the_contract() {
     keeps_its_contract(&gate());
     keeps_its_contract(&Tabulated::from_to(-1.0, 2.0, 0.3).unwrap());
     keeps_its_contract(&Tabulated::from_to(0.5, 0.5, 0.3).unwrap());
-}
-
-/// The motion of a wall may be made in several ways, which have fingerprints of their own.
-#[test]
-fn motions_of_two_types_may_move_alike() {
-    let sine = sine(10.0);
-    let (begun, scaled) =
-        (Combined::new(sine).starting_at(0.0).unwrap(), Combined::new(sine).scaled(1.0).unwrap());
-    assert_eq!(check_fingerprints(&begun, &sine), Ok(()));
-    assert_eq!(check_fingerprints(&sine, &scaled), Ok(()));
-    assert_eq!(check_fingerprints(&begun, &scaled), Ok(()));
 }
 
 /// A chain of methods gives the motion that combinations of combinations give.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::shapes::Segment;
 use super::shapes::{Arc, Sector};
-use super::{Brick, Free, Nearest, Shape};
+use super::{Brick, Free, Shape};
 use crate::boundary::WallError;
 use crate::boundary::domain::{direction, finite_point};
 use crate::quantity::{accept, finite, positive};
@@ -134,8 +134,7 @@ impl Brick {
 
     /// Returns the distance of a point from the brick, negative behind the brick.
     pub fn signed_distance(&self, place: DVec2) -> f64 {
-        let Nearest { distance, is_free, .. } = self.nearest(place);
-        if is_free { distance } else { -distance }
+        self.nearest(place).signed_distance
     }
 
     /// Returns the unit vector from the nearest point of the brick to a position: the normal of a

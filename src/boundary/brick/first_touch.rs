@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::path::Path;
+use super::path::{Beside, Path};
 use super::shapes::Arc;
 use super::{Brick, Shape, Side};
 use crate::Flight;
@@ -31,7 +31,7 @@ impl Brick {
     /// # Ok::<(), granular_edmd::boundary::WallError>(())
     /// ```
     pub fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {
-        let wait = self.wait_for_touch(&Path::of(flight), until - flight.time())?;
+        let wait = self.wait_for_touch(&Path::of(flight, flight.time()), until - flight.time())?;
         Some((flight.time() + wait).min(until))
     }
 
@@ -51,13 +51,10 @@ impl Brick {
     /// the brick flies on until it is in front. Only touches beside the brick count. At its ends, the next
     /// brick or a point takes over.
     pub(in crate::boundary) fn wait_for_touch(&self, path: &Path, wait: f64) -> Option<f64> {
-        let beside = match self.shape {
-            Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
-            Shape::Arc(arc) if arc.is_out_of_reach(path, wait) => return None,
-            Shape::Segment(segment) => Some(segment.beside(path, 0.0)),
-            Shape::Arc(arc) => arc.beside(path, 0.0),
-        };
-        let Some(beside) = beside else {
+        if of_shape!(self, shape => shape.is_out_of_reach(path, wait)) {
+            return None;
+        }
+        let Some(beside) = self.beside(path, 0.0) else {
             return self.touch_between(path, 0.0, wait);
         };
         let side = self.side(path.place);
@@ -76,6 +73,15 @@ impl Brick {
             }
         }
         beside.stretches(wait).find_map(|(from, to)| self.touch_between(path, from, to))
+    }
+
+    /// Returns the condition that the disk is beside the brick, or beyond its ends by at most `more`; `None`
+    /// for a circle, which has no ends.
+    fn beside(&self, path: &Path, more: f64) -> Option<Beside> {
+        match self.shape {
+            Shape::Segment(segment) => Some(segment.beside(path, more)),
+            Shape::Arc(arc) => arc.beside(path, more),
+        }
     }
 
     /// Returns the first touch between two times, between which the disk stays beside the brick.
@@ -140,17 +146,11 @@ impl Brick {
     }
 
     pub(super) fn side(&self, place: DVec2) -> Side {
-        match self.shape {
-            Shape::Segment(segment) => segment.side(place),
-            Shape::Arc(arc) => arc.side(place),
-        }
+        of_shape!(self, shape => shape.side(place))
     }
 
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
-        match self.shape {
-            Shape::Segment(segment) => segment.gap(path, side),
-            Shape::Arc(arc) => arc.gap(path, side),
-        }
+        of_shape!(self, shape => shape.gap(path, side))
     }
 }
 
@@ -169,13 +169,11 @@ impl Brick {
         stroke: DVec2,
         wait: f64,
     ) -> Option<f64> {
-        let (across, beside) = match self.shape {
-            Shape::Segment(segment) => {
-                let across = segment.direction.perp_dot(stroke).abs();
-                (across, Some(segment.beside(path, stroke.length())))
-            }
-            Shape::Arc(arc) => (stroke.length(), arc.beside(path, stroke.length())),
+        let across = match self.shape {
+            Shape::Segment(segment) => segment.direction.perp_dot(stroke).abs(),
+            Shape::Arc(_) => stroke.length(),
         };
+        let beside = self.beside(path, stroke.length());
         let path = Path { radius: path.radius + across, ..*path };
         match beside {
             None => self.wait_to_enter_band(&path, wait),

@@ -19,21 +19,11 @@ pub(in crate::boundary) struct Path {
 }
 
 impl Path {
-    /// Creates a path that is known exactly.
-    pub(in crate::boundary) const fn exact(
-        place: DVec2,
-        velocity: DVec2,
-        acceleration: DVec2,
-        radius: f64,
-    ) -> Self {
+    /// Returns the path of a flight from a time on.
+    pub(in crate::boundary) fn of(flight: &Flight, from: f64) -> Self {
+        let (place, velocity) = (flight.position(from), flight.velocity(from));
+        let (acceleration, radius) = (flight.acceleration(), flight.radius());
         Self { place, velocity, acceleration, radius, widening: 0.0, spread: 0.0 }
-    }
-
-    /// Returns the path of a flight, from its start on.
-    pub(in crate::boundary) fn of(flight: &Flight) -> Self {
-        let start = flight.time();
-        let (place, velocity) = (flight.position(start), flight.velocity(start));
-        Self::exact(place, velocity, flight.acceleration(), flight.radius())
     }
 
     /// Returns the position of the center after this time.

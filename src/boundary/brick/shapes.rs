@@ -84,10 +84,7 @@ impl Segment {
 
     /// Returns whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
-        let Region { min: low, max: high } = self.bounds();
-        let (min, max) = (region.min - reach, region.max + reach);
-        let boxes_meet = low.x <= max.x && low.y <= max.y && high.x >= min.x && high.y >= min.y;
-        if !boxes_meet {
+        if !self.bounds().meets(&region.enlarged(reach)) {
             return false;
         }
         let height = |normal: DVec2| region.least_along(normal) - normal.dot(self.from);

@@ -25,9 +25,11 @@ impl Boundary for Container {
     }
 
     fn wall(&self, wall: usize, time: f64) -> WallView<'_> {
-        let own = self.planes.get(wall).map(|plane| plane.view(time));
-        let view = own.or_else(|| self.parts.as_ref()?.view(wall, time));
-        view.unwrap_or_else(|| WallView::new(format!("wall {wall}")))
+        match (self.planes.get(wall), &self.parts) {
+            (Some(plane), _) => plane.view(time),
+            (None, Some(parts)) if wall < self.wall_count() => parts.view(wall, time),
+            _ => WallView::new(format!("wall {wall}")),
+        }
     }
 
     fn set_time_origin(&mut self, origin: f64) {
@@ -56,24 +58,24 @@ impl Boundary for Container {
     }
 
     fn state(&self) -> Vec<f64> {
+        let parts = self.placed().iter().filter_map(|placed| placed.part.travel().piston());
         let own = self.planes.iter().filter_map(|plane| plane.motion.stroke());
-        own.chain(self.parts.iter().flat_map(|parts| parts.pistons())).flat_map(Stroke::numbers).collect()
+        own.chain(parts).flat_map(Stroke::numbers).collect()
     }
 
     fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
         let (numbers, rest) = state.as_chunks::<3>();
-        let pistons = self.planes.iter_mut().filter(|plane| plane.motion.stroke().is_some());
-        let pistons: Vec<_> = pistons.collect();
-        let of_parts = self.parts.iter().flat_map(|parts| parts.pistons()).count();
-        let is_whole = rest.is_empty() && numbers.len() == pistons.len() + of_parts;
+        let parts = self.parts.iter_mut().flat_map(|parts| parts.motions());
+        let motions = self.planes.iter_mut().map(|plane| &mut plane.motion).chain(parts);
+        let pistons: Vec<_> = motions.filter(|motion| motion.stroke().is_some()).collect();
+        let is_whole = rest.is_empty() && numbers.len() == pistons.len();
         accept(is_whole, "state of the walls", "three numbers for each piston", state.len() as f64)?;
-        let (own, of_parts) = numbers.split_at(pistons.len());
-        for (plane, &numbers) in pistons.into_iter().zip(own) {
-            if let Some(stroke) = plane.motion.stroke() {
-                plane.motion = Motion::of(stroke.with_numbers(numbers)?);
+        for (motion, &numbers) in pistons.into_iter().zip(numbers) {
+            if let Some(stroke) = motion.stroke() {
+                *motion = Motion::of(stroke.with_numbers(numbers)?);
             }
         }
-        self.parts.as_mut().map_or(Ok(()), |parts| parts.set_pistons(of_parts))
+        Ok(())
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
@@ -143,13 +145,9 @@ impl Container {
     pub(in crate::boundary) fn room(&self, radius: f64, time: f64) -> Region {
         let mut room = Region::new(self.corner, self.corner + DVec2::new(self.width, self.height));
         for plane in &self.planes {
-            let place = plane.place(time);
-            match plane.wall {
-                Wall::Left => room.min.x = place.x + radius,
-                Wall::Right => room.max.x = place.x - radius,
-                Wall::Floor => room.min.y = place.y + radius,
-                Wall::Lid => room.max.y = place.y - radius,
-            }
+            let edge = plane.place(time) + radius * plane.normal;
+            room.min = DVec2::select(plane.normal.cmpgt(DVec2::ZERO), edge, room.min);
+            room.max = DVec2::select(plane.normal.cmplt(DVec2::ZERO), edge, room.max);
         }
         room
     }
@@ -159,17 +157,10 @@ impl Container {
     pub(super) fn rectangle(&self, inward: impl Fn(&Plane) -> f64) -> Domain {
         let way = |wall| self.index(wall).map_or(0.0, |index| inward(&self.planes[index]));
         let DVec2 { x, y } = self.corner;
-        self.with_sides(Domain::new(
-            x + way(Wall::Left),
-            x + self.width - way(Wall::Right),
-            y + way(Wall::Floor),
-            y + self.height - way(Wall::Lid),
-        ))
-    }
-
-    /// Makes a rectangle periodic where the container has no walls.
-    fn with_sides(&self, domain: Domain) -> Domain {
-        let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };
-        if self.index(Wall::Floor).is_none() { domain.with_periodic_ends() } else { domain }
+        let (left, right) = (x + way(Wall::Left), x + self.width - way(Wall::Right));
+        let mut domain = Domain::new(left, right, y + way(Wall::Floor), y + self.height - way(Wall::Lid));
+        domain.periodic_sides = self.index(Wall::Left).is_none();
+        domain.periodic_ends = self.index(Wall::Floor).is_none();
+        domain
     }
 }

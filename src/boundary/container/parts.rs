@@ -8,6 +8,7 @@ use super::Container;
 use crate::Disk;
 use crate::boundary::parts::{Parts, Placed};
 use crate::boundary::{Boundary, Part, Region, WallError};
+use crate::error::Rounded;
 use crate::quantity::accept;
 
 /// Largest number of walls of a container.
@@ -187,11 +188,11 @@ impl Container {
     }
 
     pub(super) fn placed(&self) -> &[Placed] {
-        self.parts.as_ref().map_or(&[], |parts| parts.placed())
+        self.parts.as_ref().map_or(&[], |parts| &parts.placed)
     }
 
     pub(super) fn take_parts(&mut self) -> Vec<Placed> {
-        self.parts.take().map_or_else(Vec::new, |parts| parts.into_placed())
+        self.parts.take().map_or_else(Vec::new, |parts| parts.placed)
     }
 
     fn set_parts(&mut self, placed: Vec<Placed>) {
@@ -236,14 +237,13 @@ impl Container {
         let count = |length: f64, period: f64| if period > 0.0 { (length / period).max(1.0) } else { 1.0 };
         let [across, up] = [count(size.x, periods.x), count(size.y, periods.y)];
         let name = placed.name.clone();
+        let (stroke, least) = (placed.part.travel().stroke(), LEAST_STROKE * placed.size);
+        let range = format!("0 or at least {}: less is lost in rounding", Rounded(least));
+        accept(stroke == 0.0 || stroke >= least, format!("stroke of the part \"{name}\""), range, stroke)?;
         for (periods, most) in [across.max(up), across * up].into_iter().zip(MOST_PERIODS) {
             if periods > most {
                 return Err(WallError::TooManyPeriods { name, periods, most });
             }
-        }
-        let (stroke, least) = (placed.part.travel().stroke(), LEAST_STROKE * placed.size);
-        if stroke > 0.0 && stroke < least {
-            return Err(WallError::Stroke { name, stroke, least });
         }
         if placed.part.is_pushed_aside(&self.domain().region()) {
             return Err(WallError::Guide { name });
@@ -259,6 +259,6 @@ pub(super) fn named<S: serde::Serializer>(
     parts: &Option<Box<Parts>>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let placed = parts.iter().flat_map(|parts| parts.placed());
+    let placed = parts.iter().flat_map(|parts| &parts.placed);
     serializer.collect_seq(placed.map(|placed| (&placed.name, &placed.part)))
 }

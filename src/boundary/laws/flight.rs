@@ -6,7 +6,7 @@ use super::reaction::check_reaction;
 use super::surface::{check_surface, in_words, is_same};
 use super::trial::{PART, Trial, restarted};
 use super::{LATEST, SMALLEST};
-use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use crate::boundary::{Boundary, Region, Response, Surface, Touch};
 use crate::error::require;
 use crate::{Flight, Violation};
 
@@ -265,15 +265,9 @@ fn check_region(trial: &Trial<'_>, Touch { time, wall, .. }: Touch, region: Regi
 
 /// Returns the region as the engine extends it: to infinity where it is near an edge of the domain.
 fn open_at_edges(trial: &Trial<'_>, Region { min, max }: Region) -> Region {
-    let Domain { periodic_sides, periodic_ends, .. } = trial.domain;
     let (near, domain) = (2.0 * trial.radius, trial.domain.region());
-    let open = |is_near: bool, edge: f64, end: f64| if is_near { end } else { edge };
-    let low =
-        |periodic: bool, edge: f64, end: f64| open(!periodic && edge < end + near, edge, f64::NEG_INFINITY);
-    let high =
-        |periodic: bool, edge: f64, end: f64| open(!periodic && edge > end - near, edge, f64::INFINITY);
-    Region::new(
-        DVec2::new(low(periodic_sides, min.x, domain.min.x), low(periodic_ends, min.y, domain.min.y)),
-        DVec2::new(high(periodic_sides, max.x, domain.max.x), high(periodic_ends, max.y, domain.max.y)),
-    )
+    let has_walls = trial.domain.periods().cmpeq(DVec2::ZERO);
+    let low = has_walls & min.cmplt(domain.min + near);
+    let high = has_walls & max.cmpgt(domain.max - near);
+    Region::new(DVec2::select(low, DVec2::NEG_INFINITY, min), DVec2::select(high, DVec2::INFINITY, max))
 }

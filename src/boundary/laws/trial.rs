@@ -178,27 +178,22 @@ impl<'a> Trial<'a> {
     /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or
     /// end at the latest.
     pub(super) fn longest(&self, flight: &Flight) -> f64 {
-        let longest = LONGEST * self.crossing();
         let (start, Region { min, max }) = (flight.time(), self.domain.region());
-        let (place, velocity) = (flight.position(start), flight.velocity(start));
+        let (place, speed) = (flight.position(start), flight.velocity(start).abs());
         let way = (max - place).min(place - min).max(DVec2::ZERO);
-        let wait = |way: f64, speed: f64, pull: f64| {
-            2.0 * way / (speed.abs() + (speed * speed + 2.0 * pull.abs() * way).sqrt())
-        };
-        let pull = flight.acceleration();
-        let across = wait(way.x, velocity.x, pull.x);
-        let up = wait(way.y, velocity.y, pull.y);
-        let longest = if self.domain.periodic_sides { longest.min(across) } else { longest };
-        if self.domain.periodic_ends { longest.min(up) } else { longest }
+        let fall = speed * speed + 2.0 * flight.acceleration().abs() * way;
+        let wait = 2.0 * way / (speed + DVec2::new(fall.x.sqrt(), fall.y.sqrt()));
+        let seams = [(self.domain.periodic_sides, wait.x), (self.domain.periodic_ends, wait.y)];
+        let waits = seams.into_iter().filter(|seam| seam.0).map(|seam| seam.1);
+        waits.fold(LONGEST * self.crossing(), f64::min)
     }
 
     /// Checks that the domain and the number of walls have not changed.
     pub(super) fn check_constants(&self) -> Result<(), Violation> {
-        let (before, now) = (self.domain, self.boundary.domain());
-        require!(PART, "constant domain", now == before; "the domain was {before} and is now {now}");
-        let (count, walls) = (self.wall_count, self.boundary.wall_count());
-        require!(PART, "constant walls", walls == count;
-            "there were {count} walls, and now there are {walls}");
+        let (before, now) =
+            ((self.domain, self.wall_count), (self.boundary.domain(), self.boundary.wall_count()));
+        require!(PART, "constants", now == before;
+            "the domain was {} with {} walls, and is now {} with {}", before.0, before.1, now.0, now.1);
         Ok(())
     }
 }

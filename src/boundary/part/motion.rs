@@ -3,7 +3,6 @@
 use glam::DVec2;
 
 use super::{Along, Part, Travel, Turning};
-use crate::ParameterError;
 use crate::boundary::brick::Brick;
 use crate::boundary::domain::{direction, finite_point, unit};
 use crate::boundary::{Region, WallError};
@@ -188,29 +187,15 @@ impl Part {
         Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()
     }
 
-    /// Sets the time origin of a part with a mass. Other parts have phases.
-    pub(in crate::boundary) fn set_time_origin(&mut self, origin: f64) {
-        self.change_piston(|piston| piston.at_origin(origin));
+    /// Returns the motion along a direction, if the part has one.
+    pub(in crate::boundary) fn motion_mut(&mut self) -> Option<&mut Motion> {
+        self.travel.along.as_mut().map(|along| &mut along.motion)
     }
 
     /// Changes the motion of a part with a mass by this impulse. Returns whether the part has a mass.
     pub(in crate::boundary) fn take(&mut self, impulse: DVec2, time: f64) -> bool {
-        let along = self.travel.along.as_ref().map_or(0.0, |along| impulse.dot(along.direction));
-        self.change_piston(|piston| piston.struck(along, time))
-    }
-
-    /// Sets the state of a part with a mass.
-    pub(in crate::boundary) fn set_piston(&mut self, numbers: [f64; 3]) -> Result<(), ParameterError> {
-        let changed = self.travel.piston().map(|piston| piston.with_numbers(numbers)).transpose()?;
-        self.change_piston(|piston| changed.clone().unwrap_or_else(|| piston.clone()));
-        Ok(())
-    }
-
-    fn change_piston(&mut self, change: impl FnOnce(&Stroke) -> Stroke) -> bool {
-        let Some(Along { motion, .. }) = &mut self.travel.along else { return false };
-        let Some(changed) = motion.stroke().map(change) else { return false };
-        *motion = Motion::of(changed);
-        true
+        let Some(Along { direction, motion }) = &mut self.travel.along else { return false };
+        motion.change(|piston| piston.struck(impulse.dot(*direction), time))
     }
 
     /// Returns whether disks in this rectangle could rub a part with a mass along its direction.

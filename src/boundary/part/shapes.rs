@@ -111,10 +111,10 @@ impl Part {
 crate::gate::from_file! {
     Part {
         bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64,
-        #[serde(default)] only_for: Vec<Kind>
+        only_for: Option<Vec<Kind>>
     } => {
         let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct) };
-        let part = if only_for.is_empty() { part } else { part.only_for(only_for) };
+        let part = if let Some(kinds) = only_for { part.only_for(kinds) } else { part };
         let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
         if let Some(super::Turning { about, angular_velocity, .. }) = travel.turning {
             part = part.with_rotation(about, angular_velocity)?;

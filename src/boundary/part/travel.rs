@@ -103,11 +103,6 @@ fn unturned(turn: DVec2, vector: DVec2) -> DVec2 {
 }
 
 impl Along {
-    /// Returns the phase of the motion at a time origin. A piston knows its origin itself.
-    fn phase(&self, origin: f64) -> f64 {
-        if self.motion.stroke().is_some() { 0.0 } else { self.motion.phase(origin) }
-    }
-
     /// Returns the displacement at a phase.
     fn shift(&self, phase: f64) -> DVec2 {
         self.direction * self.motion.state(phase).displacement
@@ -167,7 +162,7 @@ impl Travel {
     /// Returns the phases of the motions at a time origin: the origin minus whole periods.
     pub(in crate::boundary) fn phase(&self, origin: f64) -> Phase {
         Phase {
-            along: self.along.as_ref().map_or(0.0, |along| along.phase(origin)),
+            along: self.along.as_ref().map_or(0.0, |along| along.motion.phase(origin)),
             turning: self.frame().map_or(0.0, |turning| origin % (TAU / turning.angular_velocity)),
         }
     }
@@ -181,7 +176,7 @@ impl Travel {
     /// part that only turns, the phase is the time within a turn.
     pub(in crate::boundary) fn moved(&self, phase: Phase) -> Option<(DVec2, f64)> {
         let turning = || self.frame().map(|turning| phase.turning % turning.period());
-        let along = self.along.as_ref().map(|along| along.phase(phase.along));
+        let along = self.along.as_ref().map(|along| along.motion.phase(phase.along));
         along.or_else(turning).map(|reduced| (self.shift(phase) + DVec2::ZERO, reduced))
     }
 
@@ -223,8 +218,7 @@ impl Travel {
     /// Returns a flight in the frame of the part, from a time on and for at most `longest`. `phase` is the
     /// phase at time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
-        let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
-        let path = Path::exact(place, velocity, pull, flight.radius());
+        let path = Path::of(flight, time);
         let look = match &self.along {
             Some(along) => along.look(&path, phase.along, time),
             None => Look { path, until: f64::INFINITY },

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::PlacedBrick;
+use super::{Placed, PlacedBrick};
 use crate::boundary::{Domain, Region};
 
 /// Number of cells for each brick. A brick is then alone in most of its cells.
@@ -37,26 +37,11 @@ pub(super) struct Entry {
 }
 
 impl Index {
-    /// The index without bricks.
-    pub(super) const EMPTY: Self = Self {
-        corner: DVec2::ZERO,
-        density: DVec2::ONE,
-        columns: 1,
-        rows: 1,
-        starts: Vec::new(),
-        entries: Vec::new(),
-    };
-
-    /// Enters walls into the cells of a grid. The rectangle that `bounds` returns holds a wall at all times,
-    /// and `is_near` decides whether the wall may come into a cell's region.
-    pub(super) fn new(
-        domain: &Domain,
-        bricks: &[PlacedBrick],
-        bounds: impl Fn(&PlacedBrick) -> Region,
-        is_near: impl Fn(&PlacedBrick, &Region) -> bool,
-    ) -> Self {
+    /// Enters bricks into the cells of a grid into which they may come at some time.
+    pub(super) fn new(domain: &Domain, bricks: &[PlacedBrick], placed: &[Placed]) -> Self {
+        let travel = |of: &PlacedBrick| placed[of.part].part.travel();
         let images: Vec<(u32, DVec2, Region)> = (0..)
-            .zip(bricks.iter().map(bounds))
+            .zip(bricks.iter().map(|of| travel(of).bounds(&of.brick)))
             .flat_map(|(wall, bounds)| {
                 domain.images_of(&bounds).map(move |image| (wall, image, bounds.shifted(image)))
             })
@@ -71,8 +56,9 @@ impl Index {
         let mut index = Self { corner: min, density, columns, rows, starts: vec![0], entries: Vec::new() };
         let mut cells = vec![Vec::new(); columns * rows];
         for (wall, image, bounds) in images {
+            let of = &bricks[wall as usize];
             for cell in index.cells(&bounds) {
-                if is_near(&bricks[wall as usize], &index.region(cell).shifted(-image)) {
+                if travel(of).may_reach(&of.brick, &index.region(cell).shifted(-image), 0.0) {
                     cells[cell].push(Entry { wall, image });
                 }
             }
@@ -142,14 +128,10 @@ impl Index {
     /// Returns the rectangle of a cell, slightly enlarged, so that rounding leaves no gap between two cells.
     fn region(&self, cell: usize) -> Region {
         const ROUNDING: f64 = 1e-6;
-        let (column, row) = (cell % self.columns, cell / self.columns);
-        let edge = |number: usize, count: usize, more: f64| match number {
-            0 if more < 0.0 => f64::NEG_INFINITY,
-            last if last == count && more > 0.0 => f64::INFINITY,
-            number => number as f64 + more,
-        };
-        let low = DVec2::new(edge(column, self.columns, -ROUNDING), edge(row, self.rows, -ROUNDING));
-        let high = DVec2::new(edge(column + 1, self.columns, ROUNDING), edge(row + 1, self.rows, ROUNDING));
+        let place = DVec2::new((cell % self.columns) as f64, (cell / self.columns) as f64);
+        let last = DVec2::new(self.columns as f64, self.rows as f64) - 1.0;
+        let low = DVec2::select(place.cmpeq(DVec2::ZERO), DVec2::NEG_INFINITY, place - ROUNDING);
+        let high = DVec2::select(place.cmpeq(last), DVec2::INFINITY, place + 1.0 + ROUNDING);
         Region::new(self.corner + low / self.density, self.corner + high / self.density)
     }
 }

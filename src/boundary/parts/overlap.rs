@@ -1,18 +1,19 @@
 //! Overlaps with the parts of a container, and the area that the parts leave free.
 //!
-//! Overlaps with the parts of a container.
-//!
 //! The nearest brick of a part decides whether a position is behind the part. If the disk reaches a brick of
 //! the part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away,
 //! a table decides: it lists, for each cell of the index, the parts that fill the cell.
 
 use glam::DVec2;
 
-use super::index::{Entry, Index};
-use super::{Parts, Placed};
-use crate::boundary::area::{Curve, Field, meet};
-use crate::boundary::part::Sighted;
-use crate::boundary::{Overlap, Probe, Region};
+use super::index::Index;
+use super::{Parts, Placed, PlacedBrick};
+use crate::boundary::area::{Curve, Field};
+use crate::boundary::brick::Nearest;
+use crate::boundary::{Overlap, Part, Probe, Region};
+
+/// The number of a part, the index of one of its walls, and the nearest point of this wall.
+type Seen = (usize, usize, Nearest);
 
 impl Parts {
     /// Returns the wall of a part that a disk penetrates most deeply, and the depth.
@@ -23,40 +24,32 @@ impl Parts {
         let stops = |part: usize| self.placed[part].part.stops(probe.kind());
         let whole = whole.filter(|&&part| stops(part as usize));
         let whole = whole.filter_map(|&part| self.depth(part as usize, position, radius, time));
-        let near = self.near_at_rest(position, radius).filter(|(part, _)| stops(*part));
-        let mut near: Vec<(usize, Entry)> = near.collect();
-        near.sort_by_key(|(part, _)| *part);
-        let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
+        let near = self.near_at_rest(position, radius).filter(|(part, ..)| stops(*part));
+        let mut near: Vec<Seen> = near.collect();
+        near.sort_by_key(|(part, ..)| *part);
+        let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|seen| {
+            let nearest = |a: Seen, b: Seen| if b.2.is_better_than(&a.2) { b } else { a };
             // If the disk does not reach the nearest brick of these cells, a nearer brick may lie in other
             // cells.
-            match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
-                Some((wall, sighted)) if sighted.distance() <= radius => {
-                    Some(Overlap::new(wall, radius - sighted.signed_distance()))
+            match seen.iter().copied().reduce(nearest)? {
+                (_, wall, nearest) if nearest.distance <= radius => {
+                    Some(Overlap::new(wall, radius - nearest.signed_distance))
                 }
-                _ => self.depth(entries[0].0, position, radius, time),
+                (part, ..) => self.depth(part, position, radius, time),
             }
         });
         Overlap::deepest(whole.chain(beside))
     }
 
-    /// Returns the bricks at rest in the cells around a disk, with the numbers of their parts.
-    fn near_at_rest(&self, position: DVec2, radius: f64) -> impl Iterator<Item = (usize, Entry)> {
-        let near = self.index.near(&Region::around(position, radius));
-        let with_part = near.map(|entry| (self.bricks[entry.wall as usize].part, entry));
-        with_part.filter(|(part, _)| {
-            let part = &self.placed[*part].part;
-            part.travel().is_at_rest() && !part.takes_centers()
+    /// Returns the bricks at rest in the cells around a disk, as seen from its center.
+    fn near_at_rest(&self, position: DVec2, radius: f64) -> impl Iterator<Item = Seen> {
+        self.index.near(&Region::around(position, radius)).filter_map(move |entry| {
+            let number = entry.wall as usize;
+            let PlacedBrick { part, brick } = &self.bricks[number];
+            let blocks = |part: &Part| part.travel().is_at_rest() && !part.takes_centers();
+            let seen = || (*part, number + self.first, brick.nearest(position - entry.image));
+            blocks(&self.placed[*part].part).then(seen)
         })
-    }
-
-    /// Returns the nearest of these bricks at rest, with the index of its wall.
-    fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
-        let sights = entries.map(|entry| {
-            let wall = entry.wall as usize;
-            let sighted = Sighted::new(&self.bricks[wall].brick, position - entry.image);
-            (wall + self.first, sighted)
-        });
-        sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a })
     }
 
     /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
@@ -110,7 +103,7 @@ impl Parts {
     /// Returns the cells that may be behind a part: the cells of its rectangle if disks are free outside it,
     /// otherwise all cells.
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
-        let bounds = placed.part.bounds();
+        let bounds = placed.bounds;
         let is_walled = self.domain.periods() == DVec2::ZERO;
         // This point is far enough from the part to stay outside after rounding, whatever the part's size.
         let outside = bounds.min - (bounds.max - bounds.min) - DVec2::ONE;
@@ -140,8 +133,8 @@ impl Parts {
         // The region holds centers of disks. The margin keeps rounding from hiding a touch at its edge.
         let reach = 1.001 * radius;
         self.index.near(&region.enlarged(reach)).any(|entry| {
-            let (of, travel) = self.brick(entry.wall as usize);
-            travel.may_reach(&of.brick, &region.shifted(-entry.image), reach)
+            let (placed, brick) = self.owner(entry.wall as usize);
+            placed.part.travel().may_reach(brick, &region.shifted(-entry.image), reach)
         })
     }
 
@@ -152,7 +145,7 @@ impl Parts {
             let pose = placed.part.travel().pose(placed.phase.after(time));
             let reach = placed.bounds.enlarged(radius);
             for image in self.domain.images_of(&placed.bounds) {
-                if meet(region, &reach.shifted(image)) {
+                if region.meets(&reach.shifted(image)) {
                     let bricks = placed.part.all_bricks().flat_map(|brick| brick.curves(radius));
                     curves.extend(bricks.map(|curve| curve.moved(|place| pose.outward(place) + image)));
                 }

@@ -3,10 +3,10 @@
 use glam::DVec2;
 
 use super::index::Entry;
-use super::{Parts, Placed, PlacedBrick};
+use super::{Parts, Placed};
 use crate::Flight;
-use crate::boundary::brick::{Brick, Path};
-use crate::boundary::part::{Travel, Turning};
+use crate::boundary::brick::{Brick, Nearest, Path};
+use crate::boundary::part::{Pose, Turning};
 use crate::boundary::plane::Plane;
 use crate::boundary::{FirstTouch, Region, Surface, Touch};
 
@@ -48,12 +48,6 @@ const LONGEST: f64 = 1e150;
 const LEAST_PERIOD: f64 = 64.0;
 
 impl Parts {
-    /// Returns a brick and the motion of its part.
-    pub(super) fn brick(&self, number: usize) -> (&PlacedBrick, &Travel) {
-        let of = &self.bricks[number];
-        (of, self.placed[of.part].part.travel())
-    }
-
     /// Returns the first touch of a part, or the first touch of the container's own walls, whichever is
     /// earlier.
     #[inline(never)]
@@ -78,16 +72,16 @@ impl Parts {
             if last.replace(entry) == Some(entry) {
                 continue;
             }
-            let (of, travel) = self.brick(entry.wall as usize);
-            if !self.placed[of.part].part.stops(flight.kind()) {
+            let (placed, brick) = self.owner(entry.wall as usize);
+            if !placed.part.stops(flight.kind()) {
                 continue;
             }
-            if !travel.is_at_rest() {
+            if !placed.part.travel().is_at_rest() {
                 if !moving.contains(&entry) {
                     moving.push(entry);
                 }
             } else if let Some(time) =
-                of.brick.first_touch(&self.seen_from(entry, flight), until.min(first.time()))
+                brick.first_touch(&self.seen_from(entry, flight), until.min(first.time()))
             {
                 first = first.or(FirstTouch::At(self.touch(entry, time)));
             }
@@ -98,7 +92,7 @@ impl Parts {
     /// Returns the flight as seen from a periodic image of a brick. For a brick that takes out centers, the
     /// disk shrinks to its center.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
-        let is_line = self.placed[self.bricks[entry.wall as usize].part].part.takes_centers();
+        let is_line = self.owner(entry.wall as usize).0.part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
             return *flight;
         }
@@ -128,13 +122,9 @@ impl Parts {
             // and a search of the back alone would use up all steps.
             let mut first = other;
             for &entry in moving {
-                let PlacedBrick { part, brick } = &self.bricks[entry.wall as usize];
-                let search = Search {
-                    brick,
-                    placed: &self.placed[*part],
-                    flight: &self.seen_from(entry, flight),
-                    until: until.min(first.time()),
-                };
+                let (placed, brick) = self.owner(entry.wall as usize);
+                let (flight, until) = (&self.seen_from(entry, flight), until.min(first.time()));
+                let search = Search { brick, placed, flight, until };
                 first = first.or(search.run(from, &mut steps).map(|time| self.touch(entry, time)));
             }
             match first {
@@ -151,50 +141,41 @@ impl Parts {
     /// Without this rule, rounding would decide whether the part or the wall is touched first.
     fn on_patch(&self, touch: Touch, flight: &Flight, planes: &[Plane]) -> Touch {
         let (place, radius) = (flight.position(touch.time), flight.radius());
-        let part = |brick: usize| &self.placed[self.bricks[brick].part].part;
-        let is_patch = |brick: usize| part(brick).is_patch();
-        if touch.wall.checked_sub(self.first).is_some_and(is_patch) {
+        let part = |brick: usize| &self.owner(brick).0.part;
+        if touch.wall.checked_sub(self.first).is_some_and(|brick| part(brick).is_patch()) {
             return touch;
         }
         let normal_of = |wall: usize| self.surface(wall, place, touch.time).normal;
         let normal = planes.get(touch.wall).map_or_else(|| normal_of(touch.wall), |plane| plane.normal);
         let mut near = self.index.near(&Region::around(place, 2.0 * radius)).filter(|entry| {
             let brick = entry.wall as usize;
-            let stops = part(brick).stops(flight.kind());
-            let is_there = || self.gap(brick, flight, touch.time).abs() <= IN_WALL * radius;
+            let gap = || self.nearest_image(brick, place, touch.time).2.distance - radius;
             let is_along = || normal_of(brick + self.first).dot(normal) >= 1.0 - IN_WALL;
-            is_patch(brick) && stops && is_there() && is_along()
+            let is_one = part(brick).is_patch() && part(brick).stops(flight.kind());
+            is_one && gap().abs() <= IN_WALL * radius && is_along()
         });
         near.next().map_or(touch, |entry| self.touch(entry, touch.time))
     }
 
-    /// Returns the gap between a disk and a brick at a time.
-    fn gap(&self, brick: usize, flight: &Flight, time: f64) -> f64 {
-        let PlacedBrick { part, brick } = &self.bricks[brick];
-        let placed = &self.placed[*part];
-        let travel = placed.part.travel();
-        let (pose, place) = (travel.pose(placed.phase.after(time)), flight.position(time));
-        let distances = self.domain.images_of(&travel.bounds(brick));
-        let distances = distances.map(|image| brick.nearest(pose.inward(place - image)).distance);
-        distances.fold(f64::INFINITY, f64::min) - flight.radius()
+    /// Returns the periodic image of a brick that is nearest to a position, the pose of its part, and the
+    /// nearest point.
+    fn nearest_image(&self, brick: usize, position: DVec2, time: f64) -> (DVec2, Pose, Nearest) {
+        let (Placed { part, phase, .. }, brick) = self.owner(brick);
+        let pose = part.travel().pose(phase.after(time));
+        let seen = |image| (image, pose, brick.nearest(pose.inward(position - image)));
+        let images = self.domain.images_of(&part.travel().bounds(brick)).map(seen);
+        let nearest = images.reduce(|a, b| if b.2.distance < a.2.distance { b } else { a });
+        nearest.unwrap_or_else(|| seen(DVec2::ZERO))
     }
 
     /// Returns the surface of a wall that a disk at this position touches.
     pub(in crate::boundary) fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
-        let PlacedBrick { part, brick } = &self.bricks[wall - self.first];
-        let placed = &self.placed[*part];
-        let travel = placed.part.travel();
-        let pose = travel.pose(placed.phase.after(time));
-        let images = self.domain.images_of(&travel.bounds(brick));
-        let sights = images.map(|image| (image, brick.nearest(pose.inward(position - image))));
-        let nearest = sights.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
-        let Some((image, nearest)) = nearest else {
-            return Surface::new(DVec2::Y, DVec2::ZERO);
-        };
+        let (Placed { part, phase, .. }, brick) = self.owner(wall - self.first);
+        let (image, pose, nearest) = self.nearest_image(wall - self.first, position, time);
         let normal = pose.direction_outward(nearest.normal);
         let contact = position - image - nearest.distance * normal;
         let radius = brick.radius_at(pose.inward(position - image));
-        placed.part.surface(normal, radius, travel.velocity(contact, placed.phase.after(time)))
+        part.surface(normal, radius, part.travel().velocity(contact, phase.after(time)))
     }
 }
 
@@ -276,16 +257,13 @@ impl Search<'_> {
         let travel = self.placed.part.travel();
         let look = travel.look(self.flight, self.placed.phase, time, self.until - time);
         let (path, brick) = (look.path, self.brick);
-        let mut wait = (self.until.min(look.until) - time).max(0.0);
-        if path.spread > 0.0 {
-            // The disk must not grow so much that it no longer fits into a circle.
-            wait = wait.min((2.0 * brick.most_growth(path.radius) / path.spread).sqrt());
-        }
-        let is_exact = path.spread == 0.0;
-        if is_exact {
+        let wait = (self.until.min(look.until) - time).max(0.0);
+        if path.spread == 0.0 {
             let touch = brick.wait_for_touch(&path, wait);
             return touch.map_or(Step::Open(time + wait), |touch| Step::Touch(time + touch));
         }
+        // The disk must not grow so much that it no longer fits into a circle.
+        let wait = wait.min((2.0 * brick.most_growth(path.radius) / path.spread).sqrt());
         let rounding = ROUNDING * (self.flight.position(time).length() + path.place.length() + path.radius);
         let at_once = Path { radius: path.radius + rounding, spread: 0.0, ..path };
         if brick.wait_for_touch(&at_once, 0.0).is_some() {
@@ -302,14 +280,12 @@ impl Search<'_> {
     /// Returns the first time, from this time on, at which the disk is near enough for a touch with this
     /// brick at any position of the part. The result may be too early, but never too late.
     fn enters_strip(&self, time: f64) -> Option<f64> {
-        let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
-        let (travel, radius) = (self.placed.part.travel(), self.flight.radius());
+        let mut path = Path::of(self.flight, time);
         // The margin is far above the rounding error of lengths, and far below the stroke of any motion that
-        // `put` accepts: a disk that waits in the margin costs steps.
-        let radius = radius + MARGIN * (radius + place.abs().max_element() + self.placed.size);
-        let path = Path::exact(place, velocity, self.flight.acceleration(), radius);
+        // a container accepts: a disk that waits in the margin costs steps.
+        path.radius += MARGIN * (path.radius + path.place.abs().max_element() + self.placed.size);
         let wait = (self.until - time).clamp(0.0, LONGEST);
-        Some(time + travel.wait_to_enter_strip(self.brick, &path, wait)?)
+        Some(time + self.placed.part.travel().wait_to_enter_strip(self.brick, &path, wait)?)
     }
 }
 

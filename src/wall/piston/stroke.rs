@@ -177,10 +177,6 @@ impl WallMotion for Stroke {
         (self.piston.lowest, self.piston.highest)
     }
 
-    fn jumps(&self) -> bool {
-        false
-    }
-
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(self.piston.fingerprint())
     }
