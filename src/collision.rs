@@ -50,7 +50,6 @@
 mod contact;
 mod encounter;
 mod frictional;
-mod inelasticity;
 mod known;
 pub mod laws;
 mod remedies;

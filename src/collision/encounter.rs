@@ -7,6 +7,7 @@ use crate::{Disk, Kind};
 
 /// The constant properties of a body in a collision: its kind, its size, and its resistance to impulses.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Material {
     /// Distance from the center, about which the body turns, to the surface; 0 for a wall.
     arm: f64,

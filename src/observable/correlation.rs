@@ -181,11 +181,6 @@ impl<V> Lags<V> {
     fn forget_samples(&mut self) {
         self.past.clear();
     }
-
-    pub(super) fn clear(&mut self) {
-        self.forget_samples();
-        self.means.fill(BlockedMean::new());
-    }
 }
 
 /// Returns the unwrapped positions of all disks.
@@ -277,12 +272,6 @@ impl MeanSquaredDisplacement {
     /// 1970), so report $`t`$ together with the coefficient.
     pub fn diffusion_coefficient(&self) -> Estimate {
         self.diffusion.estimate()
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.lags.clear();
-        self.diffusion = BlockedMean::new();
     }
 
     /// Returns the slope over the second half of the lags, up to the latest sample.
@@ -449,11 +438,6 @@ impl<Q: Observable> TimeCorrelation<Q> {
     /// Iterates over the lags as times, with the correlations.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
         self.lags.iter()
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.lags.clear();
     }
 }
 

@@ -1,8 +1,9 @@
-//! Grids of cells, and the sums over the disks in each cell.
+//! Grids of cells, the sums over the disks in each cell, and the shares of regions that walls leave free.
 
 use glam::DVec2;
 
 use super::Snapshot;
+use super::snapshot::Mark;
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, finite};
 use crate::statistics::{Bins, Moments};
@@ -187,4 +188,65 @@ impl CellSums {
 
 crate::gate::from_file! {
     Grid { region: Region, columns: usize, rows: usize } => Self::new(region, columns, rows)
+}
+
+/// The free shares of several regions. They are kept as long as no wall has moved.
+///
+/// They are not part of the measurement: no file holds them, and any two values of this type compare equal.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FreeShares {
+    walls: Mark,
+    time: f64,
+    points: Option<Vec<DVec2>>,
+    shares: Vec<f64>,
+}
+
+impl FreeShares {
+    /// Returns the share of each region that matter can fill at the time of a snapshot. All calls must pass
+    /// the same regions.
+    ///
+    /// # Errors
+    /// If a share is unknown. The error says what to use instead.
+    pub(super) fn of(
+        &mut self,
+        snapshot: &Snapshot<'_>,
+        regions: impl Iterator<Item = Region>,
+    ) -> Result<&[f64], ParameterError> {
+        let walls = 0..snapshot.wall_count();
+        let points: Option<Vec<DVec2>> = walls.map(|wall| snapshot.wall_point(wall)).collect();
+        let stays = self.time == snapshot.time() || points.is_some() && points == self.points;
+        if !(stays && self.walls.is_same(snapshot.walls_mark())) {
+            let shares: Option<Vec<f64>> = regions.map(|region| snapshot.free_share(&region)).collect();
+            known(shares.is_some())?;
+            (self.walls, self.points) = (snapshot.walls_mark(), points);
+            self.shares = shares.unwrap_or_default();
+        }
+        self.time = snapshot.time();
+        Ok(&self.shares)
+    }
+}
+
+/// Checks that the free area is known for a region, or else for each part of it.
+///
+/// # Errors
+/// If the area is unknown. The error says what to use instead.
+pub(super) fn check_area(
+    region: &Region,
+    parts: impl IntoIterator<Item = Region>,
+    start: &Snapshot<'_>,
+) -> Result<(), ParameterError> {
+    let is_known = |region: &Region| start.free_share(region).is_some();
+    known(is_known(region) || parts.into_iter().all(|part| is_known(&part)))
+}
+
+fn known(all_are_known: bool) -> Result<(), ParameterError> {
+    let requirement = "known: implement Boundary::area, let parts with an inside stop all kinds of disks, or \
+                       measure in a region that no wall enters";
+    accept(all_are_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)
+}
+
+impl PartialEq for FreeShares {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }

@@ -243,13 +243,6 @@ impl PairCorrelation {
             .map(move |(bin, pairs)| (self.bins.middle(bin), pairs.estimate().scaled(scale)))
     }
 
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.pairs.fill(BlockedMean::new());
-        (self.centers, self.partner_density) = (RunningMean::default(), RunningMean::default());
-        self.numbers = [RunningMean::default(); 3];
-    }
-
     /// Returns the region of the disks around which partners are counted.
     fn counted(&self, snapshot: &Snapshot<'_>) -> Result<Region, ParameterError> {
         let domain = snapshot.domain();

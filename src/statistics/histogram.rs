@@ -199,14 +199,6 @@ impl Histogram {
             HistogramBin { low, high, count, density: density.scaled(1.0 / self.bins.width()) }
         })
     }
-
-    /// Forgets all numbers so far.
-    pub fn clear(&mut self) {
-        self.counts.fill(0);
-        self.before.fill(0);
-        self.shares.fill(BlockedMean::new());
-        (self.below, self.above, self.count) = (0, 0, 0);
-    }
 }
 
 /// Returns the size of the smallest blocks. A number then costs constant time, however many bins there are.

@@ -45,7 +45,6 @@ impl Moments {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "RawRunningMean", into = "RawRunningMean"))]
 pub struct RunningMean(Moments);
 
 impl RunningMean {
@@ -103,30 +102,6 @@ impl FromIterator<f64> for RunningMean {
         let mut mean = Self::default();
         mean.extend(values);
         mean
-    }
-}
-
-/// The form of the mean in files.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "RunningMean")]
-struct RawRunningMean {
-    count: u64,
-    mean: f64,
-    squares: f64,
-}
-
-#[cfg(feature = "serde")]
-impl From<RunningMean> for RawRunningMean {
-    fn from(running: RunningMean) -> Self {
-        Self { count: running.count(), mean: running.0.mean, squares: running.0.squares }
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<RawRunningMean> for RunningMean {
-    fn from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Self {
-        Self(Moments { weight: count as f64, mean, squares })
     }
 }
 

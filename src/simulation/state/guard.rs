@@ -1,6 +1,6 @@
 //! The pace of the disks: the length of an epoch, and the guard against runs that hardly progress.
 
-use super::bodies::Bodies;
+use super::Bodies;
 use crate::Gravity;
 use crate::simulation::Counters;
 use glam::DVec2;
