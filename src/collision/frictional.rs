@@ -315,21 +315,6 @@ impl SpeedDependent {
         let root = (closing_speed / self.speed).min(1.0).sqrt();
         1.0 - (1.0 - self.least_restitution) * (root * root.sqrt())
     }
-
-    /// Returns the restitution r_0 of fast collisions.
-    pub const fn least_restitution(&self) -> f64 {
-        self.least_restitution
-    }
-
-    /// Returns the closing speed v_0 above which the restitution is constant.
-    pub const fn speed(&self) -> f64 {
-        self.speed
-    }
-
-    /// Returns the friction.
-    pub const fn friction(&self) -> &Friction {
-        &self.friction
-    }
 }
 
 impl CollisionRule for SpeedDependent {
@@ -340,7 +325,7 @@ impl CollisionRule for SpeedDependent {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution()).number(self.speed());
+        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution).number(self.speed);
         Some(normal.part(self.friction.fingerprint()))
     }
 

@@ -281,11 +281,6 @@ impl Fields {
         self.samples
     }
 
-    /// Returns the grid.
-    pub const fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
     /// Returns the fields in a cell, or `None` outside the grid.
     ///
     /// Columns are counted from the left, and rows from below.

@@ -100,11 +100,6 @@ pub struct EnergyPerDisk {
 }
 
 impl EnergyPerDisk {
-    /// Creates energies from the translational, rotational and potential energy.
-    pub const fn new(translational: f64, rotational: f64, potential: f64) -> Self {
-        Self { translational, rotational, potential }
-    }
-
     /// Returns the sum of all three energies.
     pub fn total(&self) -> f64 {
         self.translational + self.rotational + self.potential

@@ -52,11 +52,6 @@ impl<'a> Neighbors<'a> {
         Self { disks, domain, squares, range, half }
     }
 
-    /// Returns the range.
-    pub const fn range(&self) -> f64 {
-        self.range
-    }
-
     /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. If no disk has this
     /// index, there are no neighbors.
     pub fn of(&self, disk: usize) -> impl Iterator<Item = Neighbor> {
@@ -222,7 +217,7 @@ impl PairCorrelation {
     }
 
     /// Returns the largest distance.
-    pub fn range(&self) -> f64 {
+    fn range(&self) -> f64 {
         self.bins.edge(self.bins.count())
     }
 

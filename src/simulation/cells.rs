@@ -23,7 +23,7 @@ use contents::Contents;
 use division::classes;
 pub(super) use grid::{Grid, Place};
 pub(super) use layers::Layouts;
-use layers::{Layers, layouts};
+use layers::{Chosen, Layers, layouts};
 pub(crate) use layout::FEWEST;
 pub(super) use layout::{CELLS_PER_DISK, CellSize, Layout, SPARE_CELLS, SizeClass};
 use layout::{class_of, count, together};
@@ -39,7 +39,7 @@ pub(super) const SPARE_DISKS: usize = 64;
 /// and each larger class has a layer above it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Cells {
-    grid: Grid,
+    pub(super) grid: Grid,
     contents: Contents,
     /// Column and row of each disk, in the grid of its class.
     pub(super) places: Vec<Place>,
@@ -171,7 +171,8 @@ impl Cells {
         let class = class_of(&self.classes, diameter);
         match self.layers.as_ref().and_then(|layers| Some((layers, layers.of_class(class)?))) {
             Some((layers, layer)) => {
-                layers.gather_all(&self.contents, class, layer.grid.place_of(position), found)
+                let place = layer.grid.place_of(position);
+                layers.gather(&self.contents, class, place, Chosen::AlsoInside, found)
             }
             None => self.around_cell_in_layers(self.grid.place_of(position), found),
         }
@@ -198,11 +199,6 @@ impl Cells {
         }
     }
 
-    #[inline]
-    pub(super) fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
     /// Writes a disk of any class into its cell, or removes it from the cell.
     fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
@@ -217,7 +213,7 @@ impl Cells {
     fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
         change(&mut self.contents, self.grid.index(place), disk);
-        if self.grid.is_periodic() {
+        if self.grid.is_periodic {
             for ghost in self.grid.mirrors(place) {
                 change(&mut self.contents, self.grid.index(ghost), disk);
             }
@@ -268,7 +264,7 @@ impl Cells {
     #[inline(always)]
     fn around_cell(&self, place: Place, found: &mut [u32]) -> usize {
         let center = self.grid.index(place);
-        let stride = self.grid.stride();
+        let stride = self.grid.stride;
         let mut count = 0;
         for first in [center - stride - 1, center - 1, center + stride - 1] {
             count = self.contents.gather(first, 1, found, count);
@@ -279,7 +275,7 @@ impl Cells {
     fn around_in_layers(&self, layers: &Layers, disk: usize, found: &mut [u32]) -> usize {
         let place = self.places[disk];
         if layers.of(disk).is_some() {
-            return layers.gather(&self.contents, disk, place, None, found);
+            return layers.gather(&self.contents, layers.classes[disk], place, Chosen::InReach, found);
         }
         self.around_cell_in_layers(place, found)
     }
@@ -299,7 +295,8 @@ impl Cells {
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
         // If two images of a disk cannot be distinguished, a disk within reach of the last cell may now be
         // met at another image, so all disks within reach are gathered again.
-        layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
+        let chosen = if layers.is_narrow { Chosen::InReach } else { Chosen::Beyond(before) };
+        layers.gather(&self.contents, layers.classes[disk], place, chosen, found)
     }
 
     /// Writes to `found` the disks that come within reach of a disk of the smallest class when it enters its
@@ -333,7 +330,7 @@ impl Cells {
     #[inline(always)]
     fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();
-        let stride = self.grid.stride();
+        let stride = self.grid.stride;
         let middle =
             self.grid.index(place).wrapping_add_signed(right as isize * stride.cast_signed() + up as isize);
         let step = if up == 0 { 1 } else { stride };
@@ -357,7 +354,7 @@ impl Cells {
         if self.is_large(disk) {
             return;
         }
-        let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
+        let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride);
         for middle in [center - stride, center, center + stride] {
             self.contents.prefetch(middle - 1);
             self.contents.prefetch(middle + 1);

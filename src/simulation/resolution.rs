@@ -320,7 +320,7 @@ impl Engine {
     #[inline(never)]
     pub(super) fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {
         let masses = [disk, partner].map(|disk| self.bodies.material(disk).inverse_mass);
-        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
+        let (periods, now) = (self.cells.grid.periods, self.clock.now);
         let speed = self.bodies.speed(disk) + self.bodies.speed(partner);
         if left > WANTED * speed {
             return;

@@ -61,7 +61,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let clock = Clock { now: due, ..self.engine.clock };
         match partner {
             Partner::Disk(other) => {
-                let periods = self.engine.cells.grid().periods();
+                let periods = self.engine.cells.grid.periods;
                 let (collision, _) =
                     resolve_pair(&self.engine.bodies, &self.parts.rule, periods, &clock, disk, other);
                 self.engine.remedy_for(&collision.contact, &self.parts.rule)

@@ -19,7 +19,7 @@ use crate::boundary::Domain;
 use crate::collision::{Body, Material};
 use crate::observable::Moving;
 use crate::{Disk, Gravity};
-pub(super) use clock::{Clock, Ledger, Tally};
+pub(super) use clock::{Clock, Ledger};
 pub(super) use forecast::{Earliest, Exit, Forecast};
 pub(super) use guard::{FARTHEST, Standstill, effort, least_progress};
 pub(super) use population::Identities;

@@ -194,7 +194,7 @@ const ROUNDING: f64 = 1e-6;
 /// The apparent standard error from blocks of one size.
 #[derive(Debug, Clone, Copy)]
 struct BlockError {
-    pub(super) error: f64,
+    error: f64,
     mean: f64,
     /// Relative uncertainty of the error itself.
     uncertainty: f64,
@@ -203,7 +203,7 @@ struct BlockError {
 
 impl BlockError {
     /// Returns the error from two or more blocks that are assumed to be independent.
-    pub(super) fn of(blocks: &RunningMean) -> Self {
+    fn of(blocks: &RunningMean) -> Self {
         let count = blocks.count();
         // The uncertainty of a standard deviation of normal numbers.
         let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();

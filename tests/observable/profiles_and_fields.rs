@@ -142,7 +142,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
         assert!((cell.rotational_temperature - 0.125 * 4.0).abs() < 1e-9);
         assert_eq!(cell.center, DVec2::new(10.0 * f64::from(column) + 5.0, 30.0 * f64::from(row) + 15.0));
     }
-    assert_eq!((fields.iter().count(), fields.grid().shape(), fields.samples()), (30, (6, 5), 2));
+    assert_eq!((fields.iter().count(), fields.samples()), (30, 2));
     Ok(())
 }
 
