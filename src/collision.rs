@@ -55,9 +55,9 @@ pub mod laws;
 mod remedies;
 mod without_friction;
 
-pub use contact::Contact;
-pub use contact::{Impulse, Regime};
-pub(crate) use encounter::{Body, Material, after, collide_after, collide_bodies, contact_of, momentum};
+pub use contact::{Contact, Impulse, Regime};
+pub(crate) use encounter::momentum;
+pub(crate) use encounter::{Body, Material, after, collide_after, collide_bodies, contact_of, meeting};
 pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
 pub use frictional::{Friction, Frictional, SpeedDependent};
 pub use known::{FromFn, KnownRule, RulesByKind, from_fn};

@@ -125,8 +125,7 @@ mod stress;
 mod table;
 mod velocity_distribution;
 
-pub use adaptors::ByCollisions;
-pub use adaptors::{BetweenKinds, OfKind};
+pub use adaptors::{BetweenKinds, ByCollisions, OfKind};
 #[doc(alias("flow", "flux", "discharge"))]
 pub use at_walls::Arrivals;
 #[doc(alias("pressure", "wall force"))]
@@ -140,8 +139,7 @@ pub use collisions::CollisionHistograms;
 pub use contract::Observable;
 #[doc(alias("callback", "hook", "fix"))]
 pub use contract::Observer;
-pub use contract::{Collision, Partner};
-pub use contract::{ObserverError, Verdict};
+pub use contract::{Collision, ObserverError, Partner, Verdict};
 #[doc(alias("MSD", "mean squared", "diffusion"))]
 pub use correlation::MeanSquaredDisplacement;
 pub use correlation::PerDisk;
@@ -157,9 +155,7 @@ pub use fields::{DenseLayer, HeightProfile};
 #[doc(alias("density", "velocity field", "coarse-graining"))]
 pub use fields::{FieldCell, Fields};
 pub use grid::Grid;
-pub use mechanics::CenterOfMass;
-pub use mechanics::TemperaturesAboutFlow;
-pub use mechanics::{Energies, EnergyPerDisk};
+pub use mechanics::{CenterOfMass, Energies, EnergyPerDisk, TemperaturesAboutFlow};
 #[doc(alias("piston"))]
 pub use mechanics::{FreeWall, FreeWallMotion};
 #[doc(alias("granular temperature"))]
@@ -173,14 +169,11 @@ pub use order::{ConvectionOrder, OrderParameters};
 #[doc(alias("psi6", "bond order", "hexagonal order"))]
 pub use order::{Hexatic, HexaticOrder};
 pub use sample_times::SampleTimes;
-pub use sampled::Series;
-pub use sampled::{Accumulator, Sampled};
-pub(crate) use snapshot::Mark;
-pub(crate) use snapshot::Moving;
+pub use sampled::{Accumulator, Sampled, Series};
 pub use snapshot::Snapshot;
+pub(crate) use snapshot::{Mark, Moving};
 #[doc(alias("pressure", "pressure tensor", "virial"))]
 pub use stress::{Stress, StressTensor};
-pub use table::Table;
-pub use table::{Heading, Named, Tabular};
+pub use table::{Heading, Named, Table, Tabular};
 #[doc(alias("velocity distribution", "Sonine", "Maxwellian"))]
 pub use velocity_distribution::VelocityDistribution;

@@ -131,12 +131,6 @@ struct Entry {
 
 const SIGN: u64 = 1 << 63;
 
-impl Default for Entry {
-    fn default() -> Self {
-        Self::EMPTY
-    }
-}
-
 impl Entry {
     /// The entry of no disk, which comes after all others.
     const EMPTY: Self = Self { order: u64::MAX - 1, disk: usize::MAX };

@@ -30,8 +30,6 @@ use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::fingerprint::check_pair;
 use crate::{Kind, Violation};
 pub use contacts::hostile_contacts;
-#[cfg(feature = "proptest")]
-pub(crate) use contacts::{Partner, meeting};
 
 /// Allowed rounding in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;

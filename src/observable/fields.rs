@@ -196,9 +196,6 @@ crate::gate::from_file! {
     HeightProfile { bins: Bins, sums: Vec<f64>, free: Vec<f64>, samples: u64 } => {
         bins.check_count(sums.len())?;
         bins.check_count(free.len())?;
-        for &sum in sums.iter().chain(&free) {
-            crate::quantity::finite("sum of packing fractions", sum)?;
-        }
         Ok(Self { bins, sums, free, samples, shares: FreeShares::default() })
     }
 }
@@ -368,7 +365,6 @@ crate::gate::from_file! {
             let requirement = "the number of cells";
             crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
         }
-        free.iter().try_for_each(|&share| crate::quantity::non_negative("free share", share).map(drop))?;
         Ok(Self { grid, sums, free, samples, shares: FreeShares::default() })
     }
 }

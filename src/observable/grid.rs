@@ -6,7 +6,7 @@ use super::Snapshot;
 use super::snapshot::Mark;
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, finite};
-use crate::statistics::{Bins, Moments};
+use crate::statistics::{Bins, RunningMean};
 use crate::{Disk, ParameterError};
 
 /// Largest number of cells of a grid.
@@ -166,18 +166,18 @@ pub(super) struct CellSums {
     pub(super) count: u64,
     pub(super) area: f64,
     /// Components of the velocity, weighted by mass.
-    pub(super) velocity: [Moments; 2],
+    pub(super) velocity: [RunningMean; 2],
     /// Angular velocity, weighted by moment of inertia.
-    pub(super) angular_velocity: Moments,
+    pub(super) angular_velocity: RunningMean,
 }
 
 impl CellSums {
     pub(super) fn add(&mut self, disk: &Disk) {
         self.count += 1;
         self.area += std::f64::consts::PI * disk.radius() * disk.radius();
-        self.velocity[0].push(disk.velocity().x, disk.mass());
-        self.velocity[1].push(disk.velocity().y, disk.mass());
-        self.angular_velocity.push(disk.angular_velocity(), disk.moment_of_inertia());
+        self.velocity[0].push_weighted(disk.velocity().x, disk.mass());
+        self.velocity[1].push_weighted(disk.velocity().y, disk.mass());
+        self.angular_velocity.push_weighted(disk.angular_velocity(), disk.moment_of_inertia());
     }
 
     /// Returns the velocity of the flow.

@@ -145,11 +145,9 @@ fn potential(snapshot: &Snapshot<'_>, disk: &Disk) -> f64 {
 
 impl Tabular for Energies {
     fn headings(&self) -> Vec<Heading> {
-        vec![
-            Heading::new("translational_energy", "energy"),
-            Heading::new("rotational_energy", "energy"),
-            Heading::new("potential_energy", "energy"),
-        ]
+        ["translational", "rotational", "potential"]
+            .map(|part| Heading::new(format!("{part}_energy"), "energy"))
+            .into()
     }
 
     fn add_numbers(&self, value: &EnergyPerDisk, row: &mut Vec<f64>) {
@@ -298,11 +296,9 @@ impl Observable for Temperatures {
 
 impl Tabular for Temperatures {
     fn headings(&self) -> Vec<Heading> {
-        vec![
-            Heading::new("horizontal_temperature", "energy"),
-            Heading::new("vertical_temperature", "energy"),
-            Heading::new("rotational_temperature", "energy"),
-        ]
+        ["horizontal", "vertical", "rotational"]
+            .map(|part| Heading::new(format!("{part}_temperature"), "energy"))
+            .into()
     }
 
     fn add_numbers(&self, value: &Temperature, row: &mut Vec<f64>) {

@@ -103,7 +103,7 @@ impl<S: EventScheduler> Performance<S> {
 
     fn run(mut self) -> Result<(), Violation> {
         self.compare(|| "before the first reset".to_owned())?;
-        let mut operation = self.script.start(&mut self.stage, self.disks);
+        let mut operation = reset(&mut self.stage, self.disks, self.script.time);
         for step in 0..self.script.steps {
             self.step = step;
             self.stage.note(&operation);
@@ -190,12 +190,6 @@ struct Script {
     /// Makes the next operation from the earliest disk and its time. It is called only while there are disks.
     /// If there is no such function, the first disk or a random one gets another time.
     next: Option<fn(&mut Stage, usize, f64) -> Operation>,
-}
-
-impl Script {
-    fn start(&self, stage: &mut Stage, disks: usize) -> Operation {
-        reset(stage, disks, self.time)
-    }
 }
 
 /// Zero, a few, and powers of two and of four with their neighbors.

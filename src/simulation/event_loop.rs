@@ -154,8 +154,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // then receives a closing speed of zero and may change nothing, and the boundary would find the same
         // touch again.
         let parts = (engine.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
-        let Engine { bodies, seed, clock, .. } = engine;
-        let (mut collision, kick) = resolve_wall(bodies, rule, *seed, &surface, clock, disk, wall);
+        let (mut collision, kick) = resolve_wall(engine, rule, &surface, &engine.clock, disk, wall);
         if !kick.is_possible() {
             let name = self.name_of(Partner::Wall(wall));
             return Err(failed(&collision, name).into());

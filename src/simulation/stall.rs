@@ -74,15 +74,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 if self.engine.stopped.is_some_and(|(stopped, _)| stopped == wall) {
                     return Remedy::WallOnStop;
                 }
-                let (collision, _) = resolve_wall(
-                    &self.engine.bodies,
-                    &self.parts.rule,
-                    self.engine.seed,
-                    &surface,
-                    &clock,
-                    disk,
-                    wall,
-                );
+                let (collision, _) =
+                    resolve_wall(&self.engine, &self.parts.rule, &surface, &clock, disk, wall);
                 match surface.response {
                     Response::Rule(own) => self.engine.remedy_for(&collision.contact, own),
                     Response::Thermal(_) | Response::Absorbing => Remedy::FasterDisks,

@@ -33,9 +33,7 @@ use glam::DVec2;
 use super::contents::Contents;
 use super::grid::{Grid, Place};
 use super::layer::{Layer, LayerLayout, widest};
-use super::layout::{CellSize, SPARE_SMALL_CELLS};
-use super::layout::{LEAST_PITCH, Layout};
-use super::layout::{SizeClass, class_of};
+use super::layout::{CellSize, LEAST_PITCH, Layout, SPARE_SMALL_CELLS, SizeClass, class_of};
 use super::reach::{Distances, Homes, Reach};
 use crate::boundary::{Boundary, Domain};
 
