@@ -50,15 +50,14 @@
 mod contact;
 mod encounter;
 mod frictional;
-mod inelasticity;
 mod known;
 pub mod laws;
 mod remedies;
 mod without_friction;
 
-pub use contact::Contact;
-pub use contact::{Impulse, Regime};
-pub(crate) use encounter::{Body, Material, after, collide_after, collide_bodies, contact_of, momentum};
+pub use contact::{Contact, Impulse, Regime};
+pub(crate) use encounter::momentum;
+pub(crate) use encounter::{Body, Material, after, collide_after, collide_bodies, contact_of, meeting};
 pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
 pub use frictional::{Friction, Frictional, SpeedDependent};
 pub use known::{FromFn, KnownRule, RulesByKind, from_fn};

@@ -27,6 +27,7 @@ use crate::{Kind, ParameterError};
 /// Each simulation checks its gravity, when it is built and in
 /// [`set_gravity`](crate::Simulation::set_gravity).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Gravity {
     rightward: f64,
     downward: f64,

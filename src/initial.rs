@@ -25,10 +25,8 @@ mod lattice;
 mod packed;
 mod scattered;
 
-pub use draws::{Radii, disks_from_radii};
-pub use draws::{with_maxwellian_velocities, without_drift};
-pub use lattice::placed_in_rows;
-pub use lattice::{even_lattice, lattice, triangular_lattice};
+pub use draws::{Radii, disks_from_radii, with_maxwellian_velocities, without_drift};
+pub use lattice::{even_lattice, lattice, placed_in_rows, triangular_lattice};
 pub use packed::packed_mix;
 pub use scattered::{scattered, scattered_mix};
 

@@ -36,10 +36,8 @@ mod iso_line;
 mod maxwellian;
 mod sampling;
 
-pub use iso_line::friction_of_largest_loss;
-pub use iso_line::{IsoLine, Piece};
+pub use iso_line::{IsoLine, Piece, friction_of_largest_loss};
 pub use maxwellian::Maxwellian;
 pub use maxwellian::{effective_inelasticity, frictionless_energy_change};
 pub use maxwellian::{mean_energy_change, sticking_fraction};
-pub use sampling::DirectSimulation;
-pub use sampling::MonteCarlo;
+pub use sampling::{DirectSimulation, MonteCarlo};

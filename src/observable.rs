@@ -27,7 +27,7 @@
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
 //! | [`PairCorrelation`] | pair correlation function |
-//! | [`VelocityDistribution`] | histograms, cumulants and kurtosis of velocities |
+//! | [`VelocityDistribution`] | histograms and cumulants of velocities |
 //! | [`EnergyChangeProfile`] | mean energy change per disk–disk collision and temperatures, by height |
 //!
 //! | observer | keeps |
@@ -103,7 +103,7 @@
 //! `float_roundtrip`).
 
 mod adaptors;
-mod arrivals;
+mod at_walls;
 mod by_wall;
 mod closures;
 mod collisions;
@@ -113,7 +113,6 @@ mod correlation;
 mod crossings;
 mod energy_change;
 mod fields;
-mod free_shares;
 mod grid;
 pub mod laws;
 mod mechanics;
@@ -123,16 +122,14 @@ mod sample_times;
 mod sampled;
 mod snapshot;
 mod stress;
-mod stretch;
 mod table;
-mod temperatures;
 mod velocity_distribution;
-mod wall_stress;
 
-pub use adaptors::ByCollisions;
-pub use adaptors::{BetweenKinds, OfKind};
+pub use adaptors::{BetweenKinds, ByCollisions, OfKind};
 #[doc(alias("flow", "flux", "discharge"))]
-pub use arrivals::Arrivals;
+pub use at_walls::Arrivals;
+#[doc(alias("pressure", "wall force"))]
+pub use at_walls::WallStress;
 pub use closures::{MeasuredBy, OnCollision, OnSample, measured_by, on_collision, on_sample};
 pub use closures::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 #[doc(alias("collision rate", "collision frequency"))]
@@ -142,8 +139,7 @@ pub use collisions::CollisionHistograms;
 pub use contract::Observable;
 #[doc(alias("callback", "hook", "fix"))]
 pub use contract::Observer;
-pub use contract::{Collision, Partner};
-pub use contract::{ObserverError, Verdict};
+pub use contract::{Collision, ObserverError, Partner, Verdict};
 #[doc(alias("MSD", "mean squared", "diffusion"))]
 pub use correlation::MeanSquaredDisplacement;
 pub use correlation::PerDisk;
@@ -159,10 +155,11 @@ pub use fields::{DenseLayer, HeightProfile};
 #[doc(alias("density", "velocity field", "coarse-graining"))]
 pub use fields::{FieldCell, Fields};
 pub use grid::Grid;
-pub use mechanics::CenterOfMass;
-pub use mechanics::{Energies, EnergyPerDisk};
+pub use mechanics::{CenterOfMass, Energies, EnergyPerDisk, TemperaturesAboutFlow};
 #[doc(alias("piston"))]
 pub use mechanics::{FreeWall, FreeWallMotion};
+#[doc(alias("granular temperature"))]
+pub use mechanics::{Temperature, Temperatures};
 #[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
 pub use neighbors::PairCorrelation;
 #[doc(alias("coordination number", "contacts"))]
@@ -172,19 +169,11 @@ pub use order::{ConvectionOrder, OrderParameters};
 #[doc(alias("psi6", "bond order", "hexagonal order"))]
 pub use order::{Hexatic, HexaticOrder};
 pub use sample_times::SampleTimes;
-pub use sampled::Series;
-pub use sampled::{Accumulator, Sampled};
-pub(crate) use snapshot::Mark;
-pub(crate) use snapshot::Moving;
+pub use sampled::{Accumulator, Sampled, Series};
 pub use snapshot::Snapshot;
+pub(crate) use snapshot::{Mark, Moving};
 #[doc(alias("pressure", "pressure tensor", "virial"))]
 pub use stress::{Stress, StressTensor};
-pub use table::Table;
-pub use table::{Heading, Named, Tabular};
-pub use temperatures::TemperaturesAboutFlow;
-#[doc(alias("granular temperature"))]
-pub use temperatures::{Temperature, Temperatures};
-#[doc(alias("velocity distribution", "Sonine", "kurtosis", "Maxwellian"))]
+pub use table::{Heading, Named, Table, Tabular};
+#[doc(alias("velocity distribution", "Sonine", "Maxwellian"))]
 pub use velocity_distribution::VelocityDistribution;
-#[doc(alias("pressure", "wall force"))]
-pub use wall_stress::WallStress;

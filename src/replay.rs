@@ -36,7 +36,7 @@ use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
 
-/// Default limit on the number of states that are kept.
+/// Limit on the number of states that are kept.
 const MOST_STATES: usize = 64;
 
 /// Largest difference of two times that counts as rounding, relative to the interval between states.
@@ -52,7 +52,6 @@ pub struct Replay<R, B, S> {
     states: Vec<Simulation<R, B, S>>,
     present: Simulation<R, B, S>,
     interval: f64,
-    most: usize,
     has_failed: bool,
 }
 
@@ -63,15 +62,8 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     /// If the interval is not finite and positive.
     pub fn new(start: Simulation<R, B, S>, interval: f64) -> Result<Self, ParameterError> {
         let interval = positive("interval between two states", interval)?;
-        let (present, most) = (start.clone(), MOST_STATES);
-        Ok(Self { states: vec![start], present, interval, most, has_failed: false })
-    }
-
-    /// Returns the same replay with another limit on the number of states. The default is 64, and the minimum
-    /// is 2.
-    #[must_use]
-    pub fn with_most_states(self, most: usize) -> Self {
-        Self { most: most.max(2), ..self }
+        let present = start.clone();
+        Ok(Self { states: vec![start], present, interval, has_failed: false })
     }
 
     /// Returns the run in its latest state.
@@ -97,7 +89,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
                 return Ok(());
             }
             self.states.push(self.present.clone());
-            if self.states.len() > self.most {
+            if self.states.len() > MOST_STATES {
                 let mut stays = false;
                 self.states.retain(|_| {
                     stays = !stays;
@@ -178,11 +170,10 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
     }
 
     /// Continues the run from a state up to `until`, and returns its collisions.
-    fn played(&self, run: Simulation<R, B, S>, until: f64) -> Result<Vec<Replayed>, RunError> {
-        let (mut steps, mut all) = (Steps::new(run), Vec::new());
-        let end = until.min(self.present.time());
+    fn played(&self, mut run: Simulation<R, B, S>, until: f64) -> Result<Vec<Replayed>, RunError> {
+        let (mut all, end) = (Vec::new(), until.min(self.present.time()));
         loop {
-            match steps.next(end) {
+            match Replayed::next(&mut run, end) {
                 Ok(Some(replayed)) => all.push(replayed),
                 Ok(None) => return Ok(all),
                 // The run ended with this error.
@@ -263,47 +254,19 @@ pub struct Replayed {
     pub collision: Collision,
 }
 
-/// A run that advances by one collision at a time, and identifies the disks of each collision by their ids.
-///
-/// ```
-/// use granular_edmd::prelude::*;
-/// use granular_edmd::replay::Steps;
-///
-/// let container = Container::closed(12.0, 12.0)?;
-/// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 40, 0.5)?, 1.0, 1)?;
-/// let mut steps = Steps::new(Simulation::builder(Elastic, container).disks(disks).build()?);
-/// let first = steps.next(5.0)?.ok_or("no collision until 5")?;
-/// assert_eq!((first.number, first.collision.time), (1, steps.run().time()));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug)]
-pub struct Steps<R, B, S> {
-    run: Simulation<R, B, S>,
-}
-
-impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
-    /// Creates the steps of this run.
-    pub const fn new(run: Simulation<R, B, S>) -> Self {
-        Self { run }
-    }
-
-    /// Returns the run after the last step.
-    pub const fn run(&self) -> &Simulation<R, B, S> {
-        &self.run
-    }
-
-    /// Advances to the next collision, or to the absolute time `end` if no collision happens up to and
+impl Replayed {
+    /// Advances a run to its next collision, or to the absolute time `end` if no collision happens up to and
     /// including that time; the result is then `None`.
-    ///
-    /// # Errors
-    /// The same as for [`Simulation::step_until`].
-    pub fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
+    fn next<R: CollisionRule, B: Boundary, S: EventScheduler>(
+        run: &mut Simulation<R, B, S>,
+        end: f64,
+    ) -> Result<Option<Self>, RunError> {
         let mut last = None;
-        self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
+        run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
         Ok(last.map(|collision| {
             let [id, partner] = collision.ids;
             let partner_id = matches!(collision.partner, Partner::Disk(_)).then_some(partner);
-            Replayed { number: self.run.counters().collisions(), id, partner_id, collision }
+            Self { number: run.counters().collisions(), id, partner_id, collision }
         }))
     }
 }
@@ -356,7 +319,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         end: f64,
         failed: [bool; 2],
     ) -> Result<Option<OtherPartner>, RunError> {
-        let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
+        let mut runs = [pair.0.clone(), pair.1.clone()];
         // For each disk, the collisions of the run that is ahead, and the number of this run.
         let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
         let mut are_over = [false; 2];
@@ -365,7 +328,7 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
                 if are_over[which] {
                     continue;
                 }
-                let next = match run.next(end) {
+                let next = match Replayed::next(run, end) {
                     Err(_) if failed[which] => None,
                     next => next?,
                 };

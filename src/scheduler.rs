@@ -88,6 +88,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
     note = "the default is `BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
     note = "a custom scheduler implements `reset`, `set` and `earliest`; `laws::check` tests it"
 )]
+#[expect(unused_variables, reason = "what is shown need not be looked at")]
 pub trait EventScheduler {
     /// Replaces all disks and times by these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
@@ -109,9 +110,7 @@ pub trait EventScheduler {
     /// neither the order of events nor the disks that `disks` holds already. Disks may be missing, or be
     /// named twice or in any order. The engine ignores disks that do not exist. The default names no disk. A
     /// scheduler that wraps another should pass the call on: otherwise, a run of 10⁵ disks takes 50 % longer.
-    fn upcoming(&mut self, disks: &mut Vec<usize>) {
-        let _ = disks;
-    }
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {}
 }
 
 forward! { EventScheduler for [&mut T, Box<T>] {
@@ -131,12 +130,6 @@ struct Entry {
 }
 
 const SIGN: u64 = 1 << 63;
-
-impl Default for Entry {
-    fn default() -> Self {
-        Self::EMPTY
-    }
-}
 
 impl Entry {
     /// The entry of no disk, which comes after all others.

@@ -73,7 +73,9 @@ use crate::simulation::{Counters, Limits, RunError};
 /// ```
 #[derive(Debug)]
 pub struct Meter {
-    stopwatch: Stopwatch,
+    wall: Instant,
+    /// Seconds of the thread at the start, where they are known.
+    thread: Option<f64>,
     counters: Counters,
     time: f64,
 }
@@ -82,7 +84,7 @@ impl Meter {
     /// Starts a meter of the simulation, for runs in this thread.
     pub fn start<R: CollisionRule, B: Boundary, S: EventScheduler>(run: &Simulation<R, B, S>) -> Self {
         let (counters, time) = (*run.counters(), run.time());
-        Self { counters, time, stopwatch: Stopwatch::of_thread() }
+        Self { counters, time, thread: seconds_of_thread(), wall: Instant::now() }
     }
 
     /// Returns the report of the simulation since the meter was started.
@@ -90,7 +92,8 @@ impl Meter {
         &self,
         run: &Simulation<R, B, S>,
     ) -> RunReport {
-        let seconds = self.stopwatch.seconds();
+        let wall = self.wall.elapsed().as_secs_f64();
+        let seconds = seconds_of_thread().zip(self.thread).map_or(wall, |(now, start)| now - start);
         let (counters, disks) = (run.counters().since(&self.counters), run.len());
         RunReport {
             disks,
@@ -149,29 +152,6 @@ impl fmt::Display for RunReport {
             per_collision(counters.repredictions),
             per_collision(counters.horizons),
         )
-    }
-}
-
-/// A stopwatch for processor time, which starts when it is created.
-///
-/// On Linux, time in which other programs have the processor does not count, and readings are accurate to a
-/// few microseconds. Elsewhere, the wall clock counts the seconds.
-#[derive(Debug)]
-struct Stopwatch {
-    wall: Instant,
-    start: Option<f64>,
-}
-
-impl Stopwatch {
-    /// Starts a stopwatch of this thread, which must also read it.
-    fn of_thread() -> Self {
-        Self { start: seconds_of_thread(), wall: Instant::now() }
-    }
-
-    /// Returns the seconds since the start.
-    fn seconds(&self) -> f64 {
-        let wall = self.wall.elapsed().as_secs_f64();
-        seconds_of_thread().zip(self.start).map_or(wall, |(now, start)| now - start)
     }
 }
 

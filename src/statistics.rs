@@ -31,5 +31,4 @@ mod means;
 pub use estimate::Estimate;
 pub(crate) use histogram::Bins;
 pub use histogram::{Histogram, HistogramBin};
-pub(crate) use means::Moments;
 pub use means::{BlockedMean, RunningMean, block_average};

@@ -42,8 +42,8 @@ use glam::DVec2;
 use proptest::prelude::*;
 
 use crate::boundary;
-use crate::collision::laws::{Partner, meeting};
 use crate::collision::{Contact, Elastic, collide};
+use crate::collision::{Material, meeting};
 use crate::{Disk, Kind};
 
 /// Returns positive numbers, spread evenly over the decades from 10 to the power `low` to 10 to the power
@@ -124,30 +124,33 @@ pub fn contact_of(kinds: Vec<Kind>) -> impl Strategy<Value = Contact> {
     let time = prop_oneof![1 => Just(f64::INFINITY), 1 => decades(-12.0, 3.0), 1 => 0.0..1.0];
     (closing_speed(), speed(), spin, time, partners(kinds)).prop_map(
         |(closing, slip, spin, time, partners)| {
-            let contact = meeting(partners, closing, slip, spin / partners[0].radius);
+            let contact = meeting(partners.each_ref(), closing, slip, spin / partners[0].radius);
             contact.with_time_since_last_collision(time)
         },
     )
 }
 
 /// Returns two disks, or a disk and a wall.
-fn partners(kinds: Vec<Kind>) -> impl Strategy<Value = [Partner; 2]> {
+fn partners(kinds: Vec<Kind>) -> impl Strategy<Value = [Material; 2]> {
     let factor = prop_oneof![4 => decades(-3.0, 0.0), 1 => Just(0.5)];
     let factor = factor.prop_map(|factor: f64| factor.min(1.0));
     let kind = prop::sample::select(kinds);
     let disk = (decades(-12.0, 12.0), factor, decades(-6.0, 6.0), kind)
-        .prop_map(|(mass, inertia_factor, radius, kind)| Partner { mass, inertia_factor, radius, kind })
+        .prop_map(|(mass, inertia_factor, radius, kind)| Disk::at_rest(radius, mass, inertia_factor, kind))
         .boxed();
     let ratio = prop_oneof![1 => Just(1.0), 3 => decades(-6.0, 6.0)];
     (disk.clone(), disk, ratio, 0..6_u8).prop_map(|(first, second, ratio, choice)| {
-        let wall = |radius| Partner::wall(f64::INFINITY, radius, Kind::WALL);
+        let wall = |radius| Material::of_wall(Kind::WALL, radius, f64::INFINITY);
         let other = match choice {
             0 => wall(f64::INFINITY),
-            1 => wall(second.radius),
-            2 => wall(-1.05 * first.radius - second.radius),
-            _ => Partner { mass: first.mass * ratio, ..second },
+            1 => wall(second.radius()),
+            2 => wall(-1.05 * first.radius() - second.radius()),
+            _ => {
+                let (mass, factor) = (first.mass() * ratio, second.inertia_factor());
+                Material::of(&Disk::at_rest(second.radius(), mass, factor, second.kind()))
+            }
         };
-        [first, other]
+        [Material::of(&first), other]
     })
 }
 

@@ -159,7 +159,7 @@ fn osmosis(arguments: &Arguments, solutes: u32) -> Result<Osmosis, Box<dyn Error
     let temperature = series.mean(|state| state.2)?.mean();
     let error = solution.standard_error().hypot(solvent.standard_error());
     let pressure = [solution.mean() - solvent.mean(), error].map(|pressure| pressure / temperature);
-    let inflow = inflow.into_inner();
+    let inflow = inflow.inner();
     let net =
         inflow.forward().iter().zip(inflow.backward()).map(|(&there, &back)| there as f64 - back as f64);
     let inflow = inflow.times().iter().copied().zip(net).collect();

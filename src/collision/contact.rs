@@ -48,7 +48,6 @@ pub struct Contact {
 impl Contact {
     /// Creates a contact of two homogeneous disks of radius 1/2, of the default kind and of equal spins, that
     /// have never collided before.
-    #[inline]
     pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
         Self {
             closing_speed,
@@ -65,64 +64,54 @@ impl Contact {
     }
 
     /// Returns the same contact, at this time after the latest collision of either partner.
-    #[inline]
     pub const fn with_time_since_last_collision(self, time: f64) -> Self {
         Self { time_since_last_collision: time, ..self }
     }
 
     /// Returns the same contact between partners of these kinds.
-    #[inline]
     pub const fn with_kinds(self, kinds: [Kind; 2]) -> Self {
         Self { kinds, ..self }
     }
 
     /// Returns the same contact between partners of these radii; infinite for a straight wall, negative for a
     /// hollow one.
-    #[inline]
     pub const fn with_radii(self, radii: [f64; 2]) -> Self {
         Self { radii, ..self }
     }
 
     /// Returns the same contact with this relative spin ω, the moment of inertia I that resists a couple, and
     /// the response k of the spin to a tangential impulse.
-    #[inline]
     pub const fn with_spin(self, relative_spin: f64, spin_inertia: f64, spin_response: f64) -> Self {
         Self { relative_spin, spin_inertia, spin_response, ..self }
     }
 
     /// Returns the speed v_n at which the surfaces approach; it is never negative in a collision.
-    #[inline]
     pub const fn closing_speed(&self) -> f64 {
         self.closing_speed
     }
 
     /// Returns the speed v_t at which the surfaces slide, of either sign.
-    #[inline]
     pub const fn slip_speed(&self) -> f64 {
         self.slip_speed
     }
 
     /// Returns the reduced mass μ for the normal direction.
-    #[inline]
     pub const fn normal_mass(&self) -> f64 {
         self.normal_mass
     }
 
     /// Returns the effective mass μ_t for the tangential direction, which includes rotation.
-    #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass
     }
 
     /// Returns the time since either partner last collided with anything, or infinity if neither has
     /// collided.
-    #[inline]
     pub const fn time_since_last_collision(&self) -> f64 {
         self.time_since_last_collision
     }
 
     /// Returns the kinds of both partners.
-    #[inline]
     pub const fn kinds(&self) -> [Kind; 2] {
         self.kinds
     }
@@ -134,27 +123,23 @@ impl Contact {
     }
 
     /// Returns the radii of both partners: infinite for a straight wall, negative for a hollow one.
-    #[inline]
     pub const fn radii(&self) -> [f64; 2] {
         self.radii
     }
 
     /// Returns the relative spin ω = ω₁ − ω₂. A wall has the spin of its part, which is 0 unless the part
     /// turns.
-    #[inline]
     pub const fn relative_spin(&self) -> f64 {
         self.relative_spin
     }
 
     /// Returns the moment of inertia I that resists a couple, 1/I = 1/I₁ + 1/I₂.
-    #[inline]
     pub const fn spin_inertia(&self) -> f64 {
         self.spin_inertia
     }
 
     /// Returns the response k = R₁/I₁ − R₂/I₂ of the relative spin to a tangential impulse, and of the slip
     /// speed to a couple; zero for equal disks.
-    #[inline]
     pub const fn spin_response(&self) -> f64 {
         self.spin_response
     }
@@ -171,7 +156,6 @@ impl Contact {
     /// assert_eq!(contact.with_radii([0.5, f64::INFINITY]).effective_radius(), 0.5);
     /// assert_eq!(contact.with_radii([0.5, -1.0]).effective_radius(), 1.0);
     /// ```
-    #[inline]
     pub const fn effective_radius(&self) -> f64 {
         let [first, second] = self.radii;
         // This form gives the same number for either order of the partners, and the limit for a straight
@@ -186,7 +170,6 @@ impl Contact {
     /// Returns the kinetic energy of the relative motion of the surfaces, ½μ v_n² + ½μ_t v_t².
     ///
     /// A collision without a couple can lose no more than this energy.
-    #[inline]
     pub const fn available_energy(&self) -> f64 {
         let (closing, slip) = (self.closing_speed, self.slip_speed);
         0.5 * self.normal_mass * (closing * closing) + 0.5 * self.tangential_mass * (slip * slip)
@@ -202,7 +185,6 @@ impl Contact {
     /// let contact = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0);
     /// assert_eq!(contact.normal_impulse(0.5), 1.5);
     /// ```
-    #[inline]
     pub const fn normal_impulse(&self, restitution: f64) -> f64 {
         (1.0 + restitution) * self.normal_mass * self.closing_speed
     }
@@ -268,7 +250,6 @@ pub struct Impulse {
 
 impl Impulse {
     /// Creates an impulse from its normal and its tangential part.
-    #[inline]
     pub const fn new(normal: f64, tangential: f64) -> Self {
         Self { normal, tangential, couple: 0.0, regime: Regime::Unspecified }
     }
@@ -278,13 +259,11 @@ impl Impulse {
     ///
     /// Partner 1 loses this angular momentum about its center, and partner 2 receives it, so the total is
     /// conserved. A couple models rolling friction, which needs a contact of finite width.
-    #[inline]
     pub const fn with_couple(self, couple: f64) -> Self {
         Self { couple, ..self }
     }
 
     /// Returns the same impulse with this label.
-    #[inline]
     pub const fn with_regime(self, regime: Regime) -> Self {
         Self { regime, ..self }
     }
@@ -305,25 +284,21 @@ impl Impulse {
     }
 
     /// Returns the normal part Δ_n, positive if it pushes the partners apart.
-    #[inline]
     pub const fn normal(&self) -> f64 {
         self.normal
     }
 
     /// Returns the tangential part Δ_t, which has the sign of the slip speed if it slows the slip.
-    #[inline]
     pub const fn tangential(&self) -> f64 {
         self.tangential
     }
 
     /// Returns the couple C, which has the sign of the relative spin if it slows the rolling.
-    #[inline]
     pub const fn couple(&self) -> f64 {
         self.couple
     }
 
     /// Returns the regime of the collision.
-    #[inline]
     pub const fn regime(&self) -> Regime {
         self.regime
     }

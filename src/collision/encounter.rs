@@ -7,6 +7,7 @@ use crate::{Disk, Kind};
 
 /// The constant properties of a body in a collision: its kind, its size, and its resistance to impulses.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Material {
     /// Distance from the center, about which the body turns, to the surface; 0 for a wall.
     arm: f64,
@@ -79,19 +80,22 @@ pub(crate) fn contact_of(
     // never −0; `f64::max` may return either zero, depending on the processor.
     let closing = if closing > 0.0 { closing } else { 0.0 };
     let surface = second.1.arm * second.0.angular_velocity + first.1.arm * first.0.angular_velocity;
-    let (normal_mass, tangential_mass) = (
-        1.0 / (first.1.inverse_mass + second.1.inverse_mass),
-        1.0 / (first.1.tangential_compliance + second.1.tangential_compliance),
-    );
-    Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
-        .with_kinds([first.1.kind, second.1.kind])
-        .with_radii([first.1.radius, second.1.radius])
-        .with_spin(
-            first.0.angular_velocity - second.0.angular_velocity,
-            1.0 / (first.1.inverse_inertia + second.1.inverse_inertia),
-            first.1.spin_response - second.1.spin_response,
-        )
+    let (slip, spin) =
+        (approach.dot(normal.perp()) + surface, first.0.angular_velocity - second.0.angular_velocity);
+    meeting([first.1, second.1], closing, slip, spin)
         .with_time_since_last_collision(time_since_last_collision)
+}
+
+/// Returns the contact of two partners at these speeds of closing and slip, and with this relative spin.
+#[inline]
+pub(crate) fn meeting([first, second]: [&Material; 2], closing: f64, slip: f64, spin: f64) -> Contact {
+    let normal_mass = 1.0 / (first.inverse_mass + second.inverse_mass);
+    let tangential_mass = 1.0 / (first.tangential_compliance + second.tangential_compliance);
+    let spin_inertia = 1.0 / (first.inverse_inertia + second.inverse_inertia);
+    Contact::new(closing, slip, normal_mass, tangential_mass)
+        .with_kinds([first.kind, second.kind])
+        .with_radii([first.radius, second.radius])
+        .with_spin(spin, spin_inertia, first.spin_response - second.spin_response)
 }
 
 /// Returns `body` after an impulse along the normal and its perpendicular, and a couple. A tangential impulse

@@ -1,6 +1,8 @@
 //! Rules with Coulomb friction: the paper's rule, and restitution that falls with the speed of the impact.
 
-use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, Smooth, inelasticity};
+use super::without_friction::{normal_impulse, normal_inelasticity, of_tangential_restitution};
+use super::without_friction::{tangential_impulse, tangential_inelasticity};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, Smooth};
 use crate::quantity::{accept, non_negative, positive};
 use crate::{Fingerprint, ParameterError};
 
@@ -53,7 +55,7 @@ impl Friction {
     /// # Errors
     /// If the inelasticity is out of its range, or the coefficient is negative or not finite.
     pub fn from_inelasticity(tangential: f64, friction: f64) -> Result<Self, ParameterError> {
-        Self::with_equal(inelasticity::tangential(tangential)?, friction)
+        Self::with_equal(tangential_inelasticity(tangential)?, friction)
     }
 
     /// Creates friction with the restitution r_t, in `[-1, 1]`, and one coefficient, κ = κ_s = κ_d.
@@ -61,7 +63,7 @@ impl Friction {
     /// # Errors
     /// If the restitution is out of its range, or the coefficient is negative or not finite.
     pub fn from_restitution(tangential: f64, friction: f64) -> Result<Self, ParameterError> {
-        Self::with_equal(inelasticity::of_tangential_restitution(tangential)?, friction)
+        Self::with_equal(of_tangential_restitution(tangential)?, friction)
     }
 
     fn with_equal(tangential_inelasticity: f64, friction: f64) -> Result<Self, ParameterError> {
@@ -85,7 +87,7 @@ impl Friction {
     /// friction then allows.
     #[inline]
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
-        let sticking = inelasticity::tangential_impulse(self.tangential_inelasticity, contact);
+        let sticking = tangential_impulse(self.tangential_inelasticity, contact);
         let sliding = (self.dynamic_friction * normal).copysign(sticking);
         // The code selects instead of branching, since no branch predictor can learn whether a contact sticks
         // or slides.
@@ -227,7 +229,7 @@ impl Frictional {
 impl CollisionRule for Frictional {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        let normal = inelasticity::normal_impulse(self.normal_inelasticity, contact);
+        let normal = normal_impulse(self.normal_inelasticity, contact);
         self.friction.impulse(contact, normal)
     }
 
@@ -298,7 +300,7 @@ impl SpeedDependent {
     /// # Errors
     /// If the inelasticity is not in `[0, 1/2]`, or the speed is not finite and positive.
     pub fn from_inelasticity(greatest_inelasticity: f64, speed: f64) -> Result<Self, ParameterError> {
-        Self::from_restitution(1.0 - 2.0 * inelasticity::normal(greatest_inelasticity)?, speed)
+        Self::from_restitution(1.0 - 2.0 * normal_inelasticity(greatest_inelasticity)?, speed)
     }
 
     /// Returns the same rule with this friction.
@@ -313,21 +315,6 @@ impl SpeedDependent {
         let root = (closing_speed / self.speed).min(1.0).sqrt();
         1.0 - (1.0 - self.least_restitution) * (root * root.sqrt())
     }
-
-    /// Returns the restitution r_0 of fast collisions.
-    pub const fn least_restitution(&self) -> f64 {
-        self.least_restitution
-    }
-
-    /// Returns the closing speed v_0 above which the restitution is constant.
-    pub const fn speed(&self) -> f64 {
-        self.speed
-    }
-
-    /// Returns the friction.
-    pub const fn friction(&self) -> &Friction {
-        &self.friction
-    }
 }
 
 impl CollisionRule for SpeedDependent {
@@ -338,7 +325,7 @@ impl CollisionRule for SpeedDependent {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution()).number(self.speed());
+        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution).number(self.speed);
         Some(normal.part(self.friction.fingerprint()))
     }
 

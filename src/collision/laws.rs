@@ -32,8 +32,6 @@ use crate::collision::{CollisionRule, Contact, Impulse, Regime};
 use crate::error::require;
 use crate::{Kind, Violation};
 pub use contacts::hostile_contacts;
-#[cfg(feature = "proptest")]
-pub(crate) use contacts::{Partner, meeting};
 
 /// Allowed rounding in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
@@ -202,13 +200,11 @@ const STRIDE: usize = 7919;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "each promise is given or not")]
 pub struct Promises {
     energy_gain: bool,
     opposed_slip: bool,
     static_friction: Option<f64>,
     rolling_friction: Option<f64>,
-    exchange: bool,
     mirror: bool,
     kinds: Option<&'static [Kind]>,
     seed: u64,
@@ -229,7 +225,6 @@ impl Promises {
             opposed_slip: false,
             static_friction: None,
             rolling_friction: None,
-            exchange: true,
             mirror: true,
             kinds: None,
             seed: 1,
@@ -257,11 +252,6 @@ impl Promises {
     /// Returns the same promises for a rule that drives: energy may be gained.
     pub const fn with_energy_gain(self) -> Self {
         Self { energy_gain: true, ..self }
-    }
-
-    /// Returns the same promises for a rule that depends on which of two disks is partner 1.
-    pub const fn with_ordered_partners(self) -> Self {
-        Self { exchange: false, ..self }
     }
 
     /// Returns the same promises for a rule that acts differently on the mirror image of a contact, as one
@@ -332,11 +322,7 @@ impl Promises {
         if is_between_disks && contact.radii()[1].is_finite() {
             let exchanged = exchanged(contact);
             let other = rule.impulse(&exchanged);
-            if self.exchange {
-                check_same(contact, impulse, other, 1.0, "exchange of partners")?;
-            } else {
-                self.check(&exchanged, other)?;
-            }
+            check_same(contact, impulse, other, 1.0, "exchange of partners")?;
         }
         Ok(impulse)
     }

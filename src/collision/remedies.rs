@@ -34,15 +34,6 @@ impl TangentialResponse {
         };
         impulse.with_regime(regime)
     }
-
-    /// Returns the word that stands for the response in fingerprints.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Frictionless => "frictionless",
-            Self::Unchanged => "unchanged",
-            Self::Reversing => "reversing",
-        }
-    }
 }
 
 /// The contact-duration (TC) model added to any rule: a collision loses no energy if one of the bodies
@@ -112,8 +103,8 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
 
     /// Returns `None` if the inner rule has no fingerprint: two such models could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
-        Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration).text(response))
+        let rule = Fingerprint::of("ContactDuration").part(self.rule.fingerprint()?).number(self.duration);
+        Some(rule.number(f64::from(self.tangential_response as u8)))
     }
 
     fn known(&self) -> Option<KnownRule> {
@@ -181,16 +172,6 @@ impl<R> ElasticBelow<R> {
     pub fn with_tangential_response(self, tangential_response: TangentialResponse) -> Self {
         Self { tangential_response, ..self }
     }
-
-    /// Returns the inner rule, which decides all other collisions.
-    pub const fn rule(&self) -> &R {
-        &self.rule
-    }
-
-    /// Returns the closing speed v_c below which collisions are elastic.
-    pub const fn speed(&self) -> f64 {
-        self.speed
-    }
 }
 
 impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
@@ -204,8 +185,8 @@ impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
 
     /// Returns `None` if the inner rule has no fingerprint: two such remedies could not be distinguished.
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
-        Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed).text(response))
+        let rule = Fingerprint::of("ElasticBelow").part(self.rule.fingerprint()?).number(self.speed);
+        Some(rule.number(f64::from(self.tangential_response as u8)))
     }
 
     fn known(&self) -> Option<KnownRule> {
@@ -261,16 +242,6 @@ impl<R> LeastRebound<R> {
     /// If the speed is not finite and positive. To have no least speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         Ok(Self { rule, speed: positive("least speed of rebound", speed)? })
-    }
-
-    /// Returns the inner rule, which decides all faster rebounds.
-    pub const fn rule(&self) -> &R {
-        &self.rule
-    }
-
-    /// Returns the least parting speed v_c.
-    pub const fn speed(&self) -> f64 {
-        self.speed
     }
 }
 
@@ -343,16 +314,6 @@ impl<R> RollingFriction<R> {
     /// If the coefficient is not finite, or negative.
     pub fn new(rule: R, coefficient: f64) -> Result<Self, ParameterError> {
         Ok(Self { rule, coefficient: non_negative("coefficient of rolling friction", coefficient)? })
-    }
-
-    /// Returns the inner rule, which decides everything else. A couple of its own is added.
-    pub const fn rule(&self) -> &R {
-        &self.rule
-    }
-
-    /// Returns the coefficient μ_r.
-    pub const fn coefficient(&self) -> f64 {
-        self.coefficient
     }
 }
 

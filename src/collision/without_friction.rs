@@ -1,6 +1,8 @@
-//! Rules without sliding friction: elastic, smooth and perfectly rough disks.
+//! Rules without sliding friction: elastic, smooth and perfectly rough disks. Their inelasticities, and the
+//! impulses that follow from these alone.
 
-use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, inelasticity};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime};
+use crate::quantity::accept;
 use crate::{Fingerprint, ParameterError};
 
 /// Smooth elastic collisions: the closing speed is reversed, and the slip stays unchanged.
@@ -56,7 +58,7 @@ impl Smooth {
     /// # Errors
     /// If the inelasticity is out of range.
     pub fn from_inelasticity(normal: f64) -> Result<Self, ParameterError> {
-        Ok(Self { normal_inelasticity: inelasticity::normal(normal)? })
+        Ok(Self { normal_inelasticity: normal_inelasticity(normal)? })
     }
 
     /// Creates a rule with the normal restitution r_n, in `[0, 1]`.
@@ -64,7 +66,7 @@ impl Smooth {
     /// # Errors
     /// If the restitution is out of range.
     pub fn from_restitution(normal: f64) -> Result<Self, ParameterError> {
-        Ok(Self { normal_inelasticity: inelasticity::of_normal_restitution(normal)? })
+        Ok(Self { normal_inelasticity: of_normal_restitution(normal)? })
     }
 
     /// Returns the normal inelasticity q_n.
@@ -76,7 +78,7 @@ impl Smooth {
 impl CollisionRule for Smooth {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        Impulse::new(inelasticity::normal_impulse(self.normal_inelasticity, contact), 0.0)
+        Impulse::new(normal_impulse(self.normal_inelasticity, contact), 0.0)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
@@ -121,8 +123,8 @@ impl Rough {
     /// If an inelasticity is out of range.
     pub fn from_inelasticity(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: inelasticity::normal(normal)?,
-            tangential_inelasticity: inelasticity::tangential(tangential)?,
+            normal_inelasticity: normal_inelasticity(normal)?,
+            tangential_inelasticity: tangential_inelasticity(tangential)?,
         })
     }
 
@@ -132,8 +134,8 @@ impl Rough {
     /// If a restitution is out of range.
     pub fn from_restitution(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: inelasticity::of_normal_restitution(normal)?,
-            tangential_inelasticity: inelasticity::of_tangential_restitution(tangential)?,
+            normal_inelasticity: of_normal_restitution(normal)?,
+            tangential_inelasticity: of_tangential_restitution(tangential)?,
         })
     }
 
@@ -151,8 +153,8 @@ impl Rough {
 impl CollisionRule for Rough {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        let normal = inelasticity::normal_impulse(self.normal_inelasticity, contact);
-        let tangential = inelasticity::tangential_impulse(self.tangential_inelasticity, contact);
+        let normal = normal_impulse(self.normal_inelasticity, contact);
+        let tangential = tangential_impulse(self.tangential_inelasticity, contact);
         Impulse::new(normal, tangential).with_regime(Regime::Sticking)
     }
 
@@ -169,4 +171,36 @@ impl CollisionRule for Rough {
 crate::gate::from_file! {
     Rough { normal_inelasticity: f64, tangential_inelasticity: f64 } =>
         Self::from_inelasticity(normal_inelasticity, tangential_inelasticity)
+}
+
+/// Returns a normal inelasticity q_n = (1 − r_n)/2 (paper, Eq. (1)) if it is in `[0, 1/2]`.
+pub(super) fn normal_inelasticity(value: f64) -> Result<f64, ParameterError> {
+    accept((0.0..=0.5).contains(&value), "normal inelasticity", "in [0, 0.5]", value)
+}
+
+/// Returns a tangential inelasticity q_t = (1 − r_t)/2 (paper, Eq. (1)) if it is in `[0, 1]`.
+pub(super) fn tangential_inelasticity(value: f64) -> Result<f64, ParameterError> {
+    accept((0.0..=1.0).contains(&value), "tangential inelasticity", "in [0, 1]", value)
+}
+
+/// Returns the inelasticity of a normal restitution, which must be in `[0, 1]`.
+pub(super) fn of_normal_restitution(value: f64) -> Result<f64, ParameterError> {
+    Ok(0.5 * (1.0 - accept((0.0..=1.0).contains(&value), "normal restitution", "in [0, 1]", value)?))
+}
+
+/// Returns the inelasticity of a tangential restitution, which must be in `[-1, 1]`.
+pub(super) fn of_tangential_restitution(value: f64) -> Result<f64, ParameterError> {
+    Ok(0.5 * (1.0 - accept((-1.0..=1.0).contains(&value), "tangential restitution", "in [-1, 1]", value)?))
+}
+
+/// Returns the impulse that reverses the closing speed with a loss (paper, Eq. (3)).
+#[inline]
+pub(super) const fn normal_impulse(inelasticity: f64, contact: &Contact) -> f64 {
+    2.0 * (1.0 - inelasticity) * contact.normal_mass() * contact.closing_speed()
+}
+
+/// Returns the impulse that reverses the slip with a loss, as if the surfaces held (paper, Eq. (4)).
+#[inline]
+pub(super) const fn tangential_impulse(inelasticity: f64, contact: &Contact) -> f64 {
+    2.0 * (1.0 - inelasticity) * contact.tangential_mass() * contact.slip_speed()
 }

@@ -5,8 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{PlacementError, check_periods, countable, cut, room};
 use crate::Disk;
-use crate::boundary::Squares;
-use crate::boundary::{Boundary, Domain, Probe};
+use crate::boundary::{Boundary, Domain, Probe, Squares};
 use crate::quantity::positive;
 use crate::random::{Stream, generator, uniform};
 

@@ -80,7 +80,6 @@ impl StickSlip {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Maxwellian {
     translational_temperature: f64,
     rotational_temperature: f64,
@@ -200,25 +199,6 @@ impl Maxwellian {
             .with_kinds(self.kinds)
             .with_radii(self.radii)
             .with_spin(spin, 1.0 / mobility, response)
-    }
-}
-
-crate::gate::from_file! {
-    Maxwellian {
-        translational_temperature: f64,
-        rotational_temperature: f64,
-        masses: [f64; 2],
-        inertia_factors: [f64; 2],
-        radii: [f64; 2],
-        kinds: [Kind; 2]
-     } => {
-        let partner = |index: usize| {
-            let disk = Disk::new(glam::DVec2::ZERO, radii[index])?.with_kind(kinds[index]);
-            disk.with_mass(masses[index])?.with_inertia_factor(inertia_factors[index])
-        };
-        Ok(Self::new(translational_temperature)?
-            .with_rotational_temperature(rotational_temperature)?
-            .with_partners(&partner(0)?, &partner(1)?))
     }
 }
 

@@ -52,11 +52,6 @@ impl<T> OfKind<T> {
         &self.inner
     }
 
-    /// Unwraps the inner observable or observer.
-    pub fn into_inner(self) -> T {
-        self.inner
-    }
-
     fn chosen(&self, snapshot: &Snapshot<'_>) -> Vec<Disk> {
         snapshot.disks().iter().filter(|disk| disk.kind() == self.kind).copied().collect()
     }
@@ -155,11 +150,6 @@ impl<T> BetweenKinds<T> {
     pub const fn inner(&self) -> &T {
         &self.inner
     }
-
-    /// Unwraps the inner observer.
-    pub fn into_inner(self) -> T {
-        self.inner
-    }
 }
 
 impl<T: Observer> Observer for BetweenKinds<T> {
@@ -239,11 +229,6 @@ impl<O> ByCollisions<O> {
     /// Returns the inner observer.
     pub const fn inner(&self) -> &O {
         &self.inner
-    }
-
-    /// Unwraps the inner observer.
-    pub fn into_inner(self) -> O {
-        self.inner
     }
 }
 

@@ -96,10 +96,6 @@ impl<T: Default> ByWall<T> {
     pub(super) fn values(&self) -> impl Iterator<Item = &T> {
         self.values.iter().map(|(_, value)| value)
     }
-
-    pub(super) fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
-        self.values.iter_mut().map(|(_, value)| value)
-    }
 }
 
 impl<T: PartialEq> PartialEq for ByWall<T> {

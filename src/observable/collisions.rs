@@ -20,11 +20,8 @@ use crate::statistics::Histogram;
 pub struct CollisionCounts {
     disks: u64,
     walls: ByWall<u64>,
-    sticking: u64,
-    sliding: u64,
-    contact_duration: u64,
-    elastic_below: u64,
-    least_rebound: u64,
+    /// Collisions in each regime.
+    regimes: [u64; Regime::LeastRebound as usize + 1],
 }
 
 impl CollisionCounts {
@@ -49,24 +46,8 @@ impl CollisionCounts {
     }
 
     /// Returns the number of collisions in this regime, with disks and walls.
-    pub fn collisions_in_regime(&self, regime: Regime) -> u64 {
-        match regime {
-            Regime::Sticking => self.sticking,
-            Regime::Sliding => self.sliding,
-            Regime::ContactDuration => self.contact_duration,
-            Regime::ElasticBelow => self.elastic_below,
-            Regime::LeastRebound => self.least_rebound,
-            Regime::Unspecified => {
-                let reported = self.sticking + self.sliding;
-                let remedies = self.contact_duration + self.elastic_below + self.least_rebound;
-                self.disks + self.wall_collisions() - reported - remedies
-            }
-        }
-    }
-
-    /// Forgets all collisions so far.
-    pub fn clear(&mut self) {
-        *self = Self::default();
+    pub const fn collisions_in_regime(&self, regime: Regime) -> u64 {
+        self.regimes[regime as usize]
     }
 }
 
@@ -81,14 +62,7 @@ impl Observer for CollisionCounts {
             Partner::Disk(_) => self.disks += 1,
             Partner::Wall(wall) => self.walls.at(wall).into_iter().for_each(|count| *count += 1),
         }
-        match collision.impulse.regime() {
-            Regime::Sticking => self.sticking += 1,
-            Regime::Sliding => self.sliding += 1,
-            Regime::ContactDuration => self.contact_duration += 1,
-            Regime::ElasticBelow => self.elastic_below += 1,
-            Regime::LeastRebound => self.least_rebound += 1,
-            Regime::Unspecified => {}
-        }
+        self.regimes[collision.impulse.regime() as usize] += 1;
     }
 }
 
@@ -103,9 +77,8 @@ impl Table for CollisionCounts {
 
     fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
         let partners = [self.disks, self.wall_collisions()].into_iter();
-        let remedies = [self.contact_duration, self.elastic_below, self.least_rebound];
-        let regimes = [self.sticking, self.sliding].into_iter().chain(remedies);
-        let counts = partners.chain(regimes).chain(self.touched().map(|(_, count)| count));
+        let reported = self.regimes[1..].iter().copied();
+        let counts = partners.chain(reported).chain(self.touched().map(|(_, count)| count));
         let row = counts.map(|count| count as f64).collect();
         Box::new(std::iter::once(row))
     }
@@ -183,13 +156,6 @@ impl CollisionHistograms {
     /// Returns the histogram of the normal impulse, Δ_n.
     pub const fn impulse(&self) -> &Histogram {
         &self.impulse
-    }
-
-    /// Forgets all collisions so far.
-    pub fn clear(&mut self) {
-        for histogram in [&mut self.obliqueness, &mut self.closing_speed, &mut self.impulse] {
-            histogram.clear();
-        }
     }
 }
 

@@ -217,6 +217,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "an accumulator, such as `HeightProfile`, is sampled by `Sampled::new(accumulator, times)`",
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
+#[expect(unused_variables, reason = "what is shown need not be looked at")]
 pub trait Observer {
     /// Receives the start of a run, which may continue an earlier run, and the disks after each kick of a
     /// driving.
@@ -225,14 +226,11 @@ pub trait Observer {
     /// If the observer cannot measure this run, for example because a wall is missing. The run then ends with
     /// this error, and no event happens.
     fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        let _ = start;
         Ok(())
     }
 
     /// Receives a collision that has just happened.
-    fn on_collision(&mut self, collision: &Collision) {
-        let _ = collision;
-    }
+    fn on_collision(&mut self, collision: &Collision) {}
 
     /// Returns the time of the next sample that the observer requests, or infinity if it requests none.
     fn next_sample(&self) -> f64 {
@@ -240,27 +238,19 @@ pub trait Observer {
     }
 
     /// Receives the requested sample.
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        let _ = snapshot;
-    }
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {}
 
     /// Receives a disk that an inlet has let in during the run.
-    fn on_insert(&mut self, disk: &Disk, time: f64) {
-        let _ = (disk, time);
-    }
+    fn on_insert(&mut self, disk: &Disk, time: f64) {}
 
     /// Receives a disk that a sink takes out during the run, after the collision with the sink. The disk has
     /// the motion with which it arrived at the sink.
     ///
     /// The last disk then gets the index of this disk.
-    fn on_remove(&mut self, disk: &Disk, time: f64) {
-        let _ = (disk, time);
-    }
+    fn on_remove(&mut self, disk: &Disk, time: f64) {}
 
     /// Receives the end of a run, even of a run that fails, and the disks before each kick of a driving.
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        let _ = end;
-    }
+    fn on_end(&mut self, end: &Snapshot<'_>) {}
 
     /// Decides whether the run continues, stops, or fails.
     ///

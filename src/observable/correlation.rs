@@ -92,7 +92,7 @@ const MOST_LAGS: usize = 1 << 20;
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 struct Lags<V> {
-    pub(super) sample_times: SampleTimes,
+    sample_times: SampleTimes,
     /// Time of the latest sample.
     latest: Option<f64>,
     /// The samples, latest first.
@@ -107,7 +107,7 @@ struct Lags<V> {
 
 impl<V> Lags<V> {
     /// Creates means for lags of 0 to `longest` intervals.
-    pub(super) fn new(times: SampleTimes, longest: usize) -> Result<Self, ParameterError> {
+    fn new(times: SampleTimes, longest: usize) -> Result<Self, ParameterError> {
         accept((1..=MOST_LAGS).contains(&longest), "number of lags", "in 1..=2^20", longest as f64)?;
         let means = vec![BlockedMean::new(); longest + 1];
         Ok(Self {
@@ -121,13 +121,13 @@ impl<V> Lags<V> {
     }
 
     /// Returns the longest lag, as a number of intervals.
-    pub(super) const fn longest(&self) -> usize {
+    const fn longest(&self) -> usize {
         self.means.len() - 1
     }
 
     /// Notes the start of a run. If a disk is no longer where the previous run left it, or comes back, the
     /// samples so far are forgotten.
-    pub(super) fn begin(&mut self, start: &Snapshot<'_>) {
+    fn begin(&mut self, start: &Snapshot<'_>) {
         self.sample_times.start_at(start.time());
         let Some(places) = self.places.take() else { return };
         let (now, rounding) = (places_in(start), ROUNDING * start.mean(Disk::radius));
@@ -141,14 +141,14 @@ impl<V> Lags<V> {
     }
 
     /// Notes the end of a run.
-    pub(super) fn pause(&mut self, end: &Snapshot<'_>) {
+    fn pause(&mut self, end: &Snapshot<'_>) {
         let places = places_in(end);
         self.largest_id = places.iter().map(|(id, _)| id).fold(self.largest_id, u64::max);
         self.places = Some(places);
     }
 
     /// Adds a sample and its pairs with the earlier ones. Pairs whose value is NaN are left out.
-    pub(super) fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
+    fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
         let interval = self.sample_times.interval();
         let rounding = self.sample_times.rounding(time);
         if self.latest.is_none_or(|latest| (time - latest - interval).abs() > rounding) {
@@ -167,12 +167,12 @@ impl<V> Lags<V> {
     }
 
     /// Returns the sample taken `lag` intervals before the latest one.
-    pub(super) fn before(&self, lag: usize) -> Option<&V> {
+    fn before(&self, lag: usize) -> Option<&V> {
         self.past.get(lag)
     }
 
     /// Iterates over the lags as times, with the means.
-    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
+    fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
         let interval = self.sample_times.interval();
         self.means.iter().enumerate().map(move |(lag, mean)| (lag as f64 * interval, mean.estimate()))
     }
@@ -180,11 +180,6 @@ impl<V> Lags<V> {
     /// Forgets the samples, so that the next sample is a new origin.
     fn forget_samples(&mut self) {
         self.past.clear();
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.forget_samples();
-        self.means.fill(BlockedMean::new());
     }
 }
 
@@ -277,12 +272,6 @@ impl MeanSquaredDisplacement {
     /// 1970), so report $`t`$ together with the coefficient.
     pub fn diffusion_coefficient(&self) -> Estimate {
         self.diffusion.estimate()
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.lags.clear();
-        self.diffusion = BlockedMean::new();
     }
 
     /// Returns the slope over the second half of the lags, up to the latest sample.
@@ -449,11 +438,6 @@ impl<Q: Observable> TimeCorrelation<Q> {
     /// Iterates over the lags as times, with the correlations.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
         self.lags.iter()
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.lags.clear();
     }
 }
 

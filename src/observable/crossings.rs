@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::stretch::Stretch;
+use super::sample_times::Stretch;
 use super::table::Table;
 use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::quantity::accept;
@@ -138,15 +138,6 @@ impl Crossings {
     /// If no interval is complete yet, or only one.
     pub fn flux(&self) -> Result<Estimate, ParameterError> {
         block_average(&self.fluxes().collect::<Vec<_>>())
-    }
-
-    /// Forgets all crossings.
-    pub fn clear(&mut self) {
-        self.stretch.forget();
-        self.times.clear();
-        self.forward.clear();
-        self.backward.clear();
-        self.present = [0; 2];
     }
 
     fn fluxes(&self) -> impl Iterator<Item = f64> {

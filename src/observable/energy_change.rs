@@ -2,7 +2,7 @@
 
 use super::by_wall::ByWall;
 use super::grid::check_heights;
-use super::stretch::System;
+use super::sample_times::System;
 use super::table::{ENERGY, Table, headings, row};
 use super::{Accumulator, Collision, Heading, Observer, ObserverError, Partner, Snapshot};
 use crate::ParameterError;
@@ -54,11 +54,6 @@ impl EnergyChange {
     /// Returns the mean over collisions with the wall or part of this name; empty if it was never touched.
     pub fn wall(&self, name: &str) -> &BlockedMean {
         self.walls.get(name).unwrap_or(&NEVER_TOUCHED)
-    }
-
-    /// Forgets all collisions so far.
-    pub fn clear(&mut self) {
-        *self = Self::default();
     }
 }
 

@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::free_shares::{FreeShares, check_area};
-use super::grid::{CellSums, check_heights};
+use super::grid::{CellSums, FreeShares, check_area, check_heights};
 use super::table::{ENERGY, Table, headings};
 use super::{Accumulator, Grid, Heading, Snapshot};
 use crate::ParameterError;
@@ -131,13 +130,6 @@ impl HeightProfile {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }
 
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.sums.fill(0.0);
-        self.free.fill(0.0);
-        self.samples = 0;
-    }
-
     fn add_disk(&mut self, height: f64, radius: f64, domain: &Domain) {
         // The free area ends at the edge of the domain, so matter beyond it, such as the image of a disk,
         // must not count either.
@@ -169,8 +161,7 @@ fn layers(bins: Bins, domain: &Domain) -> impl Iterator<Item = Region> {
 
 impl Accumulator for HeightProfile {
     fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
-        self.shares.check(snapshot, layers(self.bins, &snapshot.domain()))?;
-        let shares = self.shares.of(snapshot, layers(self.bins, &snapshot.domain()));
+        let shares = self.shares.of(snapshot, layers(self.bins, &snapshot.domain()))?;
         self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         let (domain, period) = (snapshot.domain(), snapshot.domain().periods().y);
         // The periodic images provide the areas of disks that extend beyond a periodic end.
@@ -205,9 +196,6 @@ crate::gate::from_file! {
     HeightProfile { bins: Bins, sums: Vec<f64>, free: Vec<f64>, samples: u64 } => {
         bins.check_count(sums.len())?;
         bins.check_count(free.len())?;
-        for &sum in sums.iter().chain(&free) {
-            crate::quantity::finite("sum of packing fractions", sum)?;
-        }
         Ok(Self { bins, sums, free, samples, shares: FreeShares::default() })
     }
 }
@@ -290,11 +278,6 @@ impl Fields {
         self.samples
     }
 
-    /// Returns the grid.
-    pub const fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
     /// Returns the fields in a cell, or `None` outside the grid.
     ///
     /// Columns are counted from the left, and rows from below.
@@ -308,13 +291,6 @@ impl Fields {
     pub fn iter(&self) -> impl Iterator<Item = FieldCell> {
         let (columns, rows) = self.grid.shape();
         (0..rows).flat_map(move |row| (0..columns).map(move |column| self.averaged(column, row)))
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.sums.fill(CellSums::default());
-        self.free.fill(0.0);
-        self.samples = 0;
     }
 
     fn averaged(&self, column: usize, row: usize) -> FieldCell {
@@ -340,14 +316,13 @@ impl Fields {
 
 impl Accumulator for Fields {
     fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError> {
-        self.shares.check(snapshot, self.grid.cells())?;
+        let shares = self.shares.of(snapshot, self.grid.cells())?;
+        self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         for disk in snapshot.disks() {
             if let Some(cell) = self.grid.cell_of(disk, &snapshot.domain()) {
                 self.sums[cell].add(disk);
             }
         }
-        let shares = self.shares.of(snapshot, self.grid.cells());
-        self.free.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
         self.samples += 1;
         Ok(())
     }
@@ -390,7 +365,6 @@ crate::gate::from_file! {
             let requirement = "the number of cells";
             crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
         }
-        free.iter().try_for_each(|&share| crate::quantity::non_negative("free share", share).map(drop))?;
         Ok(Self { grid, sums, free, samples, shares: FreeShares::default() })
     }
 }

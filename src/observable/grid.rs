@@ -1,11 +1,12 @@
-//! Grids of cells, and the sums over the disks in each cell.
+//! Grids of cells, the sums over the disks in each cell, and the shares of regions that walls leave free.
 
 use glam::DVec2;
 
 use super::Snapshot;
+use super::snapshot::Mark;
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, finite};
-use crate::statistics::{Bins, Moments};
+use crate::statistics::{Bins, RunningMean};
 use crate::{Disk, ParameterError};
 
 /// Largest number of cells of a grid.
@@ -165,18 +166,18 @@ pub(super) struct CellSums {
     pub(super) count: u64,
     pub(super) area: f64,
     /// Components of the velocity, weighted by mass.
-    pub(super) velocity: [Moments; 2],
+    pub(super) velocity: [RunningMean; 2],
     /// Angular velocity, weighted by moment of inertia.
-    pub(super) angular_velocity: Moments,
+    pub(super) angular_velocity: RunningMean,
 }
 
 impl CellSums {
     pub(super) fn add(&mut self, disk: &Disk) {
         self.count += 1;
         self.area += std::f64::consts::PI * disk.radius() * disk.radius();
-        self.velocity[0].push(disk.velocity().x, disk.mass());
-        self.velocity[1].push(disk.velocity().y, disk.mass());
-        self.angular_velocity.push(disk.angular_velocity(), disk.moment_of_inertia());
+        self.velocity[0].push_weighted(disk.velocity().x, disk.mass());
+        self.velocity[1].push_weighted(disk.velocity().y, disk.mass());
+        self.angular_velocity.push_weighted(disk.angular_velocity(), disk.moment_of_inertia());
     }
 
     /// Returns the velocity of the flow.
@@ -187,4 +188,65 @@ impl CellSums {
 
 crate::gate::from_file! {
     Grid { region: Region, columns: usize, rows: usize } => Self::new(region, columns, rows)
+}
+
+/// The free shares of several regions. They are kept as long as no wall has moved.
+///
+/// They are not part of the measurement: no file holds them, and any two values of this type compare equal.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FreeShares {
+    walls: Mark,
+    time: f64,
+    points: Option<Vec<DVec2>>,
+    shares: Vec<f64>,
+}
+
+impl FreeShares {
+    /// Returns the share of each region that matter can fill at the time of a snapshot. All calls must pass
+    /// the same regions.
+    ///
+    /// # Errors
+    /// If a share is unknown. The error says what to use instead.
+    pub(super) fn of(
+        &mut self,
+        snapshot: &Snapshot<'_>,
+        regions: impl Iterator<Item = Region>,
+    ) -> Result<&[f64], ParameterError> {
+        let walls = 0..snapshot.wall_count();
+        let points: Option<Vec<DVec2>> = walls.map(|wall| snapshot.wall_point(wall)).collect();
+        let stays = self.time == snapshot.time() || points.is_some() && points == self.points;
+        if !(stays && self.walls.is_same(snapshot.walls_mark())) {
+            let shares: Option<Vec<f64>> = regions.map(|region| snapshot.free_share(&region)).collect();
+            known(shares.is_some())?;
+            (self.walls, self.points) = (snapshot.walls_mark(), points);
+            self.shares = shares.unwrap_or_default();
+        }
+        self.time = snapshot.time();
+        Ok(&self.shares)
+    }
+}
+
+/// Checks that the free area is known for a region, or else for each part of it.
+///
+/// # Errors
+/// If the area is unknown. The error says what to use instead.
+pub(super) fn check_area(
+    region: &Region,
+    parts: impl IntoIterator<Item = Region>,
+    start: &Snapshot<'_>,
+) -> Result<(), ParameterError> {
+    let is_known = |region: &Region| start.free_share(region).is_some();
+    known(is_known(region) || parts.into_iter().all(|part| is_known(&part)))
+}
+
+fn known(all_are_known: bool) -> Result<(), ParameterError> {
+    let requirement = "known: implement Boundary::area, let parts with an inside stop all kinds of disks, or \
+                       measure in a region that no wall enters";
+    accept(all_are_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)
+}
+
+impl PartialEq for FreeShares {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }

@@ -52,11 +52,6 @@ impl<'a> Neighbors<'a> {
         Self { disks, domain, squares, range, half }
     }
 
-    /// Returns the range.
-    pub const fn range(&self) -> f64 {
-        self.range
-    }
-
     /// Iterates over the neighbors of a disk, in an arbitrary but reproducible order. If no disk has this
     /// index, there are no neighbors.
     pub fn of(&self, disk: usize) -> impl Iterator<Item = Neighbor> {
@@ -222,7 +217,7 @@ impl PairCorrelation {
     }
 
     /// Returns the largest distance.
-    pub fn range(&self) -> f64 {
+    fn range(&self) -> f64 {
         self.bins.edge(self.bins.count())
     }
 
@@ -241,13 +236,6 @@ impl PairCorrelation {
             .iter()
             .enumerate()
             .map(move |(bin, pairs)| (self.bins.middle(bin), pairs.estimate().scaled(scale)))
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.pairs.fill(BlockedMean::new());
-        (self.centers, self.partner_density) = (RunningMean::default(), RunningMean::default());
-        self.numbers = [RunningMean::default(); 3];
     }
 
     /// Returns the region of the disks around which partners are counted.

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use super::stretch::System;
+use super::sample_times::System;
 use super::{Collision, Observable, Observer, ObserverError, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::accept;
@@ -43,6 +43,7 @@ use crate::statistics::{Estimate, block_average};
     label = "an `Accumulator` is expected here",
     note = "an observer with its own clock, such as a `Series`, needs no `Sampled` around it"
 )]
+#[expect(unused_variables, reason = "what is shown need not be looked at")]
 pub trait Accumulator {
     /// Adds a snapshot.
     ///
@@ -51,9 +52,7 @@ pub trait Accumulator {
     fn add(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ParameterError>;
 
     /// Receives a collision that has just happened.
-    fn on_collision(&mut self, collision: &Collision) {
-        let _ = collision;
-    }
+    fn on_collision(&mut self, collision: &Collision) {}
 
     /// Checks, at the start of a run, whether its snapshots can be measured.
     ///
@@ -61,7 +60,6 @@ pub trait Accumulator {
     /// If the snapshots cannot be measured, for example because a region is not inside the domain. The run
     /// then ends with this error.
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
-        let _ = start;
         Ok(())
     }
 }
@@ -234,13 +232,6 @@ impl<Q: Observable> Series<Q> {
     pub fn mean(&self, number: impl Fn(&Q::Value) -> f64) -> Result<Estimate, ParameterError> {
         block_average(&self.values.iter().map(number).collect::<Vec<_>>())
     }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.times.clear();
-        self.values.clear();
-        self.system = System::NONE;
-    }
 }
 
 impl<Q: Observable> Observer for Series<Q> {
@@ -249,7 +240,7 @@ impl<Q: Observable> Observer for Series<Q> {
         // The previous run may have ended on the last sample, up to rounding.
         let rounding = self.sample_times.rounding(time);
         let goes_on = self.times.last().is_none_or(|&last| time >= last - rounding);
-        let requirement = "not before the last sample of the series; clear it for another run";
+        let requirement = "not before the last sample of the series; take a new one for another run";
         accept(goes_on, "start of the run", requirement, time)?;
         self.system.is_same(start)?;
         self.sample_times.start_at(time);

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, Probe, Region, Wall, WallView};
+use crate::boundary::{Boundary, Domain, Probe, Region, Surface, Wall, WallView};
 use crate::{Disk, Gravity};
 
 /// A mark that is unique in this process; 0 until it is assigned.
@@ -47,7 +47,7 @@ impl PartialEq for Mark {
 ///
 /// Changes of these copies do not affect the run. The copies are made on request, so the start of a run costs
 /// nothing for an observer that only reads the time.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Snapshot<'a> {
     time: f64,
     disks: Disks<'a>,
@@ -74,15 +74,6 @@ enum Disks<'a> {
     Moving { source: &'a dyn Moving, offset: f64, copies: OnceCell<Vec<Disk>> },
 }
 
-impl fmt::Debug for Disks<'_> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Given(disks) => disks.fmt(formatter),
-            Self::Moving { source, .. } => write!(formatter, "[{} disks]", source.count()),
-        }
-    }
-}
-
 /// The boundary of a run, and the time of a snapshot as an offset from the boundary's time origin.
 #[derive(Clone, Copy)]
 struct Walls<'a> {
@@ -90,9 +81,9 @@ struct Walls<'a> {
     time: f64,
 }
 
-impl fmt::Debug for Walls<'_> {
+impl fmt::Debug for Snapshot<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("..")
+        write!(formatter, "{} disks at time {:?}", self.len(), self.time)
     }
 }
 
@@ -203,14 +194,17 @@ impl<'a> Snapshot<'a> {
     /// Returns the velocity of a wall's surface at its [point](Self::wall_point), or `None` if the point is
     /// not known.
     pub fn wall_velocity(&self, wall: usize) -> Option<DVec2> {
+        Some(self.surface(wall)?.velocity)
+    }
+
+    fn surface(&self, wall: usize) -> Option<Surface<'_>> {
         let (walls, point) = (self.walls?, self.wall_point(wall)?);
-        Some(walls.boundary.surface(wall, point, walls.time).velocity)
+        Some(walls.boundary.surface(wall, point, walls.time))
     }
 
     /// Returns the momentum of a wall with a mass, or `None` for other walls.
     pub(super) fn wall_momentum(&self, wall: usize) -> Option<DVec2> {
-        let (walls, point) = (self.walls?, self.wall_point(wall)?);
-        let surface = walls.boundary.surface(wall, point, walls.time);
+        let surface = self.surface(wall)?;
         surface.mass.is_finite().then(|| surface.mass * surface.velocity)
     }
 

@@ -2,9 +2,8 @@
 
 use glam::DVec2;
 
-use super::free_shares::{FreeShares, check_area};
-use super::grid::{checked_region, holds, inside};
-use super::stretch::Stretch;
+use super::grid::{FreeShares, check_area, checked_region, holds, inside};
+use super::sample_times::Stretch;
 use super::table::{STRESS, Table, headings, row};
 use super::{Collision, Heading, Observer, ObserverError, SampleTimes, Snapshot, Verdict, contract};
 use crate::boundary::{Domain, Region};
@@ -150,15 +149,6 @@ impl Stress {
         self.total.pressure.count()
     }
 
-    /// Forgets all measurements so far.
-    pub fn clear(&mut self) {
-        self.stretch.forget();
-        self.transferred = [0.0; 4];
-        for tensor in [&mut self.kinetic, &mut self.collisional, &mut self.total] {
-            *tensor = Tensor::default();
-        }
-    }
-
     /// Returns the fraction of the segment between two positions that lies in the region, summed over the
     /// images of the segment in a periodic box.
     fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {
@@ -167,12 +157,10 @@ impl Stress {
         self.domain.map_or_else(|| share(DVec2::ZERO), |domain| domain.images().map(share).sum())
     }
 
-    /// Returns the free area at the time of a snapshot, or `None`, with a fault, if it is not known.
-    fn area(&mut self, snapshot: &Snapshot<'_>) -> Option<f64> {
+    /// Returns the free area at the time of a snapshot.
+    fn area(&mut self, snapshot: &Snapshot<'_>) -> Result<f64, ParameterError> {
         let region = self.region.unwrap_or(snapshot.domain().region());
-        self.fault = self.shares.check(snapshot, std::iter::once(region)).err();
-        let share = self.shares.of(snapshot, std::iter::once(region))[0];
-        self.fault.is_none().then_some(region.area() * share)
+        Ok(region.area() * self.shares.of(snapshot, std::iter::once(region))?[0])
     }
 
     /// Checks that the area of a run's domain is finite and known.
@@ -234,7 +222,8 @@ impl Observer for Stress {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let transferred = std::mem::take(&mut self.transferred);
         let Some(duration) = self.stretch.finish(snapshot.time()) else { return };
-        let Some(area) = self.area(snapshot) else { return };
+        let area = self.area(snapshot);
+        let Ok(area) = area.map_err(|fault| self.fault = Some(fault)) else { return };
         let collisional = transferred.map(|sum| sum / (area * duration));
         let mut kinetic = [0.0; 4];
         let domain = snapshot.domain();

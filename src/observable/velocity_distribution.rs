@@ -9,8 +9,7 @@ use crate::disk::LEAST_THERMAL;
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
 
-/// The distribution of velocities: histograms of both components and of the speed, cumulants
-/// and kurtosis.
+/// The distribution of velocities: histograms of both components and of the speed, and cumulants.
 ///
 /// Velocities are in units of the thermal speed of their sample, $`\vec c = \vec v/\sqrt{2T/m}`$, so that the
 /// gas may cool or heat. For a Maxwellian gas, the histograms show $`p(c_x) = e^{-c_x^2}/\sqrt\pi`$ and
@@ -53,7 +52,6 @@ pub struct VelocityDistribution {
     components: [Histogram; 2],
     speed: Histogram,
     cumulants: [BlockedMean; 2],
-    excess_kurtosis: [BlockedMean; 2],
 }
 
 /// The velocity that is subtracted from the velocity of each disk.
@@ -79,7 +77,6 @@ impl VelocityDistribution {
             components: [component.clone(), component],
             speed,
             cumulants: Default::default(),
-            excess_kurtosis: Default::default(),
         })
     }
 
@@ -123,20 +120,6 @@ impl VelocityDistribution {
     /// Returns the third cumulant, a₃, which is 0 for a Maxwellian gas.
     pub fn third_cumulant(&self) -> Estimate {
         self.cumulants[1].estimate()
-    }
-
-    /// Returns the excess kurtosis of the horizontal and of the vertical component.
-    ///
-    /// It is $`\langle c_x^4\rangle/\langle c_x^2\rangle^2 - 3`$, which is 0 for a Maxwellian gas.
-    pub fn excess_kurtosis(&self) -> [Estimate; 2] {
-        [self.excess_kurtosis[0].estimate(), self.excess_kurtosis[1].estimate()]
-    }
-
-    /// Forgets all samples so far.
-    pub fn clear(&mut self) {
-        self.components.iter_mut().for_each(Histogram::clear);
-        self.speed.clear();
-        (self.cumulants, self.excess_kurtosis) = Default::default();
     }
 }
 
@@ -218,13 +201,6 @@ impl Accumulator for VelocityDistribution {
         let a3 = 1.0 + 3.0 * a2 - relative_moment(sixth, squares, 6, third, 2.0 * freedom, 48.0);
         self.cumulants[0].push(a2);
         self.cumulants[1].push(a3);
-        for (axis, mean) in self.excess_kurtosis.iter_mut().enumerate() {
-            let squares = sum(&|v, _| v[axis] * v[axis]);
-            let fourth = sum(&|v, _| v[axis] * v[axis] * v[axis] * v[axis]);
-            if squares > 0.0 {
-                mean.push(3.0 * relative_moment(fourth, squares, 4, second, freedom, 3.0) - 3.0);
-            }
-        }
         Ok(())
     }
 

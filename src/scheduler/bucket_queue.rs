@@ -128,7 +128,7 @@ impl BucketQueue {
             if self.open.len() - self.over < SIGHT {
                 self.open_buckets();
             }
-            let next = self.open.get(self.over).copied().unwrap_or_default();
+            let next = self.open.get(self.over).copied().unwrap_or(Entry::EMPTY);
             let late = self.late.peek().map_or(Entry::EMPTY, |&Reverse(late)| late);
             self.first = next.min(late);
             if self.first == Entry::EMPTY {
@@ -188,7 +188,7 @@ impl BucketQueue {
     #[inline(never)]
     fn turn_page(&mut self) {
         let first = self.due.iter().enumerate().map(|(disk, &due)| Entry::new(disk, due)).min();
-        self.first = first.unwrap_or_default();
+        self.first = first.unwrap_or(Entry::EMPTY);
         let first = self.first.due();
         self.page = Page { start: first, rate: self.events_per_time(first) / EVENTS_PER_BUCKET as f64 };
         (self.set, self.opened, self.over, self.named) = (0, 0, 0, 0);

@@ -95,7 +95,7 @@ const PLAYERS: usize = 4;
 /// branch: no processor can predict the winner of a match, and a mispredicted branch costs more than the
 /// whole match. Matches of four need half as many rounds as matches of two, and the best of the three others
 /// is found while the round below is still being played.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct Fours {
     /// The matches of all rounds, one round after the other.
     matches: Vec<[Entry; PLAYERS]>,

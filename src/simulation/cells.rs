@@ -12,18 +12,18 @@ mod grid;
 mod layer;
 mod layers;
 mod layout;
-mod prefetching;
 mod reach;
 
 use glam::DVec2;
 
 use super::state::Exit;
 use crate::boundary::{Boundary, Region};
+use crate::instructions::prefetch;
 use contents::Contents;
 use division::classes;
 pub(super) use grid::{Grid, Place};
 pub(super) use layers::Layouts;
-use layers::{Layers, layouts};
+use layers::{Chosen, Layers, layouts};
 pub(crate) use layout::FEWEST;
 pub(super) use layout::{CELLS_PER_DISK, CellSize, Layout, SPARE_CELLS, SizeClass};
 use layout::{class_of, count, together};
@@ -39,7 +39,7 @@ pub(super) const SPARE_DISKS: usize = 64;
 /// and each larger class has a layer above it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Cells {
-    grid: Grid,
+    pub(super) grid: Grid,
     contents: Contents,
     /// Column and row of each disk, in the grid of its class.
     pub(super) places: Vec<Place>,
@@ -171,7 +171,8 @@ impl Cells {
         let class = class_of(&self.classes, diameter);
         match self.layers.as_ref().and_then(|layers| Some((layers, layers.of_class(class)?))) {
             Some((layers, layer)) => {
-                layers.gather_all(&self.contents, class, layer.grid.place_of(position), found)
+                let place = layer.grid.place_of(position);
+                layers.gather(&self.contents, class, place, Chosen::AlsoInside, found)
             }
             None => self.around_cell_in_layers(self.grid.place_of(position), found),
         }
@@ -198,11 +199,6 @@ impl Cells {
         }
     }
 
-    #[inline]
-    pub(super) fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
     /// Writes a disk of any class into its cell, or removes it from the cell.
     fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
@@ -217,7 +213,7 @@ impl Cells {
     fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
         change(&mut self.contents, self.grid.index(place), disk);
-        if self.grid.is_periodic() {
+        if self.grid.is_periodic {
             for ghost in self.grid.mirrors(place) {
                 change(&mut self.contents, self.grid.index(ghost), disk);
             }
@@ -268,7 +264,7 @@ impl Cells {
     #[inline(always)]
     fn around_cell(&self, place: Place, found: &mut [u32]) -> usize {
         let center = self.grid.index(place);
-        let stride = self.grid.stride();
+        let stride = self.grid.stride;
         let mut count = 0;
         for first in [center - stride - 1, center - 1, center + stride - 1] {
             count = self.contents.gather(first, 1, found, count);
@@ -279,7 +275,7 @@ impl Cells {
     fn around_in_layers(&self, layers: &Layers, disk: usize, found: &mut [u32]) -> usize {
         let place = self.places[disk];
         if layers.of(disk).is_some() {
-            return layers.gather(&self.contents, disk, place, None, found);
+            return layers.gather(&self.contents, layers.classes[disk], place, Chosen::InReach, found);
         }
         self.around_cell_in_layers(place, found)
     }
@@ -299,7 +295,8 @@ impl Cells {
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
         // If two images of a disk cannot be distinguished, a disk within reach of the last cell may now be
         // met at another image, so all disks within reach are gathered again.
-        layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
+        let chosen = if layers.is_narrow { Chosen::InReach } else { Chosen::Beyond(before) };
+        layers.gather(&self.contents, layers.classes[disk], place, chosen, found)
     }
 
     /// Writes to `found` the disks that come within reach of a disk of the smallest class when it enters its
@@ -333,7 +330,7 @@ impl Cells {
     #[inline(always)]
     fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();
-        let stride = self.grid.stride();
+        let stride = self.grid.stride;
         let middle =
             self.grid.index(place).wrapping_add_signed(right as isize * stride.cast_signed() + up as isize);
         let step = if up == 0 { 1 } else { stride };
@@ -344,5 +341,44 @@ impl Cells {
     #[inline]
     fn next_place(&self, disk: usize, exit: Exit) -> Place {
         self.grid.neighbor(self.places[disk], exit.direction()).0
+    }
+
+    #[inline]
+    pub(super) fn prefetch_place(&self, disk: usize) {
+        prefetch(&self.places, disk);
+    }
+
+    /// Prefetches the nine cells around a disk of the smallest class. Does nothing for larger disks.
+    #[inline]
+    pub(super) fn prefetch_around(&self, disk: usize) {
+        if self.is_large(disk) {
+            return;
+        }
+        let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride);
+        for middle in [center - stride, center, center + stride] {
+            self.contents.prefetch(middle - 1);
+            self.contents.prefetch(middle + 1);
+        }
+        self.prefetch_visitors(center);
+    }
+
+    #[inline]
+    fn prefetch_visitors(&self, cell: usize) {
+        if let Some(layers) = &self.layers {
+            layers.prefetch_visitors(cell);
+        }
+    }
+
+    /// Prefetches the cells that a disk leaves and enters by `exit`, and the cells that then come within its
+    /// reach.
+    #[inline]
+    pub(super) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
+        let (from, to) = (self.places[disk], self.next_place(disk, exit));
+        self.grid.prefetch_region(to);
+        let (first, step) = self.three_ahead(to, exit);
+        for cell in [self.grid.index(from), self.grid.index(to), first, first + step, first + 2 * step] {
+            self.contents.prefetch(cell);
+        }
+        self.prefetch_visitors(self.grid.index(to));
     }
 }

@@ -14,22 +14,21 @@ pub use resumption::Resumption;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use glam::DVec2;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use thiserror::Error;
 
 use super::cells::{CELLS_PER_DISK, Cells, Layout, Layouts, Place, SPARE_CELLS, SPARE_DISKS};
-use super::state::{Clock, Exit, Forecast, Identities, Ledger, Spin, Trajectory};
+use super::state::{Bodies, Clock, Exit, Ledger};
 use super::{Counters, Inlet, Simulation};
+use crate::Fingerprint;
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::file::{Damage, Seal, write_whole};
 use crate::scheduler::EventScheduler;
-use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANEDMD", 10);
+const SEAL: Seal = Seal::new(*b"GRANEDMD", 11);
 
 /// The mark of a file with a checkpoint and observers, and the version of its format.
 const SEAL_WITH: Seal = Seal::new(*b"GRANWITH", 1);
@@ -76,20 +75,10 @@ struct Saved {
     domain: Domain,
     /// Radius, mass, inertia and kind of each disk, as disks at rest at the origin; a single disk if all are
     /// alike.
-    models: Vec<Disk>,
-    /// The acceleration of disks in free flight.
-    gravity: DVec2,
-    trajectories: Vec<Trajectory>,
-    spins: Vec<Spin>,
-    /// Numbers of periods that each disk has crossed; empty if no disk has crossed a period.
-    images: Vec<[i32; 2]>,
-    identities: Identities,
-    typical_diameter: f64,
-    fresh_count: u32,
+    bodies: Bodies,
     inlets: Vec<Inlet>,
     /// The state of the walls that react, as numbers.
     walls: Vec<f64>,
-    forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
     seed: u64,
@@ -260,22 +249,13 @@ impl<'de> Deserialize<'de> for Checkpoint {
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Takes a checkpoint of the run in its present state.
     pub fn checkpoint(&self) -> Checkpoint {
-        let particles = &self.engine.bodies.particles;
         Checkpoint(Saved {
             rule: self.parts.rule.fingerprint(),
             boundary: self.parts.boundary.fingerprint(),
             domain: self.parts.boundary.domain(),
-            models: self.engine.bodies.models(),
-            gravity: self.engine.bodies.gravity.acceleration(),
-            trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
-            spins: self.engine.bodies.spins.clone(),
-            images: self.engine.bodies.images.clone(),
-            identities: self.engine.bodies.identities.clone(),
-            typical_diameter: self.engine.bodies.typical_diameter,
-            fresh_count: self.engine.bodies.fresh_count,
+            bodies: self.engine.bodies.clone(),
             inlets: self.engine.inlets.clone(),
             walls: self.parts.boundary.state(),
-            forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.engine.cells.layouts(),
             places: self.engine.cells.places.clone(),
             seed: self.engine.seed,
@@ -354,15 +334,11 @@ fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
 
 /// Checks everything that does not depend on the cells.
 fn check_lengths(saved: &Saved, walls: usize) -> Result<(), CheckpointError> {
-    let count = saved.trajectories.len();
-    let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
-    check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
-    check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
-    check(saved.identities.suits(count), "its ids do not fit the number of disks")?;
-    check([1, count].contains(&saved.models.len()), "its models do not fit the number of disks")?;
+    let bodies = &saved.bodies;
+    check(bodies.are_whole() && bodies.len() == saved.places.len(), "its parts differ in length")?;
     let times = [saved.clock.origin, saved.clock.now, saved.clock.epoch_length];
     check(times.iter().all(|time| time.is_finite()) && times[2] > 0.0, "a time is not finite")?;
-    let mut forecasts = saved.forecasts.iter();
+    let mut forecasts = bodies.particles.iter().map(|particle| particle.forecast);
     let are_walls = forecasts.all(|event| event.exit != Exit::Wall || usize::from(event.wall) < walls);
     check(are_walls, "an event names no wall")
 }

@@ -101,13 +101,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.engine.check_end(limits.end()).map_err(|error| *error)?;
         let (start, before) = (Instant::now(), self.counters().collisions());
         driving.times().start_at(self.time());
+        let mut last = f64::NEG_INFINITY;
         loop {
             let next = driving.times().upcoming();
             let left = limits.rest(self.counters().collisions() - before, start.elapsed());
             let failed = |time, source| RunError::Driving { time, source: Box::new(source) };
-            if next.is_nan() {
-                let error =
-                    ParameterError::new("time of the next kick", "a number that is not too late", next);
+            if next.is_nan() || next <= last {
+                let requirement = "not too late, and after that of the last kick";
+                let error = ParameterError::new("time of the next kick", requirement, next);
                 return Err(failed(self.time(), error.into()));
             }
             if next > rounded_up(limits.end(), next) {
@@ -121,12 +122,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let kicked = driving.kick(&mut disks).map_err(Into::into);
             kicked.and_then(|()| self.replace_disks(&disks)).map_err(|error| failed(self.time(), error))?;
             driving.times().advance_past(next);
-            let following = driving.times().upcoming();
-            if following <= next {
-                let error =
-                    ParameterError::new("time of the next kick", "after that of the last kick", following);
-                return Err(failed(self.time(), error.into()));
-            }
+            last = next;
         }
     }
 }
@@ -338,8 +334,7 @@ impl Driving for Rescaling {
 
 crate::gate::from_file! {
     Rescaling { temperature: f64, times: SampleTimes, energy: f64 } => {
-        positive("temperature", temperature)?;
-        crate::quantity::finite("energy of the rescalings", energy)?;
-        Ok(Self { temperature, times, energy })
+        let energy = crate::quantity::finite("energy of the rescalings", energy)?;
+        Ok(Self { energy, ..Self::new(temperature, times)? })
     }
 }

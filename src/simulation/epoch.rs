@@ -3,7 +3,6 @@
 use super::Simulation;
 use super::cells::{CellSize, Cells, SPARE_DISKS};
 use super::errors::Outcome;
-use super::state::Tally;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
@@ -72,14 +71,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// predicted anew from the present.
     #[cold]
     pub(super) fn adapt_cells(&mut self) {
-        let tally = Tally {
-            cell_crossings: self.engine.counters.cell_crossings,
-            collisions: self.engine.counters.disk_collisions,
-        };
+        let tally = [self.engine.counters.cell_crossings, self.engine.counters.disk_collisions];
         let last = std::mem::replace(&mut self.engine.clock.tally, tally);
-        let crossings = tally.cell_crossings - last.cell_crossings;
-        let size = self.engine.cells.grid().cell_size();
-        let suitable = size.suitable(crossings, tally.collisions - last.collisions);
+        let size = self.engine.cells.grid.layout.cell_size;
+        let suitable = size.suitable(tally[0] - last[0], tally[1] - last[1]);
         if suitable == size {
             return;
         }

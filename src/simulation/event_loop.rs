@@ -98,7 +98,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Outcome<Event> {
         let Self { parts, engine } = self;
-        let periods = engine.cells.grid().periods();
+        let periods = engine.cells.grid.periods;
         // Neighbors are listed before the collision is known: the processor then has this work to do while
         // it waits for the roots and quotients of the collision.
         let counts = [engine.neighbors(disk, 0), engine.neighbors(partner, 1)];
@@ -154,8 +154,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // then receives a closing speed of zero and may change nothing, and the boundary would find the same
         // touch again.
         let parts = (engine.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
-        let Engine { bodies, seed, clock, .. } = engine;
-        let (mut collision, kick) = resolve_wall(bodies, rule, *seed, &surface, clock, disk, wall);
+        let (mut collision, kick) = resolve_wall(engine, rule, &surface, &engine.clock, disk, wall);
         if !kick.is_possible() {
             let name = self.name_of(Partner::Wall(wall));
             return Err(failed(&collision, name).into());
@@ -253,7 +252,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     #[inline(never)]
     fn prepare_for_pair(&mut self, disk: usize, partner: usize) -> Outcome<()> {
-        let periods = self.engine.cells.grid().periods();
+        let periods = self.engine.cells.grid.periods;
         let (collision, kicks) =
             resolve_pair(&self.engine.bodies, &self.parts.rule, periods, &self.engine.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
@@ -293,7 +292,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         self.engine.counters.cell_crossings += 1;
         let passed = self.engine.cells.cross(disk, exit);
-        self.engine.bodies.bring_back(disk, passed, self.engine.cells.grid().periods());
+        self.engine.bodies.bring_back(disk, passed, self.engine.cells.grid.periods);
         self.engine.make_room();
         let count = self.engine.cells.ahead(disk, exit, &mut self.engine.scratch.found[0]);
         self.go_on(disk, count);
@@ -318,7 +317,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn cross_large(&mut self, disk: usize, exit: Exit) {
         self.engine.counters.cell_crossings += 1;
         let passed = self.engine.cells.cross_large(disk, exit);
-        self.engine.bodies.bring_back(disk, passed, self.engine.cells.grid().periods());
+        self.engine.bodies.bring_back(disk, passed, self.engine.cells.grid.periods);
         self.engine.make_room();
         let count = self.engine.cells.ahead_of_large(disk, exit, &mut self.engine.scratch.found[0]);
         self.go_on(disk, count);

@@ -87,23 +87,20 @@ impl Counters {
     ///
     /// The largest overlaps and the longest contact cover the whole run.
     #[must_use]
-    pub const fn since(&self, earlier: &Self) -> Self {
+    pub fn since(&self, earlier: &Self) -> Self {
+        let since = |count: fn(&Self) -> u64| count(self).saturating_sub(count(earlier));
         Self {
-            disk_collisions: self.disk_collisions.saturating_sub(earlier.disk_collisions),
-            wall_collisions: self.wall_collisions.saturating_sub(earlier.wall_collisions),
-            contact_duration_collisions: self
-                .contact_duration_collisions
-                .saturating_sub(earlier.contact_duration_collisions),
-            least_rebound_collisions: self
-                .least_rebound_collisions
-                .saturating_sub(earlier.least_rebound_collisions),
+            disk_collisions: since(|counters| counters.disk_collisions),
+            wall_collisions: since(|counters| counters.wall_collisions),
+            contact_duration_collisions: since(|counters| counters.contact_duration_collisions),
+            least_rebound_collisions: since(|counters| counters.least_rebound_collisions),
             energy_of_rebounds: self.energy_of_rebounds - earlier.energy_of_rebounds,
-            cell_crossings: self.cell_crossings.saturating_sub(earlier.cell_crossings),
-            repredictions: self.repredictions.saturating_sub(earlier.repredictions),
-            horizons: self.horizons.saturating_sub(earlier.horizons),
-            cell_resizes: self.cell_resizes.saturating_sub(earlier.cell_resizes),
-            removals: self.removals.saturating_sub(earlier.removals),
-            insertions: self.insertions.saturating_sub(earlier.insertions),
+            cell_crossings: since(|counters| counters.cell_crossings),
+            repredictions: since(|counters| counters.repredictions),
+            horizons: since(|counters| counters.horizons),
+            cell_resizes: since(|counters| counters.cell_resizes),
+            removals: since(|counters| counters.removals),
+            insertions: since(|counters| counters.insertions),
             ..*self
         }
     }

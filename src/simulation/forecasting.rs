@@ -44,7 +44,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
         let engine: &mut Engine = &mut self.engine;
         let Engine { instructions, bodies, cells, clock, scratch, .. } = engine;
-        let (instructions, periods, now) = (*instructions, cells.grid().periods(), clock.now);
+        let (instructions, periods, now) = (*instructions, cells.grid.periods, clock.now);
         find_partners(instructions, instructions, bodies, periods, disks, &mut scratch.found, counts, now);
         let at_wall = leave_cells(instructions, bodies, cells, disks[0], disks[1], now);
         for (disk, at_wall) in disks.into_iter().zip(at_wall) {
@@ -122,7 +122,7 @@ impl Engine {
 
     #[inline(always)]
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
-        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
+        let (periods, now) = (self.cells.grid.periods, self.clock.now);
         let found = &mut self.scratch.found[0];
         earliest_collision(self.instructions, &self.bodies, periods, disk, found, count, now, known)
     }

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::builder::{cells_around, check_epoch, check_speeds, fit};
+use super::cells::Cells;
 use super::engine::Engine;
 use super::lookahead::Lookahead;
-use super::state::Clock;
+use super::state::{Bodies, Clock};
 use super::{BuildError, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
@@ -54,18 +55,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let mut all = self.disks();
         all.extend_from_slice(&new);
         let (wall_count, cells) = fit(&self.parts.boundary, &all, self.engine.clock.now)?;
-        let mut bodies = self.engine.bodies.clone();
-        bodies.insert(&new, self.engine.clock.now);
-        check_epoch(
-            &Clock { epoch_length: bodies.epoch_length(), ..self.engine.clock },
-            self.engine.clock.now,
-        )?;
-        // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
-        self.shift_epoch(self.engine.clock.exact_offset());
-        self.engine.ledger.count(self.time(), self.len());
-        self.engine.bodies.insert(&new, self.engine.clock.now);
-        (self.engine.wall_count, self.engine.cells) = (wall_count, cells);
-        self.begin_anew();
+        self.change((wall_count, cells), |bodies, now| bodies.insert(&new, now))?;
         Ok(indices)
     }
 
@@ -89,20 +79,30 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return Ok(removed);
         }
         let cells = cells_around(&self.parts.boundary, &rest)?;
-        self.shift_epoch(self.engine.clock.exact_offset());
-        self.engine.ledger.count(self.time(), self.len());
-        self.engine.bodies.remove(&leaves);
-        self.engine.cells = cells;
-        self.begin_anew();
+        self.change((self.engine.wall_count, cells), |bodies, _| bodies.remove(&leaves))?;
         Ok(removed)
     }
 
-    /// Predicts all events anew after disks were changed, added or removed.
-    pub(super) fn begin_anew(&mut self) {
+    /// Changes the bodies between two runs, and predicts all events anew in these cells.
+    fn change(
+        &mut self,
+        fitted: (usize, Cells),
+        change: impl Fn(&mut Bodies, f64),
+    ) -> Result<(), BuildError> {
+        let now = self.engine.clock.now;
+        let mut bodies = self.engine.bodies.clone();
+        change(&mut bodies, now);
+        check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.engine.clock }, now)?;
+        // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
+        self.shift_epoch(self.engine.clock.exact_offset());
+        self.engine.ledger.count(self.time(), self.len());
+        change(&mut self.engine.bodies, self.engine.clock.now);
+        (self.engine.wall_count, self.engine.cells) = fitted;
         self.engine.lookahead = Lookahead::default();
         self.engine.balance_anew(&self.parts.boundary.domain());
         self.engine.clock.epoch_length = self.engine.bodies.epoch_length();
         self.predict_all();
+        Ok(())
     }
 }
 
@@ -155,21 +155,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 && disk.kind() == self.engine.bodies.material(index).kind
         };
         let all_stay = disks.iter().enumerate().all(stay);
-        let fitted =
-            (!all_stay).then(|| fit(&self.parts.boundary, disks, self.engine.clock.now)).transpose()?;
-        let mut bodies = self.engine.bodies.clone();
-        bodies.replace(disks, self.engine.clock.now);
-        check_epoch(
-            &Clock { epoch_length: bodies.epoch_length(), ..self.engine.clock },
-            self.engine.clock.now,
-        )?;
-        // The position of a fast disk at a distant epoch would lack digits, so the epoch moves first.
-        self.shift_epoch(self.engine.clock.exact_offset());
-        self.engine.bodies.replace(disks, self.engine.clock.now);
-        if let Some((wall_count, cells)) = fitted {
-            (self.engine.wall_count, self.engine.cells) = (wall_count, cells);
-        }
-        self.begin_anew();
-        Ok(())
+        let fitted = if all_stay {
+            (self.engine.wall_count, self.engine.cells.clone())
+        } else {
+            fit(&self.parts.boundary, disks, self.engine.clock.now)?
+        };
+        self.change(fitted, |bodies, now| bodies.replace(disks, now))
     }
 }

@@ -111,15 +111,14 @@ fn captured(arriving: &Body, surface: &Surface<'_>, mass: f64) -> Body {
 /// Computes the collision of a disk with a wall.
 #[inline]
 pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
-    bodies: &Bodies,
+    engine: &Engine,
     rule: &R,
-    seed: u64,
     surface: &Surface<'_>,
     clock: &Clock,
     disk: usize,
     index: usize,
 ) -> (Collision, Kick) {
-    let offset = clock.now;
+    let (bodies, offset) = (&engine.bodies, clock.now);
     let material = bodies.material(disk);
     let (mass, inertia) = (1.0 / material.inverse_mass, bodies.moment_of_inertia(disk));
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
@@ -136,7 +135,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let (leaving, impulse) = match surface.response {
         Response::Thermal(thermal) => {
             let properties = [mass, inertia, material.radius];
-            let random = &mut of_collision(seed, bodies, clock, disk);
+            let random = &mut of_collision(engine.seed, bodies, clock, disk);
             leading_to(emitted(&thermal, &arriving, surface, properties, random))
         }
         Response::Absorbing => leading_to(captured(&arriving, surface, mass)),
@@ -320,7 +319,7 @@ impl Engine {
     #[inline(never)]
     pub(super) fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {
         let masses = [disk, partner].map(|disk| self.bodies.material(disk).inverse_mass);
-        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
+        let (periods, now) = (self.cells.grid.periods, self.clock.now);
         let speed = self.bodies.speed(disk) + self.bodies.speed(partner);
         if left > WANTED * speed {
             return;

@@ -61,7 +61,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let clock = Clock { now: due, ..self.engine.clock };
         match partner {
             Partner::Disk(other) => {
-                let periods = self.engine.cells.grid().periods();
+                let periods = self.engine.cells.grid.periods;
                 let (collision, _) =
                     resolve_pair(&self.engine.bodies, &self.parts.rule, periods, &clock, disk, other);
                 self.engine.remedy_for(&collision.contact, &self.parts.rule)
@@ -74,15 +74,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 if self.engine.stopped.is_some_and(|(stopped, _)| stopped == wall) {
                     return Remedy::WallOnStop;
                 }
-                let (collision, _) = resolve_wall(
-                    &self.engine.bodies,
-                    &self.parts.rule,
-                    self.engine.seed,
-                    &surface,
-                    &clock,
-                    disk,
-                    wall,
-                );
+                let (collision, _) =
+                    resolve_wall(&self.engine, &self.parts.rule, &surface, &clock, disk, wall);
                 match surface.response {
                     Response::Rule(own) => self.engine.remedy_for(&collision.contact, own),
                     Response::Thermal(_) | Response::Absorbing => Remedy::FasterDisks,

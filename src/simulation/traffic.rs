@@ -99,7 +99,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (position, radius, now) = (disk.position(), disk.radius(), self.engine.clock.now);
         let found = &mut self.engine.scratch.found[0];
         let count = self.engine.cells.near(position, 2.0 * radius, found);
-        let periods = self.engine.cells.grid().periods();
+        let periods = self.engine.cells.grid.periods;
         let is_free = |other: usize| {
             let apart = self.engine.bodies.position(other, now) - position;
             let apart = DVec2::new(nearest_image(apart.x, periods.x), nearest_image(apart.y, periods.y));
@@ -158,13 +158,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// room for such disks.
     fn make_cells_suit(&mut self, diameter: f64) -> bool {
         self.engine.cells.suit(diameter)
-            || self.renew_cells(self.engine.cells.grid().cell_size(), Some(diameter))
+            || self.renew_cells(self.engine.cells.grid.layout.cell_size, Some(diameter))
     }
 
     /// Makes new cells if there are far more or far fewer disks than the present cells suit.
     fn keep_cells_suitable(&mut self) {
         if self.engine.cells.are_outgrown() {
-            self.renew_cells(self.engine.cells.grid().cell_size(), None);
+            self.renew_cells(self.engine.cells.grid.layout.cell_size, None);
         }
     }
 }

@@ -182,9 +182,6 @@ crate::gate::from_file! {
         finite("mean", mean.unwrap_or(0.0))?;
         non_negative("standard error", standard_error.unwrap_or(0.0))?;
         non_negative("number of correlated samples", correlated_samples)?;
-        let alone = basis != Basis::Independent || correlated_samples == 1.0;
-        let name = "number of correlated samples of an independent estimate";
-        accept(alone, name, "1", correlated_samples)?;
         let (mean, standard_error) = (mean.unwrap_or(f64::NAN), standard_error.unwrap_or(f64::NAN));
         Ok(Self { mean, standard_error, samples, correlated_samples, basis })
     }

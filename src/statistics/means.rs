@@ -5,32 +5,6 @@ use super::estimate::FEWEST_INDEPENDENT;
 use crate::ParameterError;
 use crate::quantity::accept;
 
-/// The weighted mean of numbers, and the weighted sum of their squared deviations from it (Welford 1962, West
-/// 1979).
-///
-/// The deviations are taken from the mean so far. The difference of a sum of squares and a squared sum would
-/// lose the digits of a small variance about a large mean.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub(crate) struct Moments {
-    pub(crate) weight: f64,
-    pub(crate) mean: f64,
-    pub(crate) squares: f64,
-}
-
-impl Moments {
-    /// Adds a number with a positive weight.
-    #[inline]
-    pub(crate) fn push(&mut self, value: f64, weight: f64) {
-        self.weight += weight;
-        let before = value - self.mean;
-        self.mean += before * weight / self.weight;
-        let squares = weight * before * (value - self.mean);
-        // Both factors have the same sign, except for rounding among numbers that are nearly equal.
-        self.squares += if squares < 0.0 { 0.0 } else { squares };
-    }
-}
-
 /// The mean, variance and standard error of numbers that come one by one (Welford 1962).
 ///
 /// The standard error assumes independent numbers. It is too small for correlated numbers, such as the
@@ -44,35 +18,52 @@ impl Moments {
 /// assert!((mean.standard_error() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-15);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "RawRunningMean", into = "RawRunningMean"))]
-pub struct RunningMean(Moments);
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct RunningMean {
+    pub(crate) weight: f64,
+    pub(crate) mean: f64,
+    /// Weighted sum of the squared deviations from the mean. They are taken from the mean so far: the
+    /// difference of a sum of squares and a squared sum would lose the digits of a small variance about a
+    /// large mean.
+    pub(crate) squares: f64,
+}
 
 impl RunningMean {
     /// Adds a number.
     #[inline]
     pub fn push(&mut self, value: f64) {
-        self.0.push(value, 1.0);
+        self.push_weighted(value, 1.0);
+    }
+
+    /// Adds a number with a weight (West 1979).
+    #[inline]
+    pub(crate) fn push_weighted(&mut self, value: f64, weight: f64) {
+        self.weight += weight;
+        let before = value - self.mean;
+        self.mean += before * weight / self.weight;
+        let squares = weight * before * (value - self.mean);
+        // Both factors have the same sign, except for rounding among numbers that are nearly equal.
+        self.squares += if squares < 0.0 { 0.0 } else { squares };
     }
 
     /// Returns the count of the numbers.
     pub const fn count(&self) -> u64 {
-        self.0.weight as u64
+        self.weight as u64
     }
 
     /// Returns the mean of the numbers, or NaN without numbers.
     pub const fn mean(&self) -> f64 {
-        if self.0.weight > 0.0 { self.0.mean } else { f64::NAN }
+        if self.weight > 0.0 { self.mean } else { f64::NAN }
     }
 
     /// Returns the sum of the numbers.
     pub fn sum(&self) -> f64 {
-        self.0.mean * self.0.weight
+        self.mean * self.weight
     }
 
     /// Returns the unbiased variance of the numbers; NaN for fewer than two.
     pub fn variance(&self) -> f64 {
-        if self.0.weight < 2.0 { f64::NAN } else { self.0.squares / (self.0.weight - 1.0) }
+        if self.weight < 2.0 { f64::NAN } else { self.squares / (self.weight - 1.0) }
     }
 
     /// Returns the standard deviation of the numbers, the square root of the variance.
@@ -83,7 +74,7 @@ impl RunningMean {
     /// Returns the standard error of the mean of n independent numbers, √(variance/n); NaN for fewer than
     /// two.
     pub fn standard_error(&self) -> f64 {
-        (self.variance() / self.0.weight).sqrt()
+        (self.variance() / self.weight).sqrt()
     }
 
     /// Returns the mean with the error of independent numbers.
@@ -103,30 +94,6 @@ impl FromIterator<f64> for RunningMean {
         let mut mean = Self::default();
         mean.extend(values);
         mean
-    }
-}
-
-/// The form of the mean in files.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "RunningMean")]
-struct RawRunningMean {
-    count: u64,
-    mean: f64,
-    squares: f64,
-}
-
-#[cfg(feature = "serde")]
-impl From<RunningMean> for RawRunningMean {
-    fn from(running: RunningMean) -> Self {
-        Self { count: running.count(), mean: running.0.mean, squares: running.0.squares }
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<RawRunningMean> for RunningMean {
-    fn from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Self {
-        Self(Moments { weight: count as f64, mean, squares })
     }
 }
 
@@ -219,7 +186,7 @@ const ROUNDING: f64 = 1e-6;
 /// The apparent standard error from blocks of one size.
 #[derive(Debug, Clone, Copy)]
 struct BlockError {
-    pub(super) error: f64,
+    error: f64,
     mean: f64,
     /// Relative uncertainty of the error itself.
     uncertainty: f64,
@@ -228,7 +195,7 @@ struct BlockError {
 
 impl BlockError {
     /// Returns the error from two or more blocks that are assumed to be independent.
-    pub(super) fn of(blocks: &RunningMean) -> Self {
+    fn of(blocks: &RunningMean) -> Self {
         let count = blocks.count();
         // The uncertainty of a standard deviation of normal numbers.
         let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();

@@ -112,19 +112,6 @@ fn parameters_without_a_meaning_are_refused() -> Outcome {
     Ok(())
 }
 
-#[cfg(feature = "serde")]
-#[test]
-fn a_gas_is_read_through_the_same_gate() -> Outcome {
-    let gas = Maxwellian::new(2.0)?.with_rotational_temperature(0.5)?;
-    assert_eq!((gas.translational_temperature(), gas.rotational_temperature()), (2.0, 0.5));
-    let text = serde_json::to_string(&gas).unwrap();
-    assert_eq!(serde_json::from_str::<Maxwellian>(&text).unwrap(), gas);
-    for (good, bad) in [("2.0", "-2.0"), ("0.5,", "-0.5,"), ("masses", "mass"), ("[1.0,1.0]", "[1.0,0.0]")] {
-        assert!(serde_json::from_str::<Maxwellian>(&text.replacen(good, bad, 1)).is_err(), "{bad} in {text}");
-    }
-    Ok(())
-}
-
 /// A direct simulation knows when its disks last collided: with a contact duration longer than the run, only
 /// the first collision of two disks loses energy.
 #[test]

@@ -385,9 +385,6 @@ fn what_a_run_cannot_measure_ends_it() -> Result<(), Box<dyn std::error::Error>>
     let error = reason(gas()?.run_until(3.0, &mut series).unwrap_err());
     assert!(error.contains("start of the run must be not before the last sample of the series"), "{error}");
     assert_eq!(series.times(), [1.0, 2.0, 3.0, 4.0, 5.0]);
-    series.clear();
-    gas()?.run_until(3.0, &mut series)?;
-    assert_eq!(series.times(), [1.0, 2.0, 3.0]);
     Ok(())
 }
 

@@ -102,8 +102,6 @@ fn a_layer_on_a_gas_is_found() -> Result<(), ParameterError> {
     let layer = profile.densest_layer().unwrap();
     assert!((15.0..18.0).contains(&layer.height));
     assert!((layer.packing_fraction - PI / 4.0).abs() < 1e-12 && layer.least_below == 0.0);
-    profile.clear();
-    assert_eq!(profile.densest_layer(), None);
     Ok(())
 }
 
@@ -144,7 +142,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
         assert!((cell.rotational_temperature - 0.125 * 4.0).abs() < 1e-9);
         assert_eq!(cell.center, DVec2::new(10.0 * f64::from(column) + 5.0, 30.0 * f64::from(row) + 15.0));
     }
-    assert_eq!((fields.iter().count(), fields.grid().shape(), fields.samples()), (30, (6, 5), 2));
+    assert_eq!((fields.iter().count(), fields.samples()), (30, 2));
     Ok(())
 }
 
@@ -209,8 +207,6 @@ fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::er
     let cell = fields.cell(0, 0).unwrap();
     let energy: f64 = disks.iter().map(Disk::translational_energy).sum::<f64>() / 1000.0;
     assert!(cell.velocity.length() < 1e-12 && (cell.translational_temperature - energy).abs() < 1e-12);
-    fields.clear();
-    assert_eq!((fields.samples(), fields.cell(0, 0).unwrap().count), (0, 0));
     assert!(fields.cell(1, 0).is_none() && fields.cell(0, 1).is_none());
     Ok(())
 }

@@ -4,7 +4,7 @@ use granular_edmd::boundary::{Boundary, Container, Part, Region, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Accumulator, Arrivals, BetweenKinds, Collision, CollisionHistograms, Grid, Observable, Observer, OfKind,
+    Accumulator, BetweenKinds, Collision, CollisionHistograms, Grid, Observable, Observer, OfKind,
     PairCorrelation, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures, TemperaturesAboutFlow,
     VelocityDistribution, WallStress,
 };
@@ -101,33 +101,6 @@ fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
     // The run began within an interval, whose rest does not count.
     assert_eq!(whole.1.samples(), 9);
     assert_eq!(whole.0.pressure("lid"), None);
-    Ok(())
-}
-
-/// A ball meets the floor twice in each of ten intervals, the first half of one of which is cleared.
-#[test]
-fn an_interval_that_is_cleared_in_its_middle_does_not_count() -> Outcome {
-    let container = Container::closed(5.0, 3.0)?;
-    let floor = "floor";
-    let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.0, 8.0))?;
-    let mut run = Simulation::builder(Elastic, container).disks([ball]).build()?;
-    let walls = WallStress::new(times()?).with_wall(floor, 5.0)?;
-    let (mut stress, mut walls, mut arrivals) =
-        (Stress::new(times()?), walls, Arrivals::at([floor], times()?));
-    for end in [2.5, 3.0, 7.0] {
-        run.run_until(end, &mut (&mut stress, &mut walls, &mut arrivals))?;
-        if end < 3.0 {
-            stress.clear();
-            walls.clear();
-            arrivals.clear();
-        } else {
-            let counted = end as u64 - 3;
-            let pressure = walls.pressure(floor).ok_or("not watched")?;
-            assert_eq!((stress.samples(), pressure.samples()), (counted, counted));
-            assert_eq!(arrivals.counts(), vec![2; counted as usize]);
-        }
-    }
-    assert!((walls.pressure(floor).ok_or("not watched")?.mean() - 2.0 * 2.0 * 8.0 / 5.0).abs() < 1e-12);
     Ok(())
 }
 
@@ -231,10 +204,7 @@ fn velocities_about_a_flow_are_those_of_the_gas_in_it() -> Outcome {
         }
     }
     let [all, about_mean, about_flow] = &distributions;
-    for estimate in [about_flow.second_cumulant(), about_flow.third_cumulant()]
-        .into_iter()
-        .chain(about_flow.excess_kurtosis())
-    {
+    for estimate in [about_flow.second_cumulant(), about_flow.third_cumulant()] {
         assert!(estimate.mean().abs() < 4.0 * estimate.standard_error(), "{estimate}");
     }
     for swirling in [all, about_mean] {
@@ -254,8 +224,6 @@ fn a_histogram_counts_what_is_inside_and_outside() -> Outcome {
     let bin = histogram.bins().nth(1).unwrap();
     assert_eq!((bin.low, bin.high, bin.density.mean()), (-0.5, 0.0, 0.25));
     assert_eq!(bin.density.standard_error(), (0.125_f64 * 0.875 / 8.0).sqrt() / 0.5);
-    histogram.clear();
-    assert!(histogram.bins().all(|bin| bin.count == 0 && bin.density.mean().is_nan()));
     Ok(())
 }
 

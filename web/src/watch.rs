@@ -58,15 +58,17 @@ pub(crate) struct Watch {
     pub(crate) fresh: Vec<Sample>,
     recent: VecDeque<Sample>,
     profile: HeightProfile,
+    empty_profile: HeightProfile,
     layer: Option<DenseLayer>,
 }
 
 impl Watch {
     pub(crate) fn new(scene: Scene) -> Result<Self, ParameterError> {
         let (_, height) = scene.size();
-        let profile = HeightProfile::new(0.0, height, height as usize)?;
+        let empty_profile = HeightProfile::new(0.0, height, height as usize)?;
+        let profile = empty_profile.clone();
         let (marks, fresh, recent) = (Vec::new(), Vec::new(), VecDeque::new());
-        Ok(Self { scene, flow: Flow::new(scene), marks, fresh, recent, profile, layer: None })
+        Ok(Self { scene, flow: Flow::new(scene), marks, fresh, recent, profile, empty_profile, layer: None })
     }
 
     pub(crate) fn mark(&mut self, collision: &Collision) {
@@ -96,14 +98,14 @@ impl Watch {
         // A profile of the scene's own box does not fail.
         if self.profile.add(&snapshot).is_ok() && self.profile.samples() >= FEWEST as u64 {
             self.layer = self.profile.densest_layer();
-            self.profile.clear();
+            self.profile = self.empty_profile.clone();
         }
     }
 
     /// Forgets what named the state, after a change.
     pub(crate) fn forget(&mut self) {
         self.recent.clear();
-        self.profile.clear();
+        self.profile = self.empty_profile.clone();
         self.layer = None;
     }
 

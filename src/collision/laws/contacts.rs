@@ -3,9 +3,9 @@
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::Kind;
-use crate::collision::Contact;
+use crate::collision::{Contact, Material, meeting};
 use crate::random::uniform;
+use crate::{Disk, Kind};
 
 // Each list begins with its mildest values, so that a faulty rule fails first at ordinary numbers.
 
@@ -135,41 +135,6 @@ fn masses() -> impl Iterator<Item = (f64, f64)> {
 /// Number of random contacts in a check.
 const CONTACTS: usize = 12_000;
 
-/// A partner of a collision. A wall has an infinite inertia factor, and mostly an infinite mass.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Partner {
-    pub(crate) mass: f64,
-    pub(crate) inertia_factor: f64,
-    pub(crate) radius: f64,
-    pub(crate) kind: Kind,
-}
-
-impl Partner {
-    /// Returns a wall of this radius: infinite for a straight one, negative for a hollow one.
-    pub(crate) const fn wall(mass: f64, radius: f64, kind: Kind) -> Self {
-        Self { mass, inertia_factor: f64::INFINITY, radius, kind }
-    }
-
-    const fn compliances(&self) -> [f64; 4] {
-        let Self { mass, inertia_factor: factor, radius, .. } = *self;
-        if factor == f64::INFINITY {
-            return [1.0 / mass, 1.0 / mass, 0.0, 0.0];
-        }
-        let response = 1.0 / (factor * mass * radius);
-        [1.0 / mass, (1.0 + 1.0 / factor) / mass, response, response / radius]
-    }
-}
-
-/// Returns the contact of two partners that close and slip at these speeds.
-pub(crate) fn meeting(partners: [Partner; 2], closing: f64, slip: f64, spin: f64) -> Contact {
-    let [one, other] = partners.map(|partner| partner.compliances());
-    let [normal, tangential, inertia] = [0, 1, 3].map(|index| 1.0 / (one[index] + other[index]));
-    Contact::new(closing, slip, normal, tangential)
-        .with_kinds(partners.map(|partner| partner.kind))
-        .with_radii(partners.map(|partner| partner.radius))
-        .with_spin(spin, inertia, one[2] - other[2])
-}
-
 /// Returns contacts between disks, and with straight, convex and hollow walls. They include relative
 /// spins, mass ratios of up to 10⁶ and infinite masses. The previous collision of a partner may be at any
 /// earlier time.
@@ -226,18 +191,19 @@ impl Random {
         kinds.get(self.below(most)).copied().unwrap_or_default()
     }
 
-    fn disk(&mut self, mass: f64, kinds: &[Kind]) -> Partner {
+    fn disk(&mut self, mass: f64, kinds: &[Kind]) -> Material {
         let factors = [0.5, 1.0, 0.5, self.decades(3.0).min(1.0)];
         let inertia_factor = factors[self.below(4)];
-        Partner { mass, inertia_factor, radius: self.size(), kind: self.kind(kinds) }
+        let radius = self.size();
+        Material::of(&Disk::at_rest(radius, mass, inertia_factor, self.kind(kinds)))
     }
 
     /// Returns a straight wall, a convex one, or a hollow one around a disk of this radius.
-    fn wall(&mut self, mass: f64, radius: f64, kinds: &[Kind]) -> Partner {
+    fn wall(&mut self, mass: f64, radius: f64, kinds: &[Kind]) -> Material {
         let kind = if self.below(4) == 0 { self.kind(kinds) } else { Kind::WALL };
         let mass = if self.below(4) == 0 { mass } else { f64::INFINITY };
         let radii = [f64::INFINITY, radius * self.decades(2.0), -radius * (1.001 + self.size())];
-        Partner::wall(mass, radii[self.below(3)], kind)
+        Material::of_wall(kind, radii[self.below(3)], mass)
     }
 
     fn contact(&mut self, kinds: &[Kind]) -> Contact {
@@ -255,7 +221,7 @@ impl Random {
             2 => self.decades(3.0),
             _ => self.decades(12.0),
         };
-        let contact = meeting([first, second], closing, self.slip(closing), spin);
+        let contact = meeting([&first, &second], closing, self.slip(closing), spin);
         contact.with_time_since_last_collision(time)
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::layout::{CellSize, Layout, edges, margin, row_edges, widen};
+use super::layout::{Layout, edges, margin, row_edges, widen};
 use crate::boundary::{Domain, Region};
 use crate::instructions::prefetch;
 
@@ -14,7 +14,7 @@ use crate::instructions::prefetch;
 pub(in crate::simulation) struct Grid {
     pub(in crate::simulation) layout: Layout,
     /// Number of cells in a column, ring included.
-    stride: u32,
+    pub(super) stride: usize,
     /// Edges of the columns: `column_edges[c - 1]` and `column_edges[c]` bound column `c`. They are infinite
     /// at walls.
     column_edges: Vec<f64>,
@@ -23,9 +23,9 @@ pub(in crate::simulation) struct Grid {
     /// from one cell to another.
     pub(super) margin: DVec2,
     /// Horizontal and vertical period of the domain; 0 where it is not periodic.
-    periods: DVec2,
+    pub(in crate::simulation) periods: DVec2,
     /// True if one of the periods is not 0: a flag that is cheap to test.
-    is_periodic: bool,
+    pub(super) is_periodic: bool,
 }
 
 /// The column and row of a cell, ring included. The first real column and row are 1.
@@ -49,7 +49,7 @@ impl Grid {
         if domain.periodic_ends {
             widen(&mut row_edges, -margin.y);
         }
-        let (stride, periods) = (layout.rows + 2, domain.periods());
+        let (stride, periods) = (layout.rows as usize + 2, domain.periods());
         let is_periodic = periods != DVec2::ZERO;
         Self { layout, stride, column_edges, row_edges, margin, periods, is_periodic }
     }
@@ -90,18 +90,7 @@ impl Grid {
 
     /// Returns the number of cells, ring included.
     pub(in crate::simulation) fn len(&self) -> usize {
-        self.stride() * (self.layout.columns as usize + 2)
-    }
-
-    pub(in crate::simulation) fn cell_size(&self) -> CellSize {
-        self.layout.cell_size
-    }
-
-    /// Returns the number of cells in a column, ring included. In memory, neighbors in a row are this number
-    /// of cells apart.
-    #[inline]
-    pub(in crate::simulation) fn stride(&self) -> usize {
-        self.stride as usize
+        self.stride * (self.layout.columns as usize + 2)
     }
 
     pub(in crate::simulation) fn place_of(&self, position: DVec2) -> Place {
@@ -111,7 +100,7 @@ impl Grid {
 
     #[inline]
     pub(in crate::simulation) fn index(&self, place: Place) -> usize {
-        place.column as usize * self.stride as usize + place.row as usize
+        place.column as usize * self.stride + place.row as usize
     }
 
     /// Returns the rectangle in which a cell keeps its disks. It extends to infinity beyond the walls.
@@ -128,18 +117,6 @@ impl Grid {
     #[inline]
     pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
         prefetch(&self.column_edges, place.column as usize);
-    }
-
-    /// Returns the horizontal and the vertical period of the domain; 0 where it is not periodic.
-    #[inline]
-    pub(in crate::simulation) fn periods(&self) -> DVec2 {
-        self.periods
-    }
-
-    /// Returns whether the domain is periodic in some direction.
-    #[inline]
-    pub(in crate::simulation) fn is_periodic(&self) -> bool {
-        self.is_periodic
     }
 
     /// Returns the ghosts that mirror a cell at periodic sides and ends: at the opposite side, at the

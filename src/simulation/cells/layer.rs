@@ -15,9 +15,7 @@ use glam::DVec2;
 
 use super::contents::Contents;
 use super::grid::{Grid, Place};
-use super::layout::SizeClass;
-use super::layout::{CellSize, FREE_PATHS};
-use super::layout::{LEAST_PITCH, Layout};
+use super::layout::{CellSize, FREE_PATHS, LEAST_PITCH, Layout, SizeClass};
 use super::reach::{Homes, Reach};
 use crate::boundary::{Boundary, Domain, Region};
 

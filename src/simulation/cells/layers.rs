@@ -33,9 +33,7 @@ use glam::DVec2;
 use super::contents::Contents;
 use super::grid::{Grid, Place};
 use super::layer::{Layer, LayerLayout, widest};
-use super::layout::{CellSize, SPARE_SMALL_CELLS};
-use super::layout::{LEAST_PITCH, Layout};
-use super::layout::{SizeClass, class_of};
+use super::layout::{CellSize, LEAST_PITCH, Layout, SPARE_SMALL_CELLS, SizeClass, class_of};
 use super::reach::{Distances, Homes, Reach};
 use crate::boundary::{Boundary, Domain};
 
@@ -186,27 +184,26 @@ impl Layers {
         self.visitors[0].prefetch(cell);
     }
 
-    /// Writes to `found` the disks that a disk of a larger class may touch, and returns their number. Disks
-    /// of smaller classes that it could already touch from the place `before` are left out.
+    /// Writes to `found` all disks that a disk of this larger class at this place may meet, or only those of a
+    /// choice of the homes of smaller disks. Returns their number.
     pub(super) fn gather(
         &self,
         smallest: &Contents,
-        disk: usize,
+        class: u8,
         place: Place,
-        before: Option<Place>,
+        chosen: Chosen,
         found: &mut [u32],
     ) -> usize {
-        let class = usize::from(self.classes[disk]);
-        // The layers begin with class 1. For class 0, the index wraps to one that no layer has.
-        let Some(layer) = self.larger.get(class.wrapping_sub(1)) else { return 0 };
+        let Some(layer) = self.of_class(class) else { return 0 };
         let (smaller, own) = layer.reaches();
         let mut count = 0;
         let contents = std::iter::once(smallest).chain(self.larger.iter().map(|layer| &layer.contents));
         for (contents, reach) in contents.zip(smaller) {
             let act = |first, homes| count = contents.gather_run(first, homes, found, count);
-            match before {
-                Some(before) => reach.for_each_run_beyond(place, before, act),
-                None => reach.for_each_run(place, act),
+            match chosen {
+                Chosen::InReach => reach.for_each_run(place, act),
+                Chosen::Beyond(before) => reach.for_each_run_beyond(place, before, act),
+                Chosen::AlsoInside => reach.for_each_run_and_hole(place, act),
             }
         }
         // Disks of the same class are few and near. Finding out which of them are new would cost more than
@@ -218,29 +215,19 @@ impl Layers {
         }
         // Disks of larger classes are visitors of this disk's home, as they are of the homes of the smallest
         // class.
-        self.visitors[class].gather_cell(layer.home(place), found, count)
-    }
-
-    /// Writes to `found` all disks that a disk of this larger class at this place may overlap, including
-    /// disks that would lie inside it. Returns their number.
-    pub(super) fn gather_all(
-        &self,
-        smallest: &Contents,
-        class: u8,
-        place: Place,
-        found: &mut [u32],
-    ) -> usize {
-        let Some(layer) = self.of_class(class) else { return 0 };
-        let mut count = 0;
-        let contents = std::iter::once(smallest).chain(self.larger.iter().map(|layer| &layer.contents));
-        let (smaller, own) = layer.reaches();
-        for (contents, reach) in contents.zip(smaller.iter().chain(own)) {
-            reach.for_each_run_and_hole(place, |first, homes| {
-                count = contents.gather_run(first, homes, found, count);
-            });
-        }
         self.visitors[usize::from(class)].gather_cell(layer.home(place), found, count)
     }
+}
+
+/// The homes of smaller disks that are gathered.
+#[derive(Clone, Copy)]
+pub(super) enum Chosen {
+    /// All within reach, except those that lie inside the disk.
+    InReach,
+    /// Those within reach that were not within reach of another place.
+    Beyond(Place),
+    /// All within reach, and those that lie inside the disk.
+    AlsoInside,
 }
 
 /// Returns whether a disk in its home and a disk of a larger class in its cell are less than half a period
@@ -257,7 +244,7 @@ fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) ->
 
 /// Returns the cells of the smallest class as homes: each cell is the home of its disks.
 fn homes_of(grid: &Grid) -> Homes<'_> {
-    Homes { grid, cells: 1, stride: grid.stride(), first: grid.stride() + 1 }
+    Homes { grid, cells: 1, stride: grid.stride, first: grid.stride + 1 }
 }
 
 /// The layouts of all cells, which a run must keep in order to continue with the same bits.

@@ -73,7 +73,7 @@ impl Reach {
         let [columns, rows] = homes.grid.edges().map(|edges| every(homes.cells, &edges));
         let margin = homes.grid.margin;
         let [from_columns, from_rows] = from.ranges();
-        let periods = homes.grid.periods();
+        let periods = homes.grid.periods;
         // Half the width of the square inscribed in the circle on which the nearest possible centers lie.
         // Even at its corners, a home in this square is nearer than any disk that touches. The homes between
         // square and circle hold no such disks either, but leaving them out would cost more than it saves: a

@@ -1,7 +1,6 @@
 //! Resumption: building a run from a checkpoint.
 
-use super::{Checkpoint, CheckpointError, Saved, check_layouts, check_lengths, check_places};
-use crate::Gravity;
+use super::{Checkpoint, CheckpointError, check_layouts, check_lengths, check_places};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::Mark;
@@ -122,7 +121,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         }
         let wall_count = count_walls(&self.boundary)?;
         check_lengths(saved, wall_count)?;
-        let bodies = bodies_of(saved);
+        let bodies = saved.bodies.clone();
         let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
         check_layouts(saved, diameters.clone())?;
         let mut cells = Cells::empty(&self.boundary, &saved.layouts, diameters);
@@ -142,7 +141,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     fn build_anew(mut self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
         check_lengths(saved, usize::MAX)?;
-        let bodies = bodies_of(saved);
+        let bodies = saved.bodies.clone();
         // Walls that react begin at the time origin.
         let by = if self.boundary.state().is_empty() { 0.0 } else { saved.clock.exact_offset() };
         self.boundary.set_time_origin(saved.clock.origin + by);
@@ -178,13 +177,4 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             .into(),
         }
     }
-}
-
-fn bodies_of(saved: &Saved) -> Bodies {
-    let Saved { models, gravity, trajectories, forecasts, spins, images, identities, .. } = saved;
-    let (spins, images, identities) = (spins.clone(), images.clone(), identities.clone());
-    let gravity = Gravity::from(*gravity);
-    let mut bodies = Bodies::restored(models, gravity, trajectories, forecasts, spins, images, identities);
-    (bodies.typical_diameter, bodies.fresh_count) = (saved.typical_diameter, saved.fresh_count);
-    bodies
 }

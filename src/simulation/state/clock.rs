@@ -48,14 +48,6 @@ impl Ledger {
 /// between these times. Adding an epoch to the origin is therefore exact, and moving walls do not jump.
 const TIMES_IN_EPOCH: f64 = 64.0;
 
-/// The numbers of cell crossings and of collisions of two disks when the epoch last moved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(in crate::simulation) struct Tally {
-    pub(in crate::simulation) cell_crossings: u64,
-    pub(in crate::simulation) collisions: u64,
-}
-
 /// The present, and the epoch from which it is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -71,19 +63,13 @@ pub(in crate::simulation) struct Clock {
     /// event. No outcome depends on it.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(in crate::simulation) events_to_look: u64,
-    pub(in crate::simulation) tally: Tally,
+    /// The numbers of cell crossings and of collisions of two disks when the epoch last moved.
+    pub(in crate::simulation) tally: [u64; 2],
 }
 
 impl Clock {
     pub(in crate::simulation) fn new(origin: f64, epoch_length: f64) -> Self {
-        Self {
-            origin,
-            now: 0.0,
-            epoch_length,
-            guard: Guard::default(),
-            events_to_look: 1,
-            tally: Tally::default(),
-        }
+        Self { origin, now: 0.0, epoch_length, guard: Guard::default(), events_to_look: 1, tally: [0; 2] }
     }
 
     /// Returns the present in absolute time.
