@@ -195,7 +195,6 @@ fn impossible_parameters_and_lengths_are_refused() -> Outcome {
         ("/standard_error", json!(-1.0)),
         ("/standard_error", json!(null)),
         ("/correlated_samples", json!(-2.0)),
-        ("/basis", json!("Independent")),
         ("/basis", json!("Guessed")),
     ] {
         assert!(refused::<Estimate>(forged(&estimate, at, number)), "{at}");
