@@ -80,8 +80,9 @@ fn fluctuation(values: &[[f64; 4]], [disks, width, pressure]: [f64; 3]) -> (f64,
     (square.mean() / expected, square.standard_error() / square.mean())
 }
 
-/// At three loads, from a dilute gas to a dense fluid; the long runs have three others. With periodic sides,
-/// the force of the lid is that of the pressure in the bulk, far from lid and floor, on the whole width.
+/// At three loads, from a dilute gas to a dense fluid; long runs see the fluctuations at three others. With
+/// periodic sides, the force of the lid is that of the pressure in the bulk, far from lid and floor, on the
+/// whole width.
 #[test]
 fn a_lid_with_a_mass_floats_on_a_gas() -> Outcome {
     for pressure in [0.07, 0.5, 1.8] {
