@@ -49,7 +49,13 @@ thread_local! {
 
 /// Calls Python from a run. An exception is kept for [`or_raised`], since most traits of the library have no
 /// way to return it.
+///
+/// After an exception nothing is called: the engine asks a rule a second time before it ends a run, and would
+/// go on with the other answer.
 pub(crate) fn call<T>(code: impl FnOnce(Python<'_>) -> PyResult<T>) -> Option<T> {
+    if RAISED.with_borrow(Option::is_some) {
+        return None;
+    }
     let keep = |error| {
         RAISED.with_borrow_mut(|raised| {
             raised.get_or_insert(error);

@@ -53,8 +53,8 @@ mod _granular_edmd {
     use crate::motion::{Motion, PyPiston, bi_parabolic, fixed, sawtooth, sinusoidal, tabulated, triangular};
     #[pymodule_export]
     use crate::observable::{
-        PyObservable, PySnapshot, center_of_mass, energies, hexatic_order, order_parameters, temperatures,
-        temperatures_about_flow,
+        PyObservable, PySnapshot, center_of_mass, energies, free_wall, hexatic_order, order_parameters,
+        temperatures, temperatures_about_flow,
     };
     #[pymodule_export]
     use crate::observer::{

@@ -101,6 +101,9 @@ pub(crate) fn tabulated(rows: Vec<(f64, f64)>) -> PyResult<Motion> {
 }
 
 /// A wall with a mass, which moves freely between two stops and is hit by disks.
+///
+/// Displacements are from the place of the wall, positive toward the disks: downward for a lid. Gravity does
+/// not act on it: a lid of mass M under gravity g needs `force=M * g`. `FreeWall("lid")` measures its motion.
 #[pyclass(name = "Piston", module = "granular_edmd", frozen, from_py_object)]
 #[derive(Clone)]
 pub(crate) struct PyPiston(pub(crate) Piston);
@@ -109,8 +112,9 @@ pub(crate) struct PyPiston(pub(crate) Piston);
 impl PyPiston {
     /// Creates a piston.
     ///
-    /// `stops` are its smallest and largest displacement (length), `force` pushes it toward the disks,
-    /// `spring` is a pair (stiffness, center), `start` a pair (displacement, velocity).
+    /// `stops` are its smallest and largest displacement (length). `force` (mass length/time²) pushes it toward
+    /// the disks. `spring` is a pair: stiffness (mass/time²), and the displacement at which it exerts no force.
+    /// `start` is a pair (displacement, velocity).
     #[new]
     #[pyo3(signature = (mass, stops, *, force=None, spring=None, start=None))]
     fn new(

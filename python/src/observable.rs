@@ -1,8 +1,8 @@
 //! Observables of Rust, and snapshots for observables in Python.
 
 use edmd::observable::{
-    CenterOfMass, Energies, Grid, Heading, HexaticOrder, Observable, OfKind, OrderParameters, Snapshot,
-    Tabular, Temperatures, TemperaturesAboutFlow,
+    CenterOfMass, Energies, FreeWall, Grid, Heading, HexaticOrder, Observable, OfKind, OrderParameters,
+    Snapshot, Tabular, Temperatures, TemperaturesAboutFlow,
 };
 use edmd::{Disk, Kind};
 use pyo3::prelude::*;
@@ -40,6 +40,7 @@ enum Part {
     Temperatures(Temperatures),
     HexaticOrder(HexaticOrder),
     TemperaturesAboutFlow(TemperaturesAboutFlow),
+    FreeWall(FreeWall),
     OfKind(OfKind<PyObservable>),
 }
 
@@ -52,6 +53,7 @@ impl Part {
             Self::Temperatures(own) => own,
             Self::HexaticOrder(own) => own,
             Self::TemperaturesAboutFlow(own) => own,
+            Self::FreeWall(own) => own,
             Self::OfKind(own) => own,
         }
     }
@@ -62,6 +64,7 @@ impl Part {
 /// `Energies()` and the like create one. `Series` also takes a function of a `Snapshot`.
 #[pyclass(name = "Observable", module = "granular_edmd", frozen)]
 #[derive(Clone, Serialize, Deserialize)]
+#[expect(clippy::unsafe_derive_deserialize, reason = "the unsafe code is that of PyO3")]
 pub(crate) struct PyObservable(Vec<Part>);
 
 impl Data for PyObservable {
@@ -164,6 +167,14 @@ observables! {
 #[pyo3(name = "HexaticOrder")]
 pub(crate) fn hexatic_order(range: f64) -> PyResult<PyObservable> {
     HexaticOrder::new(range).map(Part::HexaticOrder).map(PyObservable::of).map_err(invalid)
+}
+
+/// Returns the displacement from the place at rest, the velocity and the energy of a wall or part with a mass,
+/// by its name; NaN for another wall.
+#[pyfunction]
+#[pyo3(name = "FreeWall")]
+pub(crate) fn free_wall(name: String) -> PyObservable {
+    PyObservable::of(Part::FreeWall(FreeWall::named(name)))
 }
 
 /// Returns the temperatures about the mean flow in the cells of a grid over a region, given by its lower left

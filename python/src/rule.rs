@@ -178,7 +178,9 @@ fn one_of<T>(inelasticity: Option<T>, restitution: Option<T>) -> PyResult<Result
     match (inelasticity, restitution) {
         (Some(inelasticity), None) => Ok(Ok(inelasticity)),
         (None, Some(restitution)) => Ok(Err(restitution)),
-        _ => Err(PyTypeError::new_err("give either the inelasticity q = (1 - r)/2 or restitution=r")),
+        _ => Err(PyTypeError::new_err(
+            "give either all inelasticities q = (1 - r)/2 or restitution=r, for Frictional and Rough a pair",
+        )),
     }
 }
 

@@ -147,6 +147,36 @@ def test_observers_are_saved_with_their_run():
             copy.copy(function)
 
 
+@pytest.mark.parametrize("stop", [ValueError, KeyboardInterrupt])
+def test_a_rule_that_raises_once_leaves_the_state_before_the_collision(stop):
+    calls = 0
+
+    def rule(contact):
+        nonlocal calls
+        calls += 1
+        if calls == 50:
+            raise stop("once")
+        return 2.0 * contact.normal_mass * contact.closing_speed
+
+    run, whole = gas(rule), gas(lambda contact: 2.0 * contact.normal_mass * contact.closing_speed)
+    with pytest.raises(stop, match="once"):
+        run.run_until(20.0)
+    assert calls == 50 and run.time < 20.0
+    for each in [run, whole]:
+        each.run_until(20.0)
+    assert same(run, whole)
+
+
+def test_a_lid_with_a_mass_is_measured():
+    lid = ge.Piston(4.0, (-3.0, 3.0), force=0.5, start=(1.0, 0.0))
+    box = ge.Container.closed(6, 8, lid=lid)
+    run = ge.Simulation(ge.Elastic(), box, ge.Disks([[3, 2]], 0.5))
+    run.run_until(2.0)
+    assert run.measure(ge.FreeWall("lid"))["displacement_y"] == -1.25
+    with pytest.raises(TypeError, match="Series"):
+        run.run_until(3.0, observe=ge.FreeWall("lid"))
+
+
 def test_a_replay_finds_the_collisions_of_a_disk_and_the_first_difference():
     run = gas(ge.Elastic())
     whole = ge.Replay(run, every=1.0)

@@ -185,6 +185,13 @@ impl PyCollision {
     fn energy_change(&self) -> f64 {
         self.0.energy_change
     }
+    fn __repr__(&self) -> String {
+        let partner = self.partner().map_or_else(
+            || format!("wall {}", self.wall().unwrap_or_default()),
+            |partner| format!("disk {partner}"),
+        );
+        format!("<Collision of disk {} with {partner} at time {}>", self.0.disk, self.0.time)
+    }
 }
 
 /// A function of each collision.

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use edmd::simulation::{Limits, RunEnd};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::{Engine, PySimulation};
@@ -14,10 +15,23 @@ use crate::observer::{PyObserver, Watch, absent};
 const SLICE: Duration = Duration::from_millis(50);
 
 /// An observer, or several.
-#[derive(FromPyObject)]
 pub(super) enum Observers {
     One(Py<PyObserver>),
     Several(Vec<Py<PyObserver>>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Observers {
+    type Error = PyErr;
+
+    fn extract(any: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(one) = any.extract() {
+            return Ok(Self::One(one));
+        }
+        let expected =
+            "an observer or a list of them is expected; Series(…, every=…) makes one of an observable";
+        let expected = format!("{}: {expected} or a function", any.repr()?);
+        any.extract().map(Self::Several).map_err(|_| PyTypeError::new_err(expected))
+    }
 }
 
 impl Observers {
