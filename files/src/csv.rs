@@ -29,7 +29,12 @@ pub(super) fn frames<'a>(text: &Text) -> Result<Vec<Found<'a>>, ReadError> {
     let divider = head.divider;
     let rows = lines.map(|(row, line)| (row.trim(), line));
     let mut rows = rows.filter(|(row, _)| !row.is_empty() && !row.starts_with('#')).peekable();
-    let is_word = |cell: &str| cell.parse::<f64>().is_err();
+    // A cell that begins like a number is one that cannot be read, and so is the mark of a missing one.
+    let is_word = |cell: &str| {
+        let is_like_a_number =
+            cell.starts_with(|first: char| first.is_ascii_digit() || "+-.,".contains(first));
+        cell.parse::<f64>().is_err() && !is_like_a_number && !cell.eq_ignore_ascii_case("na")
+    };
     let has_words =
         |row| cells(row, divider).all(is_word) && cells(row, divider).count() == head.columns.len();
     // TrackMate writes more names and units below the names.

@@ -83,7 +83,8 @@ impl State {
     }
 
     /// Returns the names of kinds that the file gives, in the order of their numbers, starting with 0. This
-    /// order is alphabetical, unless the file numbers the kinds.
+    /// order is alphabetical, unless the file numbers the kinds. Each frame has its own list: where a name is
+    /// missing from a frame, later names have other numbers there.
     ///
     /// The list is empty if the kinds have only numbers in the file.
     pub fn kind_names(&self) -> &[String] {

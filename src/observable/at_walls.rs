@@ -25,7 +25,8 @@ const ALIKE: f64 = 0.999_999;
 /// tangent, which is the normal turned counterclockwise (to the left on a floor). Each interval between two
 /// samples gives one value, and the errors come from blocks of these values. A disk that has hit a wall
 /// cannot hit it again immediately, so the values of short intervals are anticorrelated, and their errors are
-/// up to three times too large.
+/// up to three times too large. So are the errors at the other walls of a container with a free lid, even
+/// more: gas and lid give back what they take, and only the lid knows what it keeps.
 ///
 /// A wall of the mass $`M`$ that disks push from one side gives back what they push: over a time $`t`$,
 ///

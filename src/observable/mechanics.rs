@@ -171,8 +171,8 @@ pub struct FreeWallMotion {
 /// The displacement, the velocity and the energy of a wall or part with a mass, which the disks push; NaN for
 /// a wall without a mass, and for an unknown name.
 ///
-/// The [`Energies`] of the disks, times their number, and the energies of these walls are
-/// constant in a container of elastic disks at rest.
+/// The [`Energies`] of the disks, times their number, and the energies of these walls are constant in a
+/// container of elastic disks at rest, as long as no wall reaches a stop.
 ///
 /// ```
 /// use granular_edmd::observable::FreeWall;

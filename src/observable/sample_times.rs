@@ -247,7 +247,7 @@ impl SampleTimes {
         if beat == i64::MAX {
             f64::INFINITY
         } else if self.is_ratio {
-            self.first.unwrap_or(0.0) * libm::pow(self.interval, beat_number)
+            near_decimal(self.first.unwrap_or(0.0) * libm::pow(self.interval, beat_number))
         } else {
             // Products of whole numbers are exact, so that only the quotient is rounded.
             (self.steps[0] + beat_number * self.steps[1]) / self.places
@@ -373,4 +373,14 @@ impl Stretch {
         self.sample_times.advance_past(time);
         start.filter(|start| self.is_near(start + interval, time)).map(|start| time - start)
     }
+}
+
+/// Returns the decimal number of ten digits of which a time is a rounded value, or else the time itself.
+///
+/// The ratio of ten samples a decade is rounded, and so are its powers: the tenth would be a little later than
+/// a run that ends with the decade.
+fn near_decimal(time: f64) -> f64 {
+    let places = libm::pow(10.0, 9.0 - libm::floor(libm::log10(time)));
+    let decimal = (time * places).round() / places;
+    if (decimal - time).abs() <= 64.0 * f64::EPSILON * time { decimal } else { time }
 }

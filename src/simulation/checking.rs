@@ -94,15 +94,30 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let is_told = reaction == Reaction::Moved || found.distance(before) <= slack;
         let is_free = is_at(expected, normal);
         if is_told && is_right_across && (is_free || is_held(normal)) {
-            if !is_free {
-                let mass = self.parts.boundary.surface(wall, collision.position, self.engine.clock.now).mass;
-                let speeds = [expected, found].map(|velocity| velocity.dot(normal));
-                self.engine.note_stop(wall, 0.5 * mass * (speeds[0] * speeds[0] - speeds[1] * speeds[1]));
-            }
+            self.note_energies(
+                collision,
+                wall,
+                [before, expected, found].map(|velocity| velocity.dot(normal)),
+            );
             return Ok(());
         }
         let fault = BoundaryFault::Reaction { wall, expected, found };
         Err(self.engine.boundary_fault(collision.disk, fault).into())
+    }
+
+    /// Notes the energy that stops have absorbed from a wall: what its impulse would have given it, and what it
+    /// lost on its way since the last hit. The speeds are along the normal, before and after the hit, without
+    /// and with a stop.
+    fn note_energies(&mut self, collision: &Collision, wall: usize, [before, expected, found]: [f64; 3]) {
+        let mass = self.parts.boundary.surface(wall, collision.position, self.engine.clock.now).mass;
+        let kinetic = |speed: f64| 0.5 * mass * speed * speed;
+        if found != expected && found * expected <= 0.0 {
+            self.engine.note_stop(wall, kinetic(expected) - kinetic(found));
+        }
+        let view = self.parts.boundary.wall(wall, self.engine.clock.now);
+        if let Some(after) = view.energy {
+            self.engine.note_energies(wall, &view.name, [after - kinetic(found) + kinetic(before), after]);
+        }
     }
 
     /// Checks that a wall has not jumped away from a disk that it touches, or into the disk.

@@ -35,9 +35,12 @@ pub(super) struct Engine {
     pub(super) scratch: Scratch,
     pub(super) inlets: Vec<Inlet>,
     pub(super) ledger: Ledger,
-    /// The last wall with a mass that was hit while it rested on a stop, and the energy that stops have
-    /// absorbed in such collisions since the last change between two runs.
+    /// The last wall with a mass from which a stop took energy, and the energy that stops have absorbed since
+    /// the last change between two runs.
     pub(super) stopped: Option<(usize, f64)>,
+    /// The names of the walls with a mass that were hit since then, and the energy that each had after its last
+    /// hit. The sides of a part have one name and one energy.
+    pub(super) energies_of_walls: Vec<(String, f64)>,
     /// Marks of this run and of its walls.
     pub(super) marks: [Mark; 2],
 }
@@ -65,6 +68,7 @@ impl Engine {
             inlets: Vec::new(),
             ledger,
             stopped: None,
+            energies_of_walls: Vec::new(),
             marks: [Mark::new(), Mark::new()],
         }
     }
@@ -81,9 +85,20 @@ impl Engine {
         self.bodies.len()
     }
 
-    /// Notes that a stop has absorbed this energy of a wall with a mass that rests on it.
+    /// Notes that a stop has absorbed this energy of a wall with a mass.
     pub(super) fn note_stop(&mut self, wall: usize, energy: f64) {
         self.stopped = Some((wall, energy + self.stopped.map_or(0.0, |(_, before)| before)));
+    }
+
+    /// Notes the energy of a wall with a mass before and after a hit. Between two hits, only a stop takes
+    /// energy from it; less than this share is rounding.
+    pub(super) fn note_energies(&mut self, wall: usize, name: &str, [before, after]: [f64; 2]) {
+        let known = self.energies_of_walls.iter_mut().find(|(other, _)| *other == name);
+        let Some((_, energy)) = known else { return self.energies_of_walls.push((name.to_owned(), after)) };
+        let lost = std::mem::replace(energy, after) - before;
+        if lost > 1e-12 * before.abs() {
+            self.note_stop(wall, lost);
+        }
     }
 
     /// Returns an engine without disks, which stands in for one that is lent.

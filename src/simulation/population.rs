@@ -112,6 +112,7 @@ impl Engine {
         let [energy, _] = self.bodies.energy(self.clock.now, domain);
         self.ledger.balance_anew(energy - self.counters.energy_of_rebounds);
         self.stopped = None;
+        self.energies_of_walls.clear();
     }
 }
 

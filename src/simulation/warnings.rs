@@ -88,10 +88,11 @@ pub enum Warning {
         /// Energy now.
         now: f64,
     },
-    /// Disks have hit a wall with a mass that rested on a stop. The stop absorbs what the disks give the
-    /// wall, so they lose energy under any rule ([`Piston`](crate::wall::Piston)). The warning comes if stops
-    /// have absorbed a hundredth of the energy of the disks or more since the simulation was built or
-    /// resumed, or since disks or walls were last changed between two runs.
+    /// A wall with a mass was hit while it rested on a stop, or flew into one after a hit. The stop absorbs
+    /// what the disks give the wall, so they lose energy under any rule ([`Piston`](crate::wall::Piston)). The
+    /// warning comes if stops have absorbed a hundredth of the energy of the disks or more, potential energy
+    /// above the bottom of the domain included, since the simulation was built or resumed, or since disks or
+    /// walls were last changed between two runs.
     WallOnStop {
         /// The name of the last such wall.
         wall: String,
@@ -143,7 +144,7 @@ impl fmt::Display for Warning {
             ),
             Self::WallOnStop { wall, energy } => write!(
                 formatter,
-                "the wall {wall:?} was hit while it rested on a stop, which absorbed the energy {}: a disk of mass m leaves \
+                "the wall {wall:?} rested on a stop or flew into one, and stops absorbed the energy {}: a disk of mass m leaves \
                  a wall of mass M that rests with (M - m)/(M + m) of its speed, under any rule",
                 Rounded(*energy)
             ),

@@ -63,6 +63,13 @@ fn times_at_equal_ratios_follow_a_cooling_gas() -> Outcome {
     assert!(
         series.times().iter().zip(expected).all(|(time, expected)| (time / expected - 1.0).abs() < 1e-14)
     );
+    // Ten samples a decade end at the end of a decade, though rounding moves the last ones.
+    for (first, of_decade) in [(0.1, 10.0), (0.01, 10.0), (1.0, 10.0), (0.1, 5.0), (0.1, 3.0)] {
+        let mut series =
+            Series::new(Temperatures, SampleTimes::at_ratio(first, 10_f64.powf(1.0 / of_decade))?);
+        gas(0.8)?.run_until(100.0, &mut series)?;
+        assert_eq!(series.times().len() as f64, of_decade * libm::log10(100.0 / first).round() + 1.0);
+    }
     assert!(SampleTimes::at_ratio(0.0, 2.0).is_err() && SampleTimes::at_ratio(1.0, 1.0).is_err());
     Ok(())
 }

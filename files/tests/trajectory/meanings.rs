@@ -132,6 +132,12 @@ fn headers_with_units_names_of_rows_and_comments() {
                 "x;y;radius\n1,5;2;0.5\n",
                 "refused: line 2: x must be a number with a decimal point, but is \"1,5\"",
             ),
+            // All cells of a row: they are no names.
+            (
+                "x;y;radius\n1,5;2,5;0,5\n3;4;1\n",
+                "refused: line 2: x must be a number with a decimal point, but is \"1,5\"",
+            ),
+            ("x,y,radius\nNA,NA,NA\n1,2,0.5\n", "refused: line 2: x must be a number, but is \"NA\""),
             (
                 "1,2,0.5\n3,2,0.5\n",
                 "refused: line 1: the first line of a table must be the names of its columns, such as x,y,radius, but is \
