@@ -199,8 +199,8 @@ impl PyContainer {
     }
     /// Returns the lines of all walls at a time, for pictures: arrays of shape (points, 2).
     ///
-    /// They are empty for the straight walls of the container, which `domain` has. A part with a mass is where
-    /// the run has left it in `simulation.boundary`.
+    /// They are empty for the straight walls of the container, which `domain` has. A part with a mass is
+    /// where the run has left it in `simulation.boundary`.
     #[pyo3(signature = (time=0.0))]
     fn lines<'py>(&self, py: Python<'py>, time: f64) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
         (0..self.0.wall_count()).map(|wall| to_rows(py, self.0.wall(wall, time).line())).collect()

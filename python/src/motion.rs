@@ -112,9 +112,9 @@ pub(crate) struct PyPiston(pub(crate) Piston);
 impl PyPiston {
     /// Creates a piston.
     ///
-    /// `stops` are its smallest and largest displacement (length). `force` (mass length/time²) pushes it toward
-    /// the disks. `spring` is a pair: stiffness (mass/time²), and the displacement at which it exerts no force.
-    /// `start` is a pair (displacement, velocity).
+    /// `stops` are its smallest and largest displacement (length). `force` (mass length/time²) pushes it
+    /// toward the disks. `spring` is a pair: stiffness (mass/time²), and the displacement at which it exerts
+    /// no force. `start` is a pair (displacement, velocity).
     #[new]
     #[pyo3(signature = (mass, stops, *, force=None, spring=None, start=None))]
     fn new(

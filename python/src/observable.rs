@@ -169,8 +169,8 @@ pub(crate) fn hexatic_order(range: f64) -> PyResult<PyObservable> {
     HexaticOrder::new(range).map(Part::HexaticOrder).map(PyObservable::of).map_err(invalid)
 }
 
-/// Returns the displacement from the place at rest, the velocity and the energy of a wall or part with a mass,
-/// by its name; NaN for another wall.
+/// Returns the displacement from the place at rest, the velocity and the energy of a wall or part with a
+/// mass, by its name; NaN for another wall.
 #[pyfunction]
 #[pyo3(name = "FreeWall")]
 pub(crate) fn free_wall(name: String) -> PyObservable {

@@ -377,8 +377,8 @@ impl Stretch {
 
 /// Returns the decimal number of ten digits of which a time is a rounded value, or else the time itself.
 ///
-/// The ratio of ten samples a decade is rounded, and so are its powers: the tenth would be a little later than
-/// a run that ends with the decade.
+/// The ratio of ten samples a decade is rounded, and so are its powers: the tenth would be a little later
+/// than a run that ends with the decade.
 fn near_decimal(time: f64) -> f64 {
     let places = libm::pow(10.0, 9.0 - libm::floor(libm::log10(time)));
     let decimal = (time * places).round() / places;

@@ -105,9 +105,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Err(self.engine.boundary_fault(collision.disk, fault).into())
     }
 
-    /// Notes the energy that stops have absorbed from a wall: what its impulse would have given it, and what it
-    /// lost on its way since the last hit. The speeds are along the normal, before and after the hit, without
-    /// and with a stop.
+    /// Notes the energy that stops have absorbed from a wall: what its impulse would have given it, and what
+    /// it lost on its way since the last hit. The speeds are along the normal, before and after the hit,
+    /// without and with a stop.
     fn note_energies(&mut self, collision: &Collision, wall: usize, [before, expected, found]: [f64; 3]) {
         let mass = self.parts.boundary.surface(wall, collision.position, self.engine.clock.now).mass;
         let kinetic = |speed: f64| 0.5 * mass * speed * speed;

@@ -38,8 +38,8 @@ pub(super) struct Engine {
     /// The last wall with a mass from which a stop took energy, and the energy that stops have absorbed since
     /// the last change between two runs.
     pub(super) stopped: Option<(usize, f64)>,
-    /// The names of the walls with a mass that were hit since then, and the energy that each had after its last
-    /// hit. The sides of a part have one name and one energy.
+    /// The names of the walls with a mass that were hit since then, and the energy that each had after its
+    /// last hit. The sides of a part have one name and one energy.
     pub(super) energies_of_walls: Vec<(String, f64)>,
     /// Marks of this run and of its walls.
     pub(super) marks: [Mark; 2],

@@ -89,10 +89,10 @@ pub enum Warning {
         now: f64,
     },
     /// A wall with a mass was hit while it rested on a stop, or flew into one after a hit. The stop absorbs
-    /// what the disks give the wall, so they lose energy under any rule ([`Piston`](crate::wall::Piston)). The
-    /// warning comes if stops have absorbed a hundredth of the energy of the disks or more, potential energy
-    /// above the bottom of the domain included, since the simulation was built or resumed, or since disks or
-    /// walls were last changed between two runs.
+    /// what the disks give the wall, so they lose energy under any rule ([`Piston`](crate::wall::Piston)).
+    /// The warning comes if stops have absorbed a hundredth of the energy of the disks or more, potential
+    /// energy above the bottom of the domain included, since the simulation was built or resumed, or since
+    /// disks or walls were last changed between two runs.
     WallOnStop {
         /// The name of the last such wall.
         wall: String,

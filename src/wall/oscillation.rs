@@ -165,7 +165,8 @@ macro_rules! periodic_answers {
 }
 
 periodic! {
-    /// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec. III).
+    /// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec.
+    /// III).
     ///
     /// With the half period $`H=\pi/\omega`$ and $`s = t/H`$,
     ///
@@ -173,9 +174,9 @@ periodic! {
     /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
     /// ```
     ///
-    /// so it has the amplitude and the period of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and
-    /// the acceleration is $`\mp 8A/H^2`$. The time of every contact is the root of a parabola, which is exact
-    /// and needs no iteration.
+    /// so it has the amplitude and the period of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$
+    /// and the acceleration is $`\mp 8A/H^2`$. The time of every contact is the root of a parabola, which is
+    /// exact and needs no iteration.
     ///
     /// ```
     /// use granular_edmd::wall::{BiParabolic, WallMotion};
@@ -296,8 +297,8 @@ impl WallMotion for Triangular {
 periodic! {
     /// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
     ///
-    /// The speed is $`A\omega/\pi`$. At phase 0 the wall is in its middle position, and half a period later it
-    /// jumps. A disk always meets the rising wall, as in the theory of gases on fast vibrating walls.
+    /// The speed is $`A\omega/\pi`$. At phase 0 the wall is in its middle position, and half a period later
+    /// it jumps. A disk always meets the rising wall, as in the theory of gases on fast vibrating walls.
     ///
     /// ```
     /// use granular_edmd::wall::{Sawtooth, WallMotion};

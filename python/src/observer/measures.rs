@@ -17,7 +17,8 @@ use crate::arguments::{Every, Pair, region, vector};
 use crate::errors::{invalid, unreadable};
 use crate::observable::{PyObservable, grid};
 
-/// Makes measures watches that can be saved by these names, some of them with results that are single numbers.
+/// Makes measures watches that can be saved by these names, some of them with results that are single
+/// numbers.
 macro_rules! watch {
     ($($label:literal: $measure:ty $(: |$own:ident| [$($name:literal => $value:expr),+])?;)+) => {$(
         #[typetag::serde(name = $label)]

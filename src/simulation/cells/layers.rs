@@ -184,8 +184,8 @@ impl Layers {
         self.visitors[0].prefetch(cell);
     }
 
-    /// Writes to `found` all disks that a disk of this larger class at this place may meet, or only those of a
-    /// choice of the homes of smaller disks. Returns their number.
+    /// Writes to `found` all disks that a disk of this larger class at this place may meet, or only those of
+    /// a choice of the homes of smaller disks. Returns their number.
     pub(super) fn gather(
         &self,
         smallest: &Contents,

@@ -1,5 +1,5 @@
-//! The disks of a run: their constant properties (radius, mass, inertia, kind), their ids, and disks that come
-//! and go.
+//! The disks of a run: their constant properties (radius, mass, inertia, kind), their ids, and disks that
+//! come and go.
 
 use super::{Bodies, Particle, Spin, Trajectory};
 use crate::collision::Material;
