@@ -43,7 +43,7 @@ fn cooling(rule: impl CollisionRule) -> anyhow::Result<Vec<f64>> {
 
 fn main() -> anyhow::Result<()> {
     let rule = Viscous { loss: 0.2 };
-    // The check tries thousands of contacts, mild and extreme: surfaces must part, and no energy may be
+    // The check tries half a million contacts, mild and extreme: surfaces must part, and no energy may be
     // gained.
     laws::check(&rule, &Promises::new())?;
 

@@ -37,9 +37,9 @@ pub(crate) struct Contacts {
     pub(crate) steps: u32,
 }
 
-/// Contacts and steps as a careful user chooses them, and contacts as soft as usual.
+/// Contacts and steps as stiff as a careful user chooses them, and contacts as soft as usual.
 pub(crate) const CONTACTS: [Contacts; 2] =
-    [Contacts { name: "careful", time: 0.01, steps: 40 }, Contacts { name: "soft", time: 0.04, steps: 25 }];
+    [Contacts { name: "stiff", time: 0.01, steps: 40 }, Contacts { name: "soft", time: 0.04, steps: 25 }];
 
 /// Restitution that counts as 1, since LAMMPS cannot do without any damping.
 const ELASTIC: f64 = 0.999_999_9;
