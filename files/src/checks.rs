@@ -6,6 +6,7 @@ use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 
+use super::errors::rounded;
 use super::table::Settings;
 use super::{ReadError, State};
 
@@ -131,9 +132,13 @@ const TOUCHING: f64 = 1e-10;
 pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) -> Result<(), ReadError> {
     let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
     if let Some(domain) = state.domain {
+        let mut wrapped = 0;
         for (disk, &line) in state.disks.iter_mut().zip(lines) {
             fit(disk, &domain, line)?;
-            state.wrapped += usize::from(enter(disk, &domain, accepted, line)?);
+            wrapped += usize::from(enter(disk, &domain, accepted, line)?);
+        }
+        if wrapped > 0 {
+            state.notes.push(format!("disks outside of periodic sides, wrapped: {wrapped}"));
         }
     }
     let least = if settings.shrinks { TOUCHING } else { accepted };
@@ -151,6 +156,8 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
             .map_err(|source| ReadError::Disk { line, source })?;
     }
     state.shrunk = share;
+    let shown = rounded(share);
+    state.notes.push(format!("all radii are shrunk by the deepest overlap, a share of {shown:?}"));
     Ok(())
 }
 

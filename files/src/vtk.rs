@@ -105,7 +105,7 @@ fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
 fn write_time(out: &mut dyn Write, time: Option<f64>) -> io::Result<()> {
     let Some(time) = time else { return Ok(()) };
     out.write_all(b"<FieldData>\n")?;
-    write_field(out, "TimeValue", time)?;
+    write_array(out, "Float64", "TimeValue", "NumberOfTuples=\"1\"", std::iter::once(time.to_le_bytes()))?;
     out.write_all(b"</FieldData>\n")
 }
 
@@ -134,11 +134,6 @@ fn write_integers(
 ) -> io::Result<()> {
     let attributes = format!("NumberOfComponents=\"{components}\"");
     write_array(out, "Int64", name, &attributes, numbers.map(i64::to_le_bytes))
-}
-
-/// Writes a number that applies to the whole file.
-fn write_field(out: &mut dyn Write, name: &str, number: f64) -> io::Result<()> {
-    write_array(out, "Float64", name, "NumberOfTuples=\"1\"", std::iter::once(number.to_le_bytes()))
 }
 
 fn write_array(
