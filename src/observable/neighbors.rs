@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::grid::{checked_region, holds, inside};
-use super::table::{Table, headings, row};
-use super::{Accumulator, Heading, Snapshot};
+use super::table::table;
+use super::{Accumulator, Snapshot};
 use crate::boundary::{Domain, Region, Squares};
 use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
@@ -329,14 +329,9 @@ impl Accumulator for PairCorrelation {
     }
 }
 
-impl Table for PairCorrelation {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("distance", "length")], &[("pair_correlation", "1")])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.iter().map(|(distance, value)| row(&[distance], &[value])))
-    }
+table! { PairCorrelation, this: for (distance, value) in this.iter();
+    "distance" ["length"]: distance;
+    "pair_correlation" ["1"]: value
 }
 
 crate::gate::from_file! {
