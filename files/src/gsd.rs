@@ -16,6 +16,9 @@ use super::Frame;
 use super::format::{half_turn, numbered, shown_depth, shown_top};
 use crate::ReadError;
 
+/// Returns the number of rows of a chunk.
+type Rows = fn(&Shape) -> u64;
+
 /// Codes of the types of numbers.
 const U8: u8 = 1;
 const U32: u8 = 3;
@@ -32,7 +35,7 @@ const NAME: usize = 6;
 ///
 /// `read_log` of the package `gsd` interprets a chunk with one row as a single number, so a vector is stored
 /// as a column.
-const CHUNKS: [(&str, u8, u32, fn(&Shape) -> u64); 24] = [
+const CHUNKS: [(&str, u8, u32, Rows); 24] = [
     ("configuration/step", U64, 1, |_| 1),
     ("configuration/dimensions", U8, 1, |_| 1),
     ("configuration/box", F32, 1, |_| 6),

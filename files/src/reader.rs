@@ -17,7 +17,7 @@ use super::{ReadError, State, csv, disks, extended_xyz, gsd, lammps_data, lammps
 const HEAD: u64 = 1 << 14;
 
 /// Returns the frames of a file. A GSD file is not read completely.
-pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
+fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
     let failed = |cause| ReadError::Io { line: 1, cause };
     let mut head = Vec::new();
     file.by_ref().take(8).read_to_end(&mut head).map_err(failed)?;
@@ -26,7 +26,7 @@ pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError
 }
 
 /// Returns the frames of an input, which may be compressed.
-pub(super) fn frames<'a>(input: impl BufRead + 'a) -> Result<Frames<'a>, ReadError> {
+fn frames<'a>(input: impl BufRead + 'a) -> Result<Frames<'a>, ReadError> {
     let (head, input) = with_head(Box::new(input))?;
     if !head.starts_with(&[0x1f, 0x8b]) {
         return of_format(&head, input);
