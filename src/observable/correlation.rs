@@ -155,6 +155,7 @@ impl<V> Lags<V> {
             self.past.clear();
         }
         self.latest = Some(time);
+        self.sample_times.advance_past(time);
         self.past.truncate(self.longest());
         self.past.push_front(sample);
         let latest = &self.past[0];
@@ -299,7 +300,6 @@ impl Observer for MeanSquaredDisplacement {
         if let Some(slope) = self.slope().filter(|slope| !slope.is_nan()) {
             self.diffusion.push(0.25 * slope);
         }
-        self.lags.sample_times.advance_past(snapshot.time());
     }
 
     fn on_end(&mut self, end: &Snapshot<'_>) {
@@ -439,7 +439,6 @@ impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let value = self.observable.measure(snapshot);
         self.lags.push(snapshot.time(), value, InnerProduct::inner_product);
-        self.lags.sample_times.advance_past(snapshot.time());
     }
 
     fn on_end(&mut self, end: &Snapshot<'_>) {

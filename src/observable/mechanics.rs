@@ -229,11 +229,6 @@ pub struct Temperature {
 }
 
 impl Temperature {
-    /// Creates temperatures from the horizontal, vertical and rotational temperature.
-    pub const fn new(horizontal: f64, vertical: f64, rotational: f64) -> Self {
-        Self { horizontal, vertical, rotational }
-    }
-
     /// Returns the translational temperature, T = (T_x + T_y)/2.
     pub fn translational(&self) -> f64 {
         0.5 * (self.horizontal + self.vertical)
@@ -334,7 +329,8 @@ impl Observable for TemperaturesAboutFlow {
             rotational += cell.angular_velocity.squares;
             freedom += (cell.count - 1) as f64;
         }
-        Temperature::new(horizontal / freedom, vertical / freedom, rotational / freedom)
+        let [horizontal, vertical, rotational] = [horizontal, vertical, rotational].map(|sum| sum / freedom);
+        Temperature { horizontal, vertical, rotational }
     }
 }
 

@@ -442,7 +442,8 @@ impl StateCriteria {
         let clusters = distinct_clusters(&points, noise, SEED)?;
         let compact = layer.is_some_and(|layer| self.is_compact(layer));
         let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::NoRoll };
-        let has_died = compact && mean_of_two_rolls(&clusters).abs() < self.collapsed_order;
+        let two_rolls: f64 = clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum();
+        let has_died = compact && two_rolls.abs() < self.collapsed_order;
         let flow = |cluster| if has_died { None } else { self.flow(cluster, noise) };
         let name = |cluster| flow(cluster).unwrap_or(without_flow);
         let states = clusters.iter().map(name).collect();
@@ -466,11 +467,6 @@ impl StateCriteria {
             Some(ConvectiveState::CounterclockwiseRoll)
         }
     }
-}
-
-/// Returns the mean of Ψ₂ over all samples.
-fn mean_of_two_rolls(clusters: &Clusters) -> f64 {
-    clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum()
 }
 
 /// The smallest weight that one roll and two rolls must each have to count as coexisting.
