@@ -280,15 +280,26 @@ fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
     from.mean_with(to, |from, to| from.distance_squared(*to))
 }
 
-impl Observer for MeanSquaredDisplacement {
-    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        self.lags.begin(start);
-        Ok(())
-    }
+/// Writes the methods that an observer leaves to its lags: starts, ends, and the time of the next sample.
+macro_rules! left_to_lags {
+    () => {
+        fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+            self.lags.begin(start);
+            Ok(())
+        }
 
-    fn next_sample(&self) -> f64 {
-        self.lags.sample_times.upcoming()
-    }
+        fn next_sample(&self) -> f64 {
+            self.lags.sample_times.upcoming()
+        }
+
+        fn on_end(&mut self, end: &Snapshot<'_>) {
+            self.lags.pause(end);
+        }
+    };
+}
+
+impl Observer for MeanSquaredDisplacement {
+    left_to_lags!();
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let (periods, places) = (snapshot.domain().periods(), places_in(snapshot));
@@ -300,10 +311,6 @@ impl Observer for MeanSquaredDisplacement {
         if let Some(slope) = self.slope().filter(|slope| !slope.is_nan()) {
             self.diffusion.push(0.25 * slope);
         }
-    }
-
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.lags.pause(end);
     }
 }
 
@@ -427,22 +434,11 @@ impl<Q: Observable> TimeCorrelation<Q> {
 }
 
 impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
-    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        self.lags.begin(start);
-        Ok(())
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.lags.sample_times.upcoming()
-    }
+    left_to_lags!();
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let value = self.observable.measure(snapshot);
         self.lags.push(snapshot.time(), value, InnerProduct::inner_product);
-    }
-
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.lags.pause(end);
     }
 }
 

@@ -221,11 +221,6 @@ impl PairCorrelation {
         self.bins.edge(self.bins.count())
     }
 
-    /// Returns the number of samples that were taken.
-    pub const fn samples(&self) -> u64 {
-        self.centers.count()
-    }
-
     /// Iterates over the distances of the middles of the bins, with g(r) there, which is NaN as long as there
     /// are no disks.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
