@@ -236,7 +236,7 @@ macro_rules! table {
     (
         $(#[$attribute:meta])*
         $table:ident $(<$part:ident: $bound:ident>)?, $this:ident: for $item:pat in $rows:expr;
-        $($name:literal [$unit:expr]: $number:expr),+ $(; $($mean:literal [$of_mean:expr]: $estimate:expr),+)? $(,)?
+        $($name:literal [$unit:expr]: $number:expr),+ $(; $($mean:literal [$of_mean:expr]: $estimate:expr),+)?
     ) => {
         $(#[$attribute])*
         impl $(<$part: $bound>)? crate::observable::Table for $table $(<$part>)? {

@@ -515,8 +515,9 @@ impl Classification {
         self.iter().filter(|&(state, _)| counts(state)).map(|(_, cluster)| cluster.weight()).sum()
     }
 
-    /// Returns the region of Fig. 5. It is coexistence if one roll and two rolls each have at least a weight of
-    /// 0.05, while no roll and the collapsed state together have less. Otherwise, the largest weight decides.
+    /// Returns the region of Fig. 5. It is coexistence if one roll and two rolls each have at least a weight
+    /// of 0.05, while no roll and the collapsed state together have less. Otherwise, the largest weight
+    /// decides.
     ///
     /// Near the collapse, two rolls come and go, and lean to one side in between. This is a transition from
     /// flow to no flow, not a coexistence of one roll and two rolls.
