@@ -303,11 +303,6 @@ impl Comparison {
         self.interval
     }
 
-    /// Returns the time of a collision in nanoseconds, in the first run and in the other.
-    pub const fn nanoseconds(&self) -> [Quartiles; 2] {
-        self.nanoseconds
-    }
-
     /// Returns whether 1 is outside the [interval](Self::interval), and on which side.
     pub fn finding(&self) -> Finding {
         match self.interval {

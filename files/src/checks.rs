@@ -6,6 +6,7 @@ use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 
+use super::errors::rounded;
 use super::table::Settings;
 use super::{ReadError, State};
 
@@ -51,14 +52,14 @@ fn key(square: DVec2) -> [u64; 2] {
 
 /// The overlaps found so far.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Overlap {
+struct Overlap {
     /// Indices of the two disks that overlap most, in units of the sum of their radii.
-    pub(super) pair: [usize; 2],
-    pub(super) depth: f64,
+    pair: [usize; 2],
+    depth: f64,
     /// Depth in units of the sum of the radii.
-    pub(super) share: f64,
+    share: f64,
     /// Number of all overlaps.
-    pub(super) count: usize,
+    count: usize,
     /// True if all overlaps are counted. If very many disks lie at one place, there are too many overlaps to
     /// count.
     is_counted: bool,
@@ -79,7 +80,7 @@ fn images(periods: DVec2) -> Vec<DVec2> {
 ///
 /// The disks are taken in the order of their sizes, the largest first, and each is compared with the disks
 /// before it. As long as these overlap little, a square holds only a few of them.
-pub(super) fn deepest(disks: &[Disk], domain: Option<&Domain>, least: f64) -> Option<Overlap> {
+fn deepest(disks: &[Disk], domain: Option<&Domain>, least: f64) -> Option<Overlap> {
     let shifts = images(domain.map_or(DVec2::ZERO, Domain::periods));
     let mut order: Vec<usize> = (0..disks.len()).collect();
     order.sort_by(|&a, &b| disks[b].radius().total_cmp(&disks[a].radius()));
@@ -131,9 +132,13 @@ const TOUCHING: f64 = 1e-10;
 pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) -> Result<(), ReadError> {
     let accepted = settings.tolerance.unwrap_or_default().max(TOUCHING);
     if let Some(domain) = state.domain {
+        let mut wrapped = 0;
         for (disk, &line) in state.disks.iter_mut().zip(lines) {
             fit(disk, &domain, line)?;
-            state.wrapped += usize::from(enter(disk, &domain, accepted, line)?);
+            wrapped += usize::from(enter(disk, &domain, accepted, line)?);
+        }
+        if wrapped > 0 {
+            state.notes.push(format!("disks outside of periodic sides, wrapped: {wrapped}"));
         }
     }
     let least = if settings.shrinks { TOUCHING } else { accepted };
@@ -151,6 +156,8 @@ pub(super) fn settle(state: &mut State, lines: &[usize], settings: &Settings) ->
             .map_err(|source| ReadError::Disk { line, source })?;
     }
     state.shrunk = share;
+    let shown = rounded(share);
+    state.notes.push(format!("all radii are shrunk by the deepest overlap, a share of {shown:?}"));
     Ok(())
 }
 

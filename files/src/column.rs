@@ -1,37 +1,37 @@
 //! The meanings of a file's columns, whose names differ between programs.
 
-/// A property of a disk to which a column can belong. Its number is the slot of its first component.
+/// A property of a disk to which a column can belong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
-    Id = 0,
+    Id,
     /// The number of a kind.
-    Kind = 1,
+    Kind,
     /// The type of an atom, which LAMMPS counts from 1.
-    Type = 2,
+    Type,
     /// The name of a kind, which may be a number.
-    Name = 3,
-    Position = 4,
+    Name,
+    Position,
     /// Position in units of the box.
-    Scaled = 7,
-    Unwrapped = 10,
-    UnwrappedScaled = 13,
-    Velocity = 16,
-    Momentum = 19,
-    Angle = 22,
+    Scaled,
+    Unwrapped,
+    UnwrappedScaled,
+    Velocity,
+    Momentum,
+    Angle,
     /// A quaternion: x, y, z and w.
-    Orientation = 23,
-    AngularVelocity = 27,
-    Radius = 30,
-    Diameter = 31,
-    Mass = 32,
+    Orientation,
+    AngularVelocity,
+    Radius,
+    Diameter,
+    Mass,
     /// Mass per area, or per volume of a sphere in files of LAMMPS.
-    Density = 33,
-    InertiaFactor = 34,
-    Image = 35,
+    Density,
+    InertiaFactor,
+    Image,
 }
 
-/// Number of the components of all quantities.
-pub(super) const SLOTS: usize = 38;
+/// A component of a quantity.
+pub(super) type Slot = (Quantity, usize);
 
 /// The names of each quantity, in lower case and without spaces, `_` and `-`.
 const NAMES: [(Quantity, &str); 17] = {
@@ -79,8 +79,8 @@ impl Quantity {
     }
 
     /// Returns the slot of a component.
-    pub(super) fn slot(self, component: usize) -> Option<usize> {
-        (component < self.size()).then_some(self as usize + component)
+    pub(super) fn slot(self, component: usize) -> Option<Slot> {
+        (component < self.size()).then_some((self, component))
     }
 }
 
@@ -90,7 +90,7 @@ pub(super) struct Column {
     /// The name in the file.
     pub(super) name: String,
     /// The component of a disk's properties, if the column has one.
-    pub(super) slot: Option<usize>,
+    pub(super) slot: Option<Slot>,
 }
 
 impl Column {
@@ -161,7 +161,7 @@ pub(super) fn settle(columns: &mut [Column]) -> Vec<String> {
 }
 
 /// Returns the slot of a column with a separate name, such as `radius`, `xs` or `velocity.x`.
-fn single(name: &str) -> Option<usize> {
+fn single(name: &str) -> Option<Slot> {
     let axis = |letter: char| "xyzw".find(letter);
     let mut letters = name.chars();
     if let Some(component) = letters.next().and_then(axis) {
@@ -198,7 +198,7 @@ fn single(name: &str) -> Option<usize> {
 }
 
 /// Returns the slot of one of several components.
-fn vector(name: &str, component: usize, count: usize) -> Option<usize> {
+fn vector(name: &str, component: usize, count: usize) -> Option<Slot> {
     let quantity = Quantity::named(name)?;
     let is_whole = match quantity {
         Quantity::Orientation | Quantity::AngularVelocity => count == quantity.size(),

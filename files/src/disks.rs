@@ -11,7 +11,7 @@ use super::column::Quantity::{
     self, Angle, AngularVelocity, Density, Diameter, Id, Image, InertiaFactor, Mass, Momentum, Name,
     Orientation, Position, Radius, Scaled, Type, Unwrapped, UnwrappedScaled, Velocity,
 };
-use super::column::{SLOTS, plain};
+use super::column::plain;
 use super::table::Table;
 use super::table::{RADIUS_IGNORED, Settings};
 use super::{ReadError, State, table};
@@ -48,19 +48,35 @@ fn state_of(mut table: Table, settings: &Settings) -> Result<State, ReadError> {
     let is_numbered = table.has(Quantity::Kind, 0) || table.has(Type, 0);
     let ordered = table::ordered(&table).filter(|_| !is_numbered).unwrap_or_default();
     let ordered: Vec<String> = ordered.into_iter().map(str::to_owned).collect();
-    let mut state = State {
-        disks,
-        domain: table.domain,
-        time: table.time,
-        gravity: table.gravity,
-        kind_names: if is_numbered { std::mem::take(&mut table.kind_names) } else { ordered },
-        ignored: table.ignored(),
-        notes: std::mem::take(&mut table.notes),
-        ..State::default()
-    };
+    let kind_names = if is_numbered { std::mem::take(&mut table.kind_names) } else { ordered };
+    if !kind_names.is_empty() {
+        table.notes.push(format!("kinds are numbered by name: {}", numbered(&kind_names)));
+    }
+    let ignored = table.ignored();
+    if !ignored.is_empty() {
+        table.notes.push(format!("ignored: {}", ignored.join(", ")));
+    }
+    let (domain, time, gravity) = (table.domain, table.time, table.gravity);
+    let notes = std::mem::take(&mut table.notes);
+    let mut state = State { disks, domain, time, gravity, kind_names, shrunk: 0.0, notes };
     let settings = with_rounding(settings, table.rounding, &state.disks);
-    settle(&mut state, &table.into_lines(), &settings)?;
+    let lines = std::mem::take(&mut table.lines);
+    drop(table);
+    settle(&mut state, &lines, &settings)?;
     Ok(state)
+}
+
+/// Largest number of names of kinds in a note.
+const MOST_NAMES: usize = 8;
+
+/// Returns the names of kinds with their numbers; if there are many kinds, only the first ones.
+fn numbered(kind_names: &[String]) -> String {
+    let names = kind_names.iter().enumerate().take(MOST_NAMES);
+    let mut names: Vec<String> = names.map(|(number, name)| format!("{name} {number}")).collect();
+    if kind_names.len() > MOST_NAMES {
+        names.push(format!("and {} others", kind_names.len() - MOST_NAMES));
+    }
+    names.join(", ")
 }
 
 /// Multiplies the lengths of a table's box and gravity by a factor.
@@ -75,17 +91,11 @@ fn scale(table: &mut Table, factor: f64) {
 }
 
 /// Returns the factor of a value if all lengths are multiplied by `length`.
-fn factor(slot: usize, length: f64, is_of_lammps: bool) -> f64 {
-    if length == 1.0 {
-        return 1.0;
-    }
-    let is_of = |quantity: Quantity| (0..3).any(|component| quantity.slot(component) == Some(slot));
-    if [Position, Unwrapped, Velocity, Momentum, Radius, Diameter].into_iter().any(is_of) {
-        return length;
-    }
-    match (is_of(Density), is_of_lammps) {
-        (true, true) => 1.0 / (length * length * length),
-        (true, false) => 1.0 / (length * length),
+fn factor(quantity: Quantity, length: f64, is_of_lammps: bool) -> f64 {
+    match quantity {
+        Position | Unwrapped | Velocity | Momentum | Radius | Diameter => length,
+        Density if is_of_lammps => 1.0 / (length * length * length),
+        Density => 1.0 / (length * length),
         _ => 1.0,
     }
 }
@@ -120,10 +130,9 @@ fn with_rounding(settings: &Settings, rounding: f64, disks: &[Disk]) -> Settings
 /// Returns the disks of a table, in its order.
 fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     let either = |quantities: &[Quantity], axis| quantities.iter().any(|&quantity| table.has(quantity, axis));
-    let missing = |name: &str| Err(ReadError::missing(table.line, format!("the column `{name}`")));
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         if !either(&[Position, Scaled, Unwrapped, UnwrappedScaled], axis) {
-            return missing(name);
+            return Err(ReadError::missing(table.line, format!("the column `{name}`")));
         }
     }
     if !either(&[Radius, Diameter], 0) && settings.radius.is_none() {
@@ -148,21 +157,21 @@ fn disks(table: &Table, settings: &Settings) -> Result<Vec<Disk>, ReadError> {
     Ok(disks)
 }
 
-/// The values of a row by their slots.
-type Slots = [Option<f64>; SLOTS];
+/// The values of a row: the components of each quantity.
+type Slots = [[Option<f64>; 4]; Image as usize + 1];
 
 /// Returns the values of a row, indexed by slot, or an error if two columns contradict each other.
 fn slots(table: &Table, values: &[f64], length: f64, line: usize) -> Result<Slots, ReadError> {
-    let mut slots: Slots = [None; SLOTS];
-    for ((column, slot), &value) in table.known().zip(values) {
-        let value = value * factor(slot, length, table.is_of_lammps);
-        let Some(other) = slots[slot].replace(value) else { continue };
-        if slot == Name as usize && other != value {
+    let mut slots = Slots::default();
+    for ((column, (quantity, component)), &value) in table.known().zip(values) {
+        let value = value * factor(quantity, length, table.is_of_lammps);
+        let Some(other) = slots[quantity as usize][component].replace(value) else { continue };
+        if quantity == Name && other != value {
             let names = [other, value].map(|index| table.names()[index as usize]);
             return Err(contradiction(&column.name, &names.join(" and "), line));
         }
         // Whole numbers have no rounding.
-        let is_whole = slot < Position as usize || slot >= Image as usize;
+        let is_whole = matches!(quantity, Id | Quantity::Kind | Type | Image);
         if is_whole && other != value {
             return Err(contradiction(&column.name, &format!("{other} and {value}"), line));
         }
@@ -232,7 +241,7 @@ struct Row<'a> {
 
 impl Row<'_> {
     fn get(&self, quantity: Quantity, component: usize) -> Option<f64> {
-        self.slots[quantity as usize + component]
+        self.slots[quantity as usize][component]
     }
 
     /// Returns the first of two values if they agree, or the only one that is present.

@@ -43,12 +43,6 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// The name ends in `.gz`, but this build cannot compress.
-    #[error("{} would be compressed, which needs the feature `gzip` of granular-edmd-files", path.display())]
-    Gzip {
-        /// The path.
-        path: PathBuf,
-    },
     /// The file has no complete frame after which a recorder could continue.
     ///
     /// The file stays unchanged.

@@ -196,11 +196,6 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// Returns whether the frame names its columns.
-    fn has_properties(&self) -> bool {
-        matches!(self.value(&["Properties"]), Ok(Some(_)))
-    }
-
     /// Returns the time, if the frame has it.
     fn time(&self) -> Result<Option<f64>, ReadError> {
         self.value(&["Time", "t"])?.map(|value| finite("Time", value, self.line)).transpose()
@@ -278,7 +273,7 @@ impl<'a> Keys<'a> {
     }
 
     /// Returns the box with the periodic directions of the file.
-    fn periodic(&self, domain: Domain, pbc: &str) -> Result<Domain, ReadError> {
+    fn periodic(&self, mut domain: Domain, pbc: &str) -> Result<Domain, ReadError> {
         let flag = |letter: &str| match letter.to_ascii_lowercase().as_str() {
             "t" | "1" | "true" => Some(true),
             "f" | "0" | "false" => Some(false),
@@ -288,8 +283,8 @@ impl<'a> Keys<'a> {
         let (&[Some(sides), Some(ends)] | &[Some(sides), Some(ends), Some(_)]) = flags.as_slice() else {
             return Err(ReadError::unexpected(self.line, "pbc", "three letters T or F", pbc));
         };
-        let domain = if sides { domain.with_periodic_sides() } else { domain };
-        Ok(if ends { domain.with_periodic_ends() } else { domain })
+        (domain.periodic_sides, domain.periodic_ends) = (sides, ends);
+        Ok(domain)
     }
 
     /// Reads numbers that are separated by white space, commas or brackets.
@@ -370,14 +365,8 @@ fn columns(properties: &str, line: usize) -> Result<Vec<Column>, ReadError> {
     Ok(columns)
 }
 
-/// Returns the frames of a file.
-pub(crate) fn frames<'a>(
-    mut input: Input<impl BufRead + 'a>,
-) -> impl Iterator<Item = Result<Found<'a>, ReadError>> + 'a {
-    std::iter::from_fn(move || next(&mut input).transpose())
-}
-
-fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadError> {
+/// Reads the next frame of a file.
+pub(crate) fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadError> {
     let Some((count, line)) = input.next_filled()? else { return Ok(None) };
     let count = count.parse().map_err(|_| {
         ReadError::unexpected(line, "the first line of a frame", "the number of its disks", &count)
@@ -390,12 +379,13 @@ fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadE
 fn table(keys: &str, line: usize, rows: &Text) -> Result<Table, ReadError> {
     let keys = Keys::parse(keys, line)?;
     let mut table = keys.table()?;
-    if !keys.has_properties() {
+    let has_properties = keys.value(&["Properties"])?.is_some();
+    if !has_properties {
         table.advice = "; the columns of plain XYZ are a name, x, y and z, and `Properties=` names others";
     }
     // A plain XYZ file may have more columns than the usual ones.
     let known = table.columns.len();
-    let most = if keys.has_properties() { usize::MAX } else { known };
+    let most = if has_properties { usize::MAX } else { known };
     let mut widest = known;
     for (row, line) in rows.lines()? {
         table.push(row.split_whitespace().take(most), line)?;

@@ -4,7 +4,7 @@ mod indexed;
 mod read;
 
 pub(super) use indexed::open;
-pub(super) use read::{frames, frames_of_file, is_gsd};
+pub(super) use read::{frames, is_gsd};
 
 use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -16,16 +16,8 @@ use super::Frame;
 use super::format::{half_turn, numbered, shown_depth, shown_top};
 use crate::ReadError;
 
-/// The number of rows of a chunk.
-#[derive(Debug, Clone, Copy)]
-enum Rows {
-    Fixed(u64),
-    /// One row for each kind up to the largest.
-    Kinds,
-    Disks,
-    /// One row for each moving wall.
-    Walls,
-}
+/// Returns the number of rows of a chunk.
+type Rows = fn(&Shape) -> u64;
 
 /// Codes of the types of numbers.
 const U8: u8 = 1;
@@ -44,56 +36,47 @@ const NAME: usize = 6;
 /// `read_log` of the package `gsd` interprets a chunk with one row as a single number, so a vector is stored
 /// as a column.
 const CHUNKS: [(&str, u8, u32, Rows); 24] = [
-    ("configuration/step", U64, 1, Rows::Fixed(1)),
-    ("configuration/dimensions", U8, 1, Rows::Fixed(1)),
-    ("configuration/box", F32, 1, Rows::Fixed(6)),
-    ("particles/N", U32, 1, Rows::Fixed(1)),
-    ("particles/types", I8, NAME as u32, Rows::Kinds),
-    ("particles/typeid", U32, 1, Rows::Disks),
-    ("particles/mass", F32, 1, Rows::Disks),
-    ("particles/diameter", F32, 1, Rows::Disks),
-    ("particles/moment_inertia", F32, 3, Rows::Disks),
-    ("particles/position", F32, 3, Rows::Disks),
-    ("particles/orientation", F32, 4, Rows::Disks),
-    ("particles/velocity", F32, 3, Rows::Disks),
-    ("particles/angmom", F32, 4, Rows::Disks),
-    ("particles/image", I32, 3, Rows::Disks),
-    ("log/particles/id", U64, 1, Rows::Disks),
-    ("log/periodic", U8, 1, Rows::Fixed(2)),
-    ("log/time", F64, 1, Rows::Fixed(1)),
-    ("log/gravity", F64, 1, Rows::Fixed(2)),
-    ("log/center", F64, 1, Rows::Fixed(2)),
-    ("log/domain", F64, 1, Rows::Fixed(4)),
-    ("log/walls/index", U32, 1, Rows::Walls),
-    ("log/walls/x", F64, 1, Rows::Walls),
-    ("log/walls/y", F64, 1, Rows::Walls),
-    ("log/walls/phase", F64, 1, Rows::Walls),
+    ("configuration/step", U64, 1, |_| 1),
+    ("configuration/dimensions", U8, 1, |_| 1),
+    ("configuration/box", F32, 1, |_| 6),
+    ("particles/N", U32, 1, |_| 1),
+    ("particles/types", I8, NAME as u32, |shape| shape.kinds),
+    ("particles/typeid", U32, 1, |shape| shape.disks),
+    ("particles/mass", F32, 1, |shape| shape.disks),
+    ("particles/diameter", F32, 1, |shape| shape.disks),
+    ("particles/moment_inertia", F32, 3, |shape| shape.disks),
+    ("particles/position", F32, 3, |shape| shape.disks),
+    ("particles/orientation", F32, 4, |shape| shape.disks),
+    ("particles/velocity", F32, 3, |shape| shape.disks),
+    ("particles/angmom", F32, 4, |shape| shape.disks),
+    ("particles/image", I32, 3, |shape| shape.disks),
+    ("log/particles/id", U64, 1, |shape| shape.disks),
+    ("log/periodic", U8, 1, |_| 2),
+    ("log/time", F64, 1, |_| 1),
+    ("log/gravity", F64, 1, |_| 2),
+    ("log/center", F64, 1, |_| 2),
+    ("log/domain", F64, 1, |_| 4),
+    ("log/walls/index", U32, 1, |shape| shape.walls),
+    ("log/walls/x", F64, 1, |shape| shape.walls),
+    ("log/walls/y", F64, 1, |shape| shape.walls),
+    ("log/walls/phase", F64, 1, |shape| shape.walls),
 ];
 
 /// The shape of a frame: its number in the file, and its numbers of disks, of kinds (the largest kind plus
 /// one), and of moving walls.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
-    number: usize,
-    disks: usize,
-    kinds: usize,
-    walls: usize,
+    number: u64,
+    disks: u64,
+    kinds: u64,
+    walls: u64,
 }
 
 impl Shape {
     fn of(frame: &Frame<'_>) -> Self {
         let (disks, walls) = (frame.snapshot().disks(), frame.snapshot().moving_walls().len());
-        let kinds = disks.iter().map(|disk| usize::from(disk.kind().number()) + 1).max().unwrap_or(1);
-        Self { number: frame.number(), disks: disks.len(), kinds, walls }
-    }
-
-    const fn rows(self, rows: Rows) -> u64 {
-        match rows {
-            Rows::Fixed(rows) => rows,
-            Rows::Kinds => self.kinds as u64,
-            Rows::Disks => self.disks as u64,
-            Rows::Walls => self.walls as u64,
-        }
+        let kinds = disks.iter().map(|disk| u64::from(disk.kind().number()) + 1).max().unwrap_or(1);
+        Self { number: frame.number() as u64, disks: disks.len() as u64, kinds, walls: walls as u64 }
     }
 }
 
@@ -104,7 +87,7 @@ fn write_chunks(frame: &Frame<'_>, out: &mut Vec<u8>) -> io::Result<()> {
         return Err(io::Error::other("a GSD file has room for 2^32 disks"));
     };
     let (center, [width, height]) = seen_box(snapshot);
-    out.write_all(&(frame.number() as u64).to_le_bytes())?;
+    out.write_all(&shape.number.to_le_bytes())?;
     out.write_all(&[2])?;
     // Readers ignore the depth of a two-dimensional box. The last three numbers are its tilts.
     singles(out, [width, height, shown_depth(disks), 0.0, 0.0, 0.0])?;
@@ -120,7 +103,7 @@ fn write_chunks(frame: &Frame<'_>, out: &mut Vec<u8>) -> io::Result<()> {
     };
     column(&|disk| [disk.mass(); 4], 1)?;
     column(&|disk| [2.0 * disk.radius(); 4], 1)?;
-    column(&|disk| [0.0, 0.0, moment_of_inertia(disk), 0.0], 3)?;
+    column(&|disk| [0.0, 0.0, disk.moment_of_inertia(), 0.0], 3)?;
     column(&|disk| [disk.position().x - center[0], disk.position().y - center[1], 0.0, 0.0], 3)?;
     column(&|disk| [half_turn(disk)[0], 0.0, 0.0, half_turn(disk)[1]], 4)?;
     column(&|disk| [disk.velocity().x, disk.velocity().y, 0.0, 0.0], 3)?;
@@ -162,14 +145,10 @@ fn seen_box(snapshot: &Snapshot<'_>) -> ([f64; 2], [f64; 2]) {
     }
 }
 
-fn moment_of_inertia(disk: &Disk) -> f64 {
-    disk.inertia_factor() * disk.mass() * disk.radius() * disk.radius()
-}
-
 /// Returns the angular momentum in HOOMD-blue's form: twice the orientation times the momentum in the frame
 /// of the body, as quaternions.
 fn angular_momentum(disk: &Disk) -> [f64; 4] {
-    let ([real, up], momentum) = (half_turn(disk), moment_of_inertia(disk) * disk.angular_velocity());
+    let ([real, up], momentum) = (half_turn(disk), disk.moment_of_inertia() * disk.angular_velocity());
     [-2.0 * up * momentum, 0.0, 0.0, 2.0 * real * momentum]
 }
 
@@ -293,9 +272,10 @@ impl Chunk {
         }
     }
 
-    /// Returns whether the numbers are in single precision.
-    const fn is_single(&self) -> bool {
-        self.kind == F32
+    /// Returns these columns of all rows, row after row.
+    fn numbers(&self, columns: &[usize]) -> Vec<f64> {
+        let row = |row| columns.iter().map(move |&column| self.number(row, column));
+        (0..self.rows).flat_map(row).collect()
     }
 }
 

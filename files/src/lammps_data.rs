@@ -84,8 +84,6 @@ struct Header<'a> {
     sides: Found<[f64; 2]>,
     ends: Found<[f64; 2]>,
     tilts: Found<[f64; 3]>,
-    /// The vectors of a general box and its origin.
-    vectors: [Found<[f64; 3]>; 4],
     /// Counts of items that disks do not have, such as bonds.
     other: Found<&'a str>,
 }
@@ -94,13 +92,11 @@ struct Header<'a> {
 const OTHERS: [&str; 8] =
     ["bodies", "ellipsoids", "lines", "triangles", "bonds", "angles", "dihedrals", "impropers"];
 
-/// Names of the vectors of a general box.
-const VECTORS: [&str; 4] = ["avec", "bvec", "cvec", "origin"];
-
 impl<'a> Header<'a> {
     /// Reads the header, and returns it with the name of the first section, if the file has a section.
     fn read(lines: &mut Lines<'a>) -> Result<(Self, Option<&'a str>), ReadError> {
-        let (title, line) = lines.need("the title")?;
+        let end = || ReadError::End { line: 0, what: "the title".to_owned() };
+        let (title, line) = lines.next().ok_or_else(end)?;
         let (rest, periodic) = match title.rsplit_once(", periodic = ") {
             Some((rest, sides)) if title.contains(WRITER) => {
                 (rest, Some(["x", "y"].map(|side| sides.contains(side))))
@@ -137,12 +133,6 @@ impl<'a> Header<'a> {
                 let tilt = |tilt| finite("a tilt of the box", tilt, line);
                 once(&mut self.tilts, [tilt(xy)?, tilt(xz)?, tilt(yz)?], "`xy xz yz`", line)?;
             }
-            [x, y, z, name @ ("avec" | "bvec" | "cvec")] | [x, y, z, "abc", name @ "origin"] => {
-                let what = "a vector of the box";
-                let vector = [finite(what, x, line)?, finite(what, y, line)?, finite(what, z, line)?];
-                let index = VECTORS.iter().position(|known| *known == name).unwrap_or_default();
-                once(&mut self.vectors[index], vector, &format!("`{name}`"), line)?;
-            }
             [count, what] if OTHERS.contains(&what) && count != "0" => {
                 self.other = Some((what, line));
             }
@@ -158,22 +148,12 @@ impl<'a> Header<'a> {
 
     /// Returns the box.
     fn domain(&self, line: usize) -> Result<Domain, ReadError> {
-        let vectors = self.vectors;
-        let is_general = vectors[..3].iter().all(Option::is_some);
-        let [width, height, depth, origin] = vectors.map(|found| found.unwrap_or(([0.0; 3], line)));
-        let ([left, right], [bottom, top], tilts, line, name) = if is_general {
-            let ([width, a, b], [c, height, d], [e, f, _]) = (width.0, height.0, depth.0);
-            let [left, bottom, _] = origin.0;
-            let (sides, ends) = ([left, left + width], [bottom, bottom + height]);
-            (sides, ends, vec![a, b, c, d, e, f], depth.1, "off the diagonal")
-        } else {
-            let (tilts, line) = self.tilts.unwrap_or(([0.0; 3], self.ends.map_or(line, |(_, line)| line)));
-            let (sides, ends) = (found(self.sides, "`xlo xhi`", line), found(self.ends, "`ylo yhi`", line));
-            (sides?, ends?, tilts.to_vec(), line, "xy xz yz")
-        };
-        if !is_upright([right - left, top - bottom], tilts.iter().copied()) {
-            let found = tilts.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
-            return Err(ReadError::unexpected(line, "the box", "a rectangle", format!("{found} {name}")));
+        let (tilts, line) = self.tilts.unwrap_or(([0.0; 3], self.ends.map_or(line, |(_, line)| line)));
+        let [left, right] = found(self.sides, "`xlo xhi`", line)?;
+        let [bottom, top] = found(self.ends, "`ylo yhi`", line)?;
+        if !is_upright([right - left, top - bottom], tilts) {
+            let found = tilts.map(|tilt| tilt.to_string()).join(" ");
+            return Err(ReadError::unexpected(line, "the box", "a rectangle", format!("{found} xy xz yz")));
         }
         checked_box(Domain::new(left, right, bottom, top), line)
     }

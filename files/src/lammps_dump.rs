@@ -129,13 +129,6 @@ fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io:
 /// The column of the time, which is the same for all disks.
 const TIME: &str = "v_time";
 
-/// Returns the frames of a file.
-pub(crate) fn frames<'a>(
-    mut input: Input<impl BufRead + 'a>,
-) -> impl Iterator<Item = Result<Found<'a>, ReadError>> + 'a {
-    std::iter::from_fn(move || next(&mut input).transpose())
-}
-
 /// The lines above the disks of a frame, with their numbers.
 #[derive(Default)]
 struct Head {
@@ -144,7 +137,8 @@ struct Head {
     bounds: Option<(String, [(String, usize); 3])>,
 }
 
-fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadError> {
+/// Reads the next frame of a file.
+pub(crate) fn next<'a, R: BufRead>(input: &mut Input<R>) -> Result<Option<Found<'a>>, ReadError> {
     let (mut head, mut step, mut count) = (Head::default(), None, None);
     let Some((mut item, mut line)) = input.next_filled()? else { return Ok(None) };
     loop {
@@ -235,14 +229,11 @@ fn domains(words: &str, bounds: &[(String, usize); 3]) -> Result<[Domain; 2], Re
     let (sides, tilts) = match [&x[..], &y[..], &z[..]] {
         [&[left, right], &[bottom, top], _] => ([left, right, bottom, top], [0.0; 3]),
         [&[left, right, a], &[bottom, top, b], &[_, _, c]] => ([left, right, bottom, top], [a, b, c]),
-        [&[width, a, _, left], &[b, height, _, bottom], _] => {
-            ([left, left + width, bottom, bottom + height], [a, b, 0.0])
-        }
         _ => {
             return Err(ReadError::unexpected(
                 line,
                 "the box",
-                "three lines of 2 to 4 numbers",
+                "three lines of 2 or 3 numbers",
                 &bounds[1].0,
             ));
         }
@@ -253,9 +244,8 @@ fn domains(words: &str, bounds: &[(String, usize); 3]) -> Result<[Domain; 2], Re
     }
     let [sides, ends, _] = flags(words).unwrap_or(["ff"; 3]);
     let extent = Domain::new(left, right, bottom, top);
-    let open = if ends.ends_with(['s', 'm']) { f64::INFINITY } else { top };
     let mut domain = checked_box(extent, line)?;
-    domain.top = open;
-    let domain = if sides == "pp" { domain.with_periodic_sides() } else { domain };
-    Ok([extent, if ends == "pp" { domain.with_periodic_ends() } else { domain }])
+    domain.top = if ends.ends_with(['s', 'm']) { f64::INFINITY } else { top };
+    (domain.periodic_sides, domain.periodic_ends) = (sides == "pp", ends == "pp");
+    Ok([extent, domain])
 }

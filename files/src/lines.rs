@@ -141,12 +141,6 @@ impl<'a> Lines<'a> {
     pub(super) fn next_filled(&mut self) -> Option<(&'a str, usize)> {
         self.by_ref().map(|(text, line)| (text.trim(), line)).find(|(text, _)| !text.is_empty())
     }
-
-    /// Returns the next line, or an error if there is none.
-    pub(super) fn need(&mut self, what: &str) -> Result<(&'a str, usize), ReadError> {
-        let end = ReadError::End { line: self.line, what: what.to_owned() };
-        self.next().ok_or(end)
-    }
 }
 
 impl<'a> Iterator for Lines<'a> {

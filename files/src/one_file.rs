@@ -98,19 +98,14 @@ enum Packing {
 }
 
 impl Packing {
-    /// Creates the compressor of a file; `None` in a build without compression.
-    #[cfg(feature = "gzip")]
-    const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(gzip::Member::default()));
-    #[cfg(not(feature = "gzip"))]
-    const GZIP: Option<fn() -> Self> = None;
-
     /// Returns the packing for the name of a file.
     fn of(path: &Path) -> Result<Self, RecordError> {
-        match (is_gzip(path), Self::GZIP) {
-            (false, _) => Ok(Self::Plain),
-            (true, Some(gzip)) => Ok(gzip()),
-            (true, None) => Err(RecordError::Gzip { path: path.to_owned() }),
-        }
+        #[cfg(feature = "gzip")]
+        let gzip = Ok(Self::Gzip(gzip::Member::default()));
+        #[cfg(not(feature = "gzip"))]
+        let gzip =
+            Err(RecordError::unusable(path, "compression needs the feature `gzip` of granular-edmd-files"));
+        if is_gzip(path) { gzip } else { Ok(Self::Plain) }
     }
 
     /// Returns the bytes that follow the last frame.

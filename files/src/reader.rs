@@ -17,22 +17,22 @@ use super::{ReadError, State, csv, disks, extended_xyz, gsd, lammps_data, lammps
 const HEAD: u64 = 1 << 14;
 
 /// Returns the frames of a file. A GSD file is not read completely.
-pub(super) fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
+fn frames_of_file<'a>(mut file: File) -> Result<Frames<'a>, ReadError> {
     let failed = |cause| ReadError::Io { line: 1, cause };
     let mut head = Vec::new();
     file.by_ref().take(8).read_to_end(&mut head).map_err(failed)?;
     file.rewind().map_err(failed)?;
-    if gsd::is_gsd(&head) { Ok(gsd::frames_of_file(file)) } else { frames(BufReader::new(file)) }
+    if gsd::is_gsd(&head) { gsd::frames(file) } else { frames(BufReader::new(file)) }
 }
 
 /// Returns the frames of an input, which may be compressed.
-pub(super) fn frames<'a>(input: impl BufRead + 'a) -> Result<Frames<'a>, ReadError> {
+fn frames<'a>(input: impl BufRead + 'a) -> Result<Frames<'a>, ReadError> {
     let (head, input) = with_head(Box::new(input))?;
     if !head.starts_with(&[0x1f, 0x8b]) {
-        return Ok(of_format(&head, input));
+        return of_format(&head, input);
     }
     let (head, input) = with_head(inflated(input)?)?;
-    Ok(of_format(&head, input))
+    of_format(&head, input)
 }
 
 type Boxed<'a> = Box<dyn BufRead + 'a>;
@@ -59,28 +59,29 @@ fn inflated(_: Boxed<'_>) -> Result<Boxed<'_>, ReadError> {
 }
 
 /// Returns the frames of an input that begins with these bytes.
-fn of_format<'a>(head: &[u8], input: Boxed<'a>) -> Frames<'a> {
+fn of_format<'a>(head: &[u8], mut input: Boxed<'a>) -> Result<Frames<'a>, ReadError> {
     if gsd::is_gsd(head) {
-        return gsd::frames(input);
+        // The index may be anywhere.
+        let mut bytes = Vec::new();
+        input.read_to_end(&mut bytes).map_err(|error| ReadError::gsd(error.to_string()))?;
+        return gsd::frames(Cursor::new(bytes));
     }
-    let text = String::from_utf8_lossy(head);
-    let mut lines = text.trim_start_matches('\u{feff}').trim_start().lines();
+    let head = String::from_utf8_lossy(head);
+    let mut lines = head.trim_start_matches('\u{feff}').trim_start().lines();
     let [first, second] = [(); 2].map(|()| lines.next().unwrap_or_default().trim());
     let is_count = !first.is_empty() && first.bytes().all(|letter| letter.is_ascii_digit());
+    let mut input = Input::new(input);
     if first.starts_with("ITEM:") {
-        return Box::new(lammps_dump::frames(Input::new(input)));
+        return Ok(Box::new(std::iter::from_fn(move || lammps_dump::next(&mut input).transpose())));
     }
     if is_count || second.contains("Properties") {
-        return Box::new(extended_xyz::frames(Input::new(input)));
+        return Ok(Box::new(std::iter::from_fn(move || extended_xyz::next(&mut input).transpose())));
     }
-    if lammps_data::is_data(&text) {
-        let read = || Ok(Found::in_text(Input::new(input).rest()?, None, lammps_data::table));
-        return Box::new(std::iter::once_with(read));
+    let text = input.rest()?;
+    if lammps_data::is_data(&head) {
+        return Ok(Box::new(std::iter::once(Ok(Found::in_text(text, None, lammps_data::table)))));
     }
-    match Input::new(input).rest().and_then(|text| csv::frames(&text)) {
-        Ok(frames) => Box::new(frames.into_iter().map(Ok)),
-        Err(error) => Box::new(std::iter::once(Err(error))),
-    }
+    Ok(Box::new(csv::frames(&text)?.into_iter().map(Ok)))
 }
 
 /// Reads disks from files of this crate and of other programs.

@@ -4,8 +4,6 @@ use granular_edmd::boundary::Domain;
 use granular_edmd::observable::Snapshot;
 use granular_edmd::{Disk, Gravity};
 
-use super::errors::rounded;
-
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
 /// A [`Reader`](super::Reader) reads it from a file. No two disks overlap by more than the reader's
@@ -28,10 +26,8 @@ pub struct State {
     pub(super) time: Option<f64>,
     pub(super) gravity: Option<Gravity>,
     pub(super) kind_names: Vec<String>,
-    pub(super) ignored: Vec<String>,
-    pub(super) wrapped: usize,
     pub(super) shrunk: f64,
-    /// Other notes about the file, each a sentence.
+    /// Notes about the file, each a sentence.
     pub(super) notes: Vec<String>,
 }
 
@@ -91,16 +87,6 @@ impl State {
         &self.kind_names
     }
 
-    /// Returns the names of columns, keys and chunks of the file that determine nothing in this state.
-    pub fn ignored(&self) -> &[String] {
-        &self.ignored
-    }
-
-    /// Returns the number of disks outside periodic sides, which the reader moved by whole periods.
-    pub const fn wrapped(&self) -> usize {
-        self.wrapped
-    }
-
     /// Returns the share of each radius by which the reader shrank the disks; 0 if it did not.
     pub const fn shrunk(&self) -> f64 {
         self.shrunk
@@ -108,38 +94,9 @@ impl State {
 
     /// Returns sentences about everything that the reader ignored or changed.
     pub fn notes(&self) -> Vec<String> {
-        let mut notes = self.notes.clone();
-        if !self.kind_names.is_empty() {
-            notes.push(format!("kinds are numbered by name: {}", self.numbered_names()));
-        }
-        if !self.ignored.is_empty() {
-            notes.push(format!("ignored: {}", self.ignored.join(", ")));
-        }
-        if self.wrapped > 0 {
-            notes.push(format!("disks outside of periodic sides, wrapped: {}", self.wrapped));
-        }
-        if self.shrunk > 0.0 {
-            notes.push(format!(
-                "all radii are shrunk by the deepest overlap, a share of {:?}",
-                rounded(self.shrunk)
-            ));
-        }
-        notes
-    }
-
-    /// Returns the names of kinds with their numbers; if there are many kinds, only the first ones.
-    fn numbered_names(&self) -> String {
-        let names = self.kind_names.iter().enumerate().take(MOST_NAMES);
-        let mut names: Vec<String> = names.map(|(number, name)| format!("{name} {number}")).collect();
-        if self.kind_names.len() > MOST_NAMES {
-            names.push(format!("and {} others", self.kind_names.len() - MOST_NAMES));
-        }
-        names.join(", ")
+        self.notes.clone()
     }
 }
-
-/// Largest number of names of kinds in a note.
-const MOST_NAMES: usize = 8;
 
 /// Returns the rectangle around these disks.
 fn around(disks: &[Disk]) -> Domain {

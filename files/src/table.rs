@@ -7,7 +7,7 @@ use granular_edmd::Gravity;
 use granular_edmd::boundary::Domain;
 
 use super::ReadError;
-use super::column::{Column, Quantity, settle};
+use super::column::{Column, Quantity, Slot, settle};
 use super::lines::{LARGEST_ID, Text, as_whole, number, whole};
 
 /// A frame of a file, in the same form for all formats.
@@ -77,8 +77,8 @@ impl Table {
         for column in &self.columns {
             let Some(cell) = cells.next() else { break };
             count += 1;
-            if let Some(slot) = column.slot {
-                self.values.push(value(column, slot, cell, line, &mut self.names)?);
+            if let Some((quantity, _)) = column.slot {
+                self.values.push(value(&column.name, quantity, cell, line, &mut self.names)?);
             }
         }
         count += cells.count();
@@ -91,19 +91,19 @@ impl Table {
     }
 
     /// Adds a row of numbers, one for each column.
-    pub(super) fn push_numbers(&mut self, numbers: &[f64], line: usize) {
+    pub(super) fn push_numbers(&mut self, numbers: impl Iterator<Item = f64>, line: usize) {
         let known = self.columns.iter().zip(numbers).filter(|(column, _)| column.slot.is_some());
         self.values.extend(known.map(|(_, number)| number));
         self.lines.push(line);
     }
 
     /// Returns the columns that have a slot, in the order of the values of a row.
-    pub(super) fn known(&self) -> impl Iterator<Item = (&Column, usize)> {
+    pub(super) fn known(&self) -> impl Iterator<Item = (&Column, Slot)> {
         self.columns.iter().filter_map(|column| Some((column, column.slot?)))
     }
 
     /// Returns the values of a slot, with the lines of their rows.
-    pub(super) fn values(&self, slot: usize) -> impl Iterator<Item = (f64, usize)> {
+    pub(super) fn values(&self, slot: Slot) -> impl Iterator<Item = (f64, usize)> {
         let place = self.known().position(|(_, known)| known == slot);
         place.into_iter().flat_map(|place| self.rows().map(move |(row, line)| (row[place], line)))
     }
@@ -116,7 +116,7 @@ impl Table {
     /// Returns the names of columns that do not determine a property of a disk.
     pub(super) fn ignored(&self) -> Vec<String> {
         let is_idle = |(place, column): &(usize, &Column)| {
-            let is_name = column.slot == Some(Quantity::Name as usize);
+            let is_name = column.slot == Quantity::Name.slot(0);
             column.slot.is_none() && !self.labels.contains(place)
                 || is_name && self.has(Quantity::Type, 0) && !self.has(Quantity::Kind, 0)
         };
@@ -130,11 +130,6 @@ impl Table {
     pub(super) fn rows(&self) -> impl Iterator<Item = (&[f64], usize)> {
         let stride = self.known().count().max(1);
         self.values.chunks(stride).zip(self.lines.iter().copied())
-    }
-
-    /// Returns the lines of the rows, and frees everything else.
-    pub(super) fn into_lines(self) -> Vec<usize> {
-        self.lines
     }
 
     /// Returns the names of kinds by their indices.
@@ -175,30 +170,26 @@ pub(super) fn ordered(table: &Table) -> Option<Vec<&str>> {
 
 /// Reads a cell. A name is replaced by its index.
 fn value(
-    column: &Column,
-    slot: usize,
+    what: &str,
+    quantity: Quantity,
     cell: &str,
     line: usize,
     names: &mut HashMap<String, usize>,
 ) -> Result<f64, ReadError> {
-    let what = column.name.as_str();
-    let is_of = |quantity: Quantity| (0..3).any(|component| quantity.slot(component) == Some(slot));
-    if is_of(Quantity::Name) {
-        let next = names.len();
-        return Ok(*names.entry(cell.to_owned()).or_insert(next) as f64);
+    match quantity {
+        Quantity::Name => {
+            let next = names.len();
+            Ok(*names.entry(cell.to_owned()).or_insert(next) as f64)
+        }
+        Quantity::Id => {
+            let id: u64 = whole(what, cell, line)?;
+            let too_large = || ReadError::unexpected(line, what, "at most 2^53", cell);
+            if id <= LARGEST_ID { Ok(id as f64) } else { Err(too_large()) }
+        }
+        Quantity::Kind => whole::<u16>(what, cell, line).map(f64::from),
+        Quantity::Image => whole::<i32>(what, cell, line).map(f64::from),
+        _ => number(what, cell, line),
     }
-    if is_of(Quantity::Id) {
-        let id: u64 = whole(what, cell, line)?;
-        let too_large = || ReadError::unexpected(line, what, "at most 2^53", cell);
-        return if id <= LARGEST_ID { Ok(id as f64) } else { Err(too_large()) };
-    }
-    if is_of(Quantity::Kind) {
-        return whole::<u16>(what, cell, line).map(f64::from);
-    }
-    if is_of(Quantity::Image) {
-        return whole::<i32>(what, cell, line).map(f64::from);
-    }
-    number(what, cell, line)
 }
 
 /// Settings of a reader for data that a file lacks, or gives in few digits.

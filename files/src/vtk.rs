@@ -47,23 +47,23 @@ fn write_disks(
     writeln!(out, "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\">\n<PointData>")?;
     let whole = |of: fn(&Disk) -> i64| disks.iter().map(of);
     let number = |of: fn(&Disk) -> f64| disks.iter().map(of);
-    write_integers(out, "id", 1, numbered(disks).map(|(id, _)| id.cast_signed()))?;
-    write_integers(out, "kind", 1, whole(|disk| disk.kind().number().into()))?;
-    write_numbers(out, "velocity", 3, disks.iter().flat_map(|disk| in_space(disk.velocity())))?;
-    write_numbers(out, "angle", 1, number(Disk::angle))?;
-    write_numbers(out, "angular_velocity", 1, number(Disk::angular_velocity))?;
-    write_numbers(out, "radius", 1, number(Disk::radius))?;
-    write_numbers(out, "mass", 1, number(Disk::mass))?;
-    write_numbers(out, "inertia_factor", 1, number(Disk::inertia_factor))?;
+    write_tuples(out, INTEGERS, "id", 1, numbered(disks).map(|(id, _)| id.cast_signed()))?;
+    write_tuples(out, INTEGERS, "kind", 1, whole(|disk| disk.kind().number().into()))?;
+    write_tuples(out, NUMBERS, "velocity", 3, disks.iter().flat_map(|disk| in_space(disk.velocity())))?;
+    write_tuples(out, NUMBERS, "angle", 1, number(Disk::angle))?;
+    write_tuples(out, NUMBERS, "angular_velocity", 1, number(Disk::angular_velocity))?;
+    write_tuples(out, NUMBERS, "radius", 1, number(Disk::radius))?;
+    write_tuples(out, NUMBERS, "mass", 1, number(Disk::mass))?;
+    write_tuples(out, NUMBERS, "inertia_factor", 1, number(Disk::inertia_factor))?;
     let images = disks.iter().flat_map(|disk| disk.image().map(i64::from));
-    write_integers(out, "image", 2, images)?;
+    write_tuples(out, INTEGERS, "image", 2, images)?;
     let unwrapped = |disk| domain.map_or(Disk::position(disk), |domain| domain.unwrapped(disk));
-    write_numbers(out, "unwrapped", 3, disks.iter().flat_map(|disk| in_space(unwrapped(disk))))?;
+    write_tuples(out, NUMBERS, "unwrapped", 3, disks.iter().flat_map(|disk| in_space(unwrapped(disk))))?;
     out.write_all(b"</PointData>\n<Points>\n")?;
-    write_numbers(out, "Points", 3, disks.iter().flat_map(|disk| in_space(disk.position())))?;
+    write_tuples(out, NUMBERS, "Points", 3, disks.iter().flat_map(|disk| in_space(disk.position())))?;
     out.write_all(b"</Points>\n<Verts>\n")?;
-    write_integers(out, "connectivity", 1, (0_i64..).take(count))?;
-    write_integers(out, "offsets", 1, (1_i64..).take(count))?;
+    write_tuples(out, INTEGERS, "connectivity", 1, (0_i64..).take(count))?;
+    write_tuples(out, INTEGERS, "offsets", 1, (1_i64..).take(count))?;
     out.write_all(b"</Verts>\n")?;
     out.write_all(TAIL.as_bytes())
 }
@@ -85,19 +85,19 @@ fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
     writeln!(out, "<Piece NumberOfPoints=\"{points_count}\" NumberOfLines=\"{lines}\">\n<CellData>")?;
     let periodic = [domain.periodic_sides, domain.periodic_ends].map(i64::from);
     let periodic = periodic.into_iter().cycle().take(edges).chain(walls.iter().map(|_| 0));
-    write_integers(out, "periodic", 1, periodic)?;
-    write_integers(out, "part", 1, (0..lines).map(|line| i64::from(line >= edges)))?;
+    write_tuples(out, INTEGERS, "periodic", 1, periodic)?;
+    write_tuples(out, INTEGERS, "part", 1, (0..lines).map(|line| i64::from(line >= edges)))?;
     out.write_all(b"</CellData>\n<Points>\n")?;
-    write_numbers(out, "Points", 3, points().flat_map(in_space))?;
+    write_tuples(out, NUMBERS, "Points", 3, points().flat_map(in_space))?;
     out.write_all(b"</Points>\n<Lines>\n")?;
     let ends = (0_i64..).take(edges).flat_map(|line| [line, (line + 1) % 4]);
-    write_integers(out, "connectivity", 1, ends.chain((4_i64..).take(points_count - 4)))?;
+    write_tuples(out, INTEGERS, "connectivity", 1, ends.chain((4_i64..).take(points_count - 4)))?;
     let sizes = (0..edges).map(|_| 2).chain(walls.iter().map(Vec::len));
     let offsets = sizes.scan(0, |sum, size| {
         *sum += i64::try_from(size).unwrap_or(i64::MAX);
         Some(*sum)
     });
-    write_integers(out, "offsets", 1, offsets)?;
+    write_tuples(out, INTEGERS, "offsets", 1, offsets)?;
     out.write_all(b"</Lines>\n")?;
     out.write_all(TAIL.as_bytes())
 }
@@ -105,7 +105,7 @@ fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
 fn write_time(out: &mut dyn Write, time: Option<f64>) -> io::Result<()> {
     let Some(time) = time else { return Ok(()) };
     out.write_all(b"<FieldData>\n")?;
-    write_field(out, "TimeValue", time)?;
+    write_array(out, "Float64", "TimeValue", "NumberOfTuples=\"1\"", std::iter::once(time.to_le_bytes()))?;
     out.write_all(b"</FieldData>\n")
 }
 
@@ -114,31 +114,20 @@ fn in_space(vector: DVec2) -> [f64; 3] {
     [vector.x, vector.y, 0.0]
 }
 
-/// Writes an array of floating-point numbers.
-fn write_numbers(
+/// The types of numbers in arrays: their names, and how they become bytes.
+const INTEGERS: (&str, fn(i64) -> [u8; 8]) = ("Int64", i64::to_le_bytes);
+const NUMBERS: (&str, fn(f64) -> [u8; 8]) = ("Float64", f64::to_le_bytes);
+
+/// Writes an array with a tuple of `components` numbers for each point or line.
+fn write_tuples<T>(
     out: &mut dyn Write,
+    (kind, to_bytes): (&str, fn(T) -> [u8; 8]),
     name: &str,
     components: usize,
-    numbers: impl Iterator<Item = f64>,
+    numbers: impl Iterator<Item = T>,
 ) -> io::Result<()> {
     let attributes = format!("NumberOfComponents=\"{components}\"");
-    write_array(out, "Float64", name, &attributes, numbers.map(f64::to_le_bytes))
-}
-
-/// Writes an array of whole numbers.
-fn write_integers(
-    out: &mut dyn Write,
-    name: &str,
-    components: usize,
-    numbers: impl Iterator<Item = i64>,
-) -> io::Result<()> {
-    let attributes = format!("NumberOfComponents=\"{components}\"");
-    write_array(out, "Int64", name, &attributes, numbers.map(i64::to_le_bytes))
-}
-
-/// Writes a number that applies to the whole file.
-fn write_field(out: &mut dyn Write, name: &str, number: f64) -> io::Result<()> {
-    write_array(out, "Float64", name, "NumberOfTuples=\"1\"", std::iter::once(number.to_le_bytes()))
+    write_array(out, kind, name, &attributes, numbers.map(to_bytes))
 }
 
 fn write_array(

@@ -80,10 +80,8 @@ pub fn packed_mix<B: Boundary + ?Sized>(
     let room = Enclosure::new(boundary, below)?;
     let area = room.domain().width() * room.domain().height();
     accept(area > 0.0, "area of the room for the disks", "positive", area)?;
-    let wider = |disk: &Disk| {
-        Disk::new(disk.position(), disk.radius() * (1.0 + APART)).map(|wide| wide.with_kind(disk.kind()))
-    };
-    let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
+    let wider = disks.iter().map(|disk| disk.with_radius(disk.radius() * (1.0 + APART)));
+    let wider = wider.collect::<Result<Vec<_>, _>>()?;
     let seed = derived_seed(seed, Stream::Packing, 0);
     let packing = grown(&room, &wider, area, seed).map_err(|error| match error {
         // A heavy piston hardly moves while disks are packed, so a moving piston is reported only if the
@@ -93,7 +91,7 @@ pub fn packed_mix<B: Boundary + ?Sized>(
         }
         error => with_full_radius(error, &disks),
     })?;
-    let packed = disks.iter().zip(packing.places()).map(|(disk, place)| disk.with_position(place));
+    let packed = disks.iter().zip(&packing.grown).map(|(disk, grown)| disk.with_position(grown.position()));
     Ok(packed.collect::<Result<_, _>>()?)
 }
 
@@ -196,11 +194,6 @@ impl<'a> Packing<'a> {
         1.0 - self.grown.iter().map(area).sum::<f64>() / self.full.iter().map(area).sum::<f64>()
     }
 
-    /// Returns the present positions of the disks.
-    fn places(&self) -> impl Iterator<Item = DVec2> {
-        self.grown.iter().map(Disk::position)
-    }
-
     /// Moves the disks for a while, with collisions.
     fn stir<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), PlacementError> {
         let disks = self.grown.iter().copied();
@@ -233,7 +226,7 @@ impl<'a> Packing<'a> {
             let radius = radius.min(radius_inside(room, &disk, radius));
             // Disks that grow later see this disk as it is now, so that no two grow into the same gap.
             if radius > disk.radius() {
-                self.grown[index] = resized(&disk, radius)?;
+                self.grown[index] = disk.with_radius(radius)?;
             }
         }
         Ok(())
@@ -288,11 +281,6 @@ fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, disk: &Disk, radius:
     let Some(overlap) = room.overlap(&probe) else { return radius };
     let free = radius - overlap.depth / SHARE;
     if room.overlap(&probe.with_radius(free)).is_none() { free } else { 0.0 }
-}
-
-fn resized(disk: &Disk, radius: f64) -> Result<Disk, ParameterError> {
-    let resized = Disk::new(disk.position(), radius)?.with_kind(disk.kind());
-    resized.with_velocity(disk.velocity())?.with_mass(disk.mass())
 }
 
 fn largest(disks: &[Disk]) -> f64 {

@@ -44,9 +44,7 @@ pub fn scattered<B: Boundary + ?Sized>(
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
     countable(count)?;
-    let radii = std::iter::repeat_n(radius, count);
-    let disks = radii.map(|radius| Disk::new(DVec2::ZERO, radius)).collect::<Result<Vec<_>, _>>()?;
-    scattered_mix(boundary, disks, below, seed)
+    scattered_mix(boundary, vec![Disk::new(DVec2::ZERO, radius)?; count], below, seed)
 }
 
 /// Returns these disks, of any mix of radii, at random positions that do not overlap, below the height

@@ -1,7 +1,7 @@
 //! Gases by random numbers: the mean energy change of any rule by sampling collisions, and direct
 //! simulation of the homogeneous Boltzmann–Enskog equation.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec2;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -185,7 +185,6 @@ impl Sample {
     /// The angle is uniform instead of having the density $`\tfrac12\sin\theta`$. The square of the length is
     /// chi-squared with 5 degrees of freedom instead of 3, which is the same density times $`R^2/3`$.
     fn draw(stratum: u32, generator: &mut Xoshiro256PlusPlus) -> Self {
-        use std::f64::consts::{FRAC_PI_2, PI};
         let angle = PI * (f64::from(stratum) + uniform(generator)) / f64::from(STRATA);
         let (sine, cosine) = libm::sincos(angle);
         let two_components = -2.0 * libm::log(uniform(generator) * uniform(generator));

@@ -152,10 +152,30 @@ impl<T> BetweenKinds<T> {
     }
 }
 
+/// Writes the methods that an adaptor leaves to the inner observer: starts, ends, changes of disks, verdicts.
+macro_rules! left_to_inner {
+    () => {
+        fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+            self.inner.on_start(start)
+        }
+        fn on_insert(&mut self, disk: &Disk, time: f64) {
+            self.inner.on_insert(disk, time);
+        }
+        fn on_remove(&mut self, disk: &Disk, time: f64) {
+            self.inner.on_remove(disk, time);
+        }
+        fn on_end(&mut self, end: &Snapshot<'_>) {
+            self.inner.on_end(end);
+        }
+        #[inline]
+        fn verdict(&mut self) -> Verdict {
+            self.inner.verdict()
+        }
+    };
+}
+
 impl<T: Observer> Observer for BetweenKinds<T> {
-    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        self.inner.on_start(start)
-    }
+    left_to_inner!();
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         if collision.contact.is_between(self.kinds[0], self.kinds[1]) {
@@ -167,19 +187,6 @@ impl<T: Observer> Observer for BetweenKinds<T> {
     }
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.inner.on_sample(snapshot);
-    }
-    fn on_insert(&mut self, disk: &Disk, time: f64) {
-        self.inner.on_insert(disk, time);
-    }
-    fn on_remove(&mut self, disk: &Disk, time: f64) {
-        self.inner.on_remove(disk, time);
-    }
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.inner.on_end(end);
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        self.inner.verdict()
     }
 }
 
@@ -233,9 +240,7 @@ impl<O> ByCollisions<O> {
 }
 
 impl<O: Observer> Observer for ByCollisions<O> {
-    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        self.inner.on_start(start)
-    }
+    left_to_inner!();
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         self.inner.on_collision(collision);
@@ -251,18 +256,5 @@ impl<O: Observer> Observer for ByCollisions<O> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.inner.on_sample(snapshot);
         (self.count, self.due) = (0, None);
-    }
-    fn on_insert(&mut self, disk: &Disk, time: f64) {
-        self.inner.on_insert(disk, time);
-    }
-    fn on_remove(&mut self, disk: &Disk, time: f64) {
-        self.inner.on_remove(disk, time);
-    }
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.inner.on_end(end);
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        self.inner.verdict()
     }
 }

@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::by_wall::ByWall;
 use super::sample_times::Stretch;
-use super::table::{STRESS, Table, headings, row};
-use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot};
+use super::table::{STRESS, table};
+use super::{Collision, Observer, ObserverError, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::quantity::positive;
 use crate::statistics::{BlockedMean, Estimate, block_average};
@@ -200,19 +200,12 @@ impl Observer for WallStress {
     }
 }
 
-/// The walls are numbered in the order in which they were named.
-impl Table for WallStress {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("wall", "1")], &[("pressure", STRESS), ("shear", STRESS)])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let interval = self.stretch.sample_times.interval();
-        let estimates =
-            move |received: &Received| [received.pressure(interval), received.means[1].estimate()];
-        let numbered = (0..).map(f64::from).zip(self.walls.values());
-        Box::new(numbered.map(move |(number, received)| row(&[number], &estimates(received))))
-    }
+table! {
+    /// The walls are numbered in the order in which they were named.
+    WallStress, this: for (number, received) in (0..).map(f64::from).zip(this.walls.values());
+    "wall" ["1"]: number;
+    "pressure" [STRESS]: received.pressure(this.stretch.sample_times.interval()),
+    "shear" [STRESS]: received.means[1].estimate()
 }
 
 crate::gate::from_file! {
@@ -320,15 +313,10 @@ impl Observer for Arrivals {
     }
 }
 
-/// The columns are the end of each interval, the number of arrivals in it, and their rate.
-impl Table for Arrivals {
-    fn headings(&self) -> Vec<Heading> {
-        [("time", "time"), ("arrivals", "1"), ("rate", "1/time")].map(Heading::from).into()
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let counts = self.counts.iter().map(|&count| count as f64);
-        let rows = self.times.iter().zip(counts).zip(self.rates());
-        Box::new(rows.map(|((&time, count), rate)| vec![time, count, rate]))
-    }
+table! {
+    /// The columns are the end of each interval, the number of arrivals in it, and their rate.
+    Arrivals, this: for ((&time, &count), rate) in this.times.iter().zip(&this.counts).zip(this.rates());
+    "time" ["time"]: time,
+    "arrivals" ["1"]: count as f64,
+    "rate" ["1/time"]: rate
 }

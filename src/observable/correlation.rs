@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 
 use glam::DVec2;
 
-use super::table::{Table, headings, row};
-use super::{Heading, Observable, Observer, ObserverError, SampleTimes, Snapshot};
+use super::table::table;
+use super::{Observable, Observer, ObserverError, SampleTimes, Snapshot};
 use crate::disk::numbered;
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
@@ -136,7 +136,7 @@ impl<V> Lags<V> {
         // it.
         let comes_back = now.iter().any(|(id, _)| id <= self.largest_id && !places.has(id));
         if comes_back || places.mean_with(&now, is_elsewhere) > 0.0 {
-            self.forget_samples();
+            self.past.clear();
         }
     }
 
@@ -152,9 +152,10 @@ impl<V> Lags<V> {
         let interval = self.sample_times.interval();
         let rounding = self.sample_times.rounding(time);
         if self.latest.is_none_or(|latest| (time - latest - interval).abs() > rounding) {
-            self.forget_samples();
+            self.past.clear();
         }
         self.latest = Some(time);
+        self.sample_times.advance_past(time);
         self.past.truncate(self.longest());
         self.past.push_front(sample);
         let latest = &self.past[0];
@@ -166,20 +167,10 @@ impl<V> Lags<V> {
         }
     }
 
-    /// Returns the sample taken `lag` intervals before the latest one.
-    fn before(&self, lag: usize) -> Option<&V> {
-        self.past.get(lag)
-    }
-
     /// Iterates over the lags as times, with the means.
     fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
         let interval = self.sample_times.interval();
         self.means.iter().enumerate().map(move |(lag, mean)| (lag as f64 * interval, mean.estimate()))
-    }
-
-    /// Forgets the samples, so that the next sample is a new origin.
-    fn forget_samples(&mut self) {
-        self.past.clear();
     }
 }
 
@@ -277,8 +268,8 @@ impl MeanSquaredDisplacement {
     /// Returns the slope over the second half of the lags, up to the latest sample.
     fn slope(&self) -> Option<f64> {
         let (longest, half) = (self.lags.longest(), self.lags.longest() / 2);
-        let (latest, middle, earliest) =
-            (self.lags.before(0)?, self.lags.before(half)?, self.lags.before(longest)?);
+        let [latest, middle, earliest] = [0, half, longest].map(|lag| self.lags.past.get(lag));
+        let (latest, middle, earliest) = (latest?, middle?, earliest?);
         let gain = squared_displacement(earliest, latest) - squared_displacement(middle, latest);
         Some(gain / ((longest - half) as f64 * self.lags.sample_times.interval()))
     }
@@ -289,42 +280,43 @@ fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
     from.mean_with(to, |from, to| from.distance_squared(*to))
 }
 
-impl Observer for MeanSquaredDisplacement {
-    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        self.lags.begin(start);
-        Ok(())
-    }
+/// Writes the methods that an observer leaves to its lags: starts, ends, and the time of the next sample.
+macro_rules! left_to_lags {
+    () => {
+        fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
+            self.lags.begin(start);
+            Ok(())
+        }
 
-    fn next_sample(&self) -> f64 {
-        self.lags.sample_times.upcoming()
-    }
+        fn next_sample(&self) -> f64 {
+            self.lags.sample_times.upcoming()
+        }
+
+        fn on_end(&mut self, end: &Snapshot<'_>) {
+            self.lags.pause(end);
+        }
+    };
+}
+
+impl Observer for MeanSquaredDisplacement {
+    left_to_lags!();
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let (periods, places) = (snapshot.domain().periods(), places_in(snapshot));
         if self.periods != periods {
             self.periods = periods;
-            self.lags.forget_samples();
+            self.lags.past.clear();
         }
         self.lags.push(snapshot.time(), places, squared_displacement);
         if let Some(slope) = self.slope().filter(|slope| !slope.is_nan()) {
             self.diffusion.push(0.25 * slope);
         }
-        self.lags.sample_times.advance_past(snapshot.time());
-    }
-
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.lags.pause(end);
     }
 }
 
-impl Table for MeanSquaredDisplacement {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("time", "time")], &[("squared_displacement", "length^2")])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.iter().map(|(time, value)| row(&[time], &[value])))
-    }
+table! { MeanSquaredDisplacement, this: for (time, value) in this.iter();
+    "time" ["time"]: time;
+    "squared_displacement" ["length^2"]: value
 }
 
 /// A value that can be correlated with another value of the same type.
@@ -442,32 +434,15 @@ impl<Q: Observable> TimeCorrelation<Q> {
 }
 
 impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
-    fn on_start(&mut self, start: &Snapshot<'_>) -> Result<(), ObserverError> {
-        self.lags.begin(start);
-        Ok(())
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.lags.sample_times.upcoming()
-    }
+    left_to_lags!();
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let value = self.observable.measure(snapshot);
         self.lags.push(snapshot.time(), value, InnerProduct::inner_product);
-        self.lags.sample_times.advance_past(snapshot.time());
-    }
-
-    fn on_end(&mut self, end: &Snapshot<'_>) {
-        self.lags.pause(end);
     }
 }
 
-impl<Q: Observable> Table for TimeCorrelation<Q> {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("time", "time")], &[("correlation", "observable^2")])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.iter().map(|(time, value)| row(&[time], &[value])))
-    }
+table! { TimeCorrelation<Q: Observable>, this: for (time, value) in this.iter();
+    "time" ["time"]: time;
+    "correlation" ["observable^2"]: value
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::sample_times::Stretch;
-use super::table::Table;
-use super::{Collision, Heading, Observer, ObserverError, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::table::table;
+use super::{Collision, Observer, ObserverError, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
 use crate::{Disk, ParameterError};
@@ -323,15 +323,12 @@ impl Observer for Crossings {
     }
 }
 
-/// The columns are the end of each interval, the crossings in both directions, and their flux.
-impl Table for Crossings {
-    fn headings(&self) -> Vec<Heading> {
-        [("time", "time"), ("forward", "1"), ("backward", "1"), ("flux", "1/time")].map(Heading::from).into()
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let counts = self.forward.iter().zip(&self.backward).zip(self.fluxes());
-        let rows = self.times.iter().zip(counts);
-        Box::new(rows.map(|(&time, ((&there, &back), flux))| vec![time, there as f64, back as f64, flux]))
-    }
+table! {
+    /// The columns are the end of each interval, the crossings in both directions, and their flux.
+    Crossings, this: for (((&time, &there), &back), flux) in
+        this.times.iter().zip(&this.forward).zip(&this.backward).zip(this.fluxes());
+    "time" ["time"]: time,
+    "forward" ["1"]: there as f64,
+    "backward" ["1"]: back as f64,
+    "flux" ["1/time"]: flux
 }

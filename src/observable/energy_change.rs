@@ -3,8 +3,8 @@
 use super::by_wall::ByWall;
 use super::grid::check_heights;
 use super::sample_times::System;
-use super::table::{ENERGY, Table, headings, row};
-use super::{Accumulator, Collision, Heading, Observer, ObserverError, Partner, Snapshot};
+use super::table::{ENERGY, table};
+use super::{Accumulator, Collision, Observer, ObserverError, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Bins, BlockedMean};
 
@@ -55,6 +55,12 @@ impl EnergyChange {
     pub fn wall(&self, name: &str) -> &BlockedMean {
         self.walls.get(name).unwrap_or(&NEVER_TOUCHED)
     }
+
+    /// Returns the change in collisions of disks, and in those with each wall that was touched.
+    fn partners(&self) -> impl Iterator<Item = (f64, &BlockedMean)> {
+        let walls = (0..).map(f64::from).zip(self.walls.values()).filter(|(_, mean)| mean.count() > 0);
+        std::iter::once((f64::NAN, &self.disks)).chain(walls)
+    }
 }
 
 impl Observer for EnergyChange {
@@ -80,17 +86,12 @@ impl Observer for EnergyChange {
     }
 }
 
-/// The walls are numbered in the order of the first run's boundary.
-impl Table for EnergyChange {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("wall", "1"), ("collisions", "1")], &[("energy_change", ENERGY)])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let walls = (0..).map(f64::from).zip(self.walls.values()).filter(|(_, mean)| mean.count() > 0);
-        let partners = std::iter::once((f64::NAN, &self.disks)).chain(walls);
-        Box::new(partners.map(|(wall, mean)| row(&[wall, mean.count() as f64], &[mean.estimate()])))
-    }
+table! {
+    /// The walls are numbered in the order of the first run's boundary.
+    EnergyChange, this: for (wall, mean) in this.partners();
+    "wall" ["1"]: wall,
+    "collisions" ["1"]: mean.count() as f64;
+    "energy_change" [ENERGY]: mean.estimate()
 }
 
 /// A layer of an [`EnergyChangeProfile`].
@@ -211,19 +212,12 @@ impl Accumulator for EnergyChangeProfile {
     }
 }
 
-impl Table for EnergyChangeProfile {
-    fn headings(&self) -> Vec<Heading> {
-        let names = ["energy_change", "translational_temperature", "rotational_temperature"];
-        headings(&[("height", "length"), ("collisions", "1")], &names.map(|name| (name, ENERGY)))
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.layers.iter().map(|layer| {
-            let temperatures = [&layer.translational_temperature, &layer.rotational_temperature];
-            let means = [&layer.energy_change, temperatures[0], temperatures[1]].map(BlockedMean::estimate);
-            row(&[layer.height, layer.energy_change.count() as f64], &means)
-        }))
-    }
+table! { EnergyChangeProfile, this: for layer in this.layers.iter();
+    "height" ["length"]: layer.height,
+    "collisions" ["1"]: layer.energy_change.count() as f64;
+    "energy_change" [ENERGY]: layer.energy_change.estimate(),
+    "translational_temperature" [ENERGY]: layer.translational_temperature.estimate(),
+    "rotational_temperature" [ENERGY]: layer.rotational_temperature.estimate()
 }
 
 crate::gate::from_file! {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::grid::{CellSums, FreeShares, check_area, check_heights};
-use super::table::{ENERGY, Table, headings};
-use super::{Accumulator, Grid, Heading, Snapshot};
+use super::table::{ENERGY, table};
+use super::{Accumulator, Grid, Snapshot};
 use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::statistics::Bins;
@@ -182,14 +182,9 @@ impl Accumulator for HeightProfile {
     }
 }
 
-impl Table for HeightProfile {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("height", "length"), ("packing_fraction", "1")], &[])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.iter().map(|(height, fraction)| vec![height, fraction]))
-    }
+table! { HeightProfile, this: for (height, fraction) in this.iter();
+    "height" ["length"]: height,
+    "packing_fraction" ["1"]: fraction
 }
 
 crate::gate::from_file! {
@@ -333,30 +328,17 @@ impl Accumulator for Fields {
     }
 }
 
-impl Table for Fields {
-    fn headings(&self) -> Vec<Heading> {
-        let places = [
-            ("x", "length"),
-            ("y", "length"),
-            ("count", "1"),
-            ("number_density", "1/length^2"),
-            ("packing_fraction", "1"),
-        ];
-        let motions =
-            [("velocity_x", "length/time"), ("velocity_y", "length/time"), ("angular_velocity", "1/time")];
-        let temperatures = [("translational_temperature", ENERGY), ("rotational_temperature", ENERGY)];
-        headings(&[&places[..], &motions, &temperatures].concat(), &[])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.iter().map(|cell| {
-            let FieldCell { center, velocity, .. } = cell;
-            let places = [center.x, center.y, cell.count as f64, cell.number_density, cell.packing_fraction];
-            let motions = [velocity.x, velocity.y, cell.angular_velocity];
-            let temperatures = [cell.translational_temperature, cell.rotational_temperature];
-            [&places[..], &motions, &temperatures].concat()
-        }))
-    }
+table! { Fields, this: for cell in this.iter();
+    "x" ["length"]: cell.center.x,
+    "y" ["length"]: cell.center.y,
+    "count" ["1"]: cell.count as f64,
+    "number_density" ["1/length^2"]: cell.number_density,
+    "packing_fraction" ["1"]: cell.packing_fraction,
+    "velocity_x" ["length/time"]: cell.velocity.x,
+    "velocity_y" ["length/time"]: cell.velocity.y,
+    "angular_velocity" ["1/time"]: cell.angular_velocity,
+    "translational_temperature" [ENERGY]: cell.translational_temperature,
+    "rotational_temperature" [ENERGY]: cell.rotational_temperature
 }
 
 crate::gate::from_file! {

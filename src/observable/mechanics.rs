@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use super::table::{ENERGY, tabular};
 use super::{Grid, Heading, Observable, Snapshot, Tabular};
 use crate::Disk;
 use crate::boundary::direction;
@@ -76,15 +77,10 @@ fn circular_mean(
     }
 }
 
-impl Tabular for CenterOfMass {
-    fn headings(&self) -> Vec<Heading> {
-        vec![Heading::new("center_x", "length"), Heading::new("center_y", "length")]
-    }
-
-    fn add_numbers(&self, value: &DVec2, row: &mut Vec<f64>) {
-        row.extend([value.x, value.y]);
-    }
-}
+tabular! { CenterOfMass, center => {
+    "center_x" ["length"]: center.x,
+    "center_y" ["length"]: center.y,
+}}
 
 /// Mean energies per disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,17 +139,11 @@ fn potential(snapshot: &Snapshot<'_>, disk: &Disk) -> f64 {
     disk.mass() * gravity.downward() * place.y - disk.mass() * gravity.rightward() * place.x
 }
 
-impl Tabular for Energies {
-    fn headings(&self) -> Vec<Heading> {
-        ["translational", "rotational", "potential"]
-            .map(|part| Heading::new(format!("{part}_energy"), "energy"))
-            .into()
-    }
-
-    fn add_numbers(&self, value: &EnergyPerDisk, row: &mut Vec<f64>) {
-        row.extend([value.translational, value.rotational, value.potential]);
-    }
-}
+tabular! { Energies, energies => {
+    "translational_energy" [ENERGY]: energies.translational,
+    "rotational_energy" [ENERGY]: energies.rotational,
+    "potential_energy" [ENERGY]: energies.potential,
+}}
 
 /// The motion of a wall or part with a mass, as a [`Piston`](crate::wall::Piston) has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -217,23 +207,13 @@ impl Observable for FreeWall {
     }
 }
 
-impl Tabular for FreeWall {
-    fn headings(&self) -> Vec<Heading> {
-        let names = [
-            ("displacement_x", "length"),
-            ("displacement_y", "length"),
-            ("wall_velocity_x", "length/time"),
-            ("wall_velocity_y", "length/time"),
-            ("wall_energy", "energy"),
-        ];
-        names.map(Heading::from).into()
-    }
-
-    fn add_numbers(&self, value: &FreeWallMotion, row: &mut Vec<f64>) {
-        let FreeWallMotion { displacement, velocity, energy } = value;
-        row.extend([displacement.x, displacement.y, velocity.x, velocity.y, *energy]);
-    }
-}
+tabular! { FreeWall, motion => {
+    "displacement_x" ["length"]: motion.displacement.x,
+    "displacement_y" ["length"]: motion.displacement.y,
+    "wall_velocity_x" ["length/time"]: motion.velocity.x,
+    "wall_velocity_y" ["length/time"]: motion.velocity.y,
+    "wall_energy" [ENERGY]: motion.energy,
+}}
 
 /// Granular temperatures per degree of freedom, in units of energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -249,11 +229,6 @@ pub struct Temperature {
 }
 
 impl Temperature {
-    /// Creates temperatures from the horizontal, vertical and rotational temperature.
-    pub const fn new(horizontal: f64, vertical: f64, rotational: f64) -> Self {
-        Self { horizontal, vertical, rotational }
-    }
-
     /// Returns the translational temperature, T = (T_x + T_y)/2.
     pub fn translational(&self) -> f64 {
         0.5 * (self.horizontal + self.vertical)
@@ -294,17 +269,11 @@ impl Observable for Temperatures {
     }
 }
 
-impl Tabular for Temperatures {
-    fn headings(&self) -> Vec<Heading> {
-        ["horizontal", "vertical", "rotational"]
-            .map(|part| Heading::new(format!("{part}_temperature"), "energy"))
-            .into()
-    }
-
-    fn add_numbers(&self, value: &Temperature, row: &mut Vec<f64>) {
-        row.extend([value.horizontal, value.vertical, value.rotational]);
-    }
-}
+tabular! { Temperatures, temperature => {
+    "horizontal_temperature" [ENERGY]: temperature.horizontal,
+    "vertical_temperature" [ENERGY]: temperature.vertical,
+    "rotational_temperature" [ENERGY]: temperature.rotational,
+}}
 
 /// The temperatures about the mean flow, from the velocities minus the mean velocity in each cell of a grid.
 ///
@@ -360,18 +329,13 @@ impl Observable for TemperaturesAboutFlow {
             rotational += cell.angular_velocity.squares;
             freedom += (cell.count - 1) as f64;
         }
-        Temperature::new(horizontal / freedom, vertical / freedom, rotational / freedom)
+        let [horizontal, vertical, rotational] = [horizontal, vertical, rotational].map(|sum| sum / freedom);
+        Temperature { horizontal, vertical, rotational }
     }
 }
 
-impl Tabular for TemperaturesAboutFlow {
-    fn headings(&self) -> Vec<Heading> {
-        ["horizontal", "vertical", "rotational"]
-            .map(|name| Heading::new(format!("{name}_temperature_about_flow"), "energy"))
-            .into()
-    }
-
-    fn add_numbers(&self, value: &Temperature, row: &mut Vec<f64>) {
-        row.extend([value.horizontal, value.vertical, value.rotational]);
-    }
-}
+tabular! { TemperaturesAboutFlow, temperature => {
+    "horizontal_temperature_about_flow" [ENERGY]: temperature.horizontal,
+    "vertical_temperature_about_flow" [ENERGY]: temperature.vertical,
+    "rotational_temperature_about_flow" [ENERGY]: temperature.rotational,
+}}

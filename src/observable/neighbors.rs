@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::grid::{checked_region, holds, inside};
-use super::table::{Table, headings, row};
-use super::{Accumulator, Heading, Snapshot};
+use super::table::table;
+use super::{Accumulator, Snapshot};
 use crate::boundary::{Domain, Region, Squares};
 use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
@@ -221,11 +221,6 @@ impl PairCorrelation {
         self.bins.edge(self.bins.count())
     }
 
-    /// Returns the number of samples that were taken.
-    pub const fn samples(&self) -> u64 {
-        self.centers.count()
-    }
-
     /// Iterates over the distances of the middles of the bins, with g(r) there, which is NaN as long as there
     /// are no disks.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
@@ -329,14 +324,9 @@ impl Accumulator for PairCorrelation {
     }
 }
 
-impl Table for PairCorrelation {
-    fn headings(&self) -> Vec<Heading> {
-        headings(&[("distance", "length")], &[("pair_correlation", "1")])
-    }
-
-    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        Box::new(self.iter().map(|(distance, value)| row(&[distance], &[value])))
-    }
+table! { PairCorrelation, this: for (distance, value) in this.iter();
+    "distance" ["length"]: distance;
+    "pair_correlation" ["1"]: value
 }
 
 crate::gate::from_file! {

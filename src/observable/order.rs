@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use super::table::tabular;
 use super::{Heading, Observable, Snapshot, Tabular};
 use crate::ParameterError;
 use crate::quantity::positive;
@@ -72,15 +73,10 @@ impl Observable for OrderParameters {
     }
 }
 
-impl Tabular for OrderParameters {
-    fn headings(&self) -> Vec<Heading> {
-        vec![Heading::new("one_roll", "length/time"), Heading::new("two_rolls", "length/time")]
-    }
-
-    fn add_numbers(&self, value: &ConvectionOrder, row: &mut Vec<f64>) {
-        row.extend([value.one_roll, value.two_rolls]);
-    }
-}
+tabular! { OrderParameters, order => {
+    "one_roll" ["length/time"]: order.one_roll,
+    "two_rolls" ["length/time"]: order.two_rolls,
+}}
 
 /// The hexatic order of a snapshot, and the number of neighbors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -165,17 +161,11 @@ fn sixth_power(z: DVec2) -> DVec2 {
     square.rotate(square).rotate(square)
 }
 
-impl Tabular for HexaticOrder {
-    fn headings(&self) -> Vec<Heading> {
-        ["local_hexatic_order", "global_hexatic_order", "coordination"]
-            .map(|name| Heading::new(name, "1"))
-            .into()
-    }
-
-    fn add_numbers(&self, value: &Hexatic, row: &mut Vec<f64>) {
-        row.extend([value.local, value.global, value.coordination]);
-    }
-}
+tabular! { HexaticOrder, order => {
+    "local_hexatic_order" ["1"]: order.local,
+    "global_hexatic_order" ["1"]: order.global,
+    "coordination" ["1"]: order.coordination,
+}}
 
 crate::gate::from_file! {
     HexaticOrder { range: f64 } => Self::new(range)

@@ -1,6 +1,6 @@
 //! Series of the values of an observable, and accumulators, with the clock that both have.
 
-use std::ops::{Deref, DerefMut};
+use std::ops::Deref;
 
 use super::sample_times::System;
 use super::{Collision, Observable, Observer, ObserverError, SampleTimes, Snapshot, Verdict, contract};
@@ -108,12 +108,6 @@ impl<A> Deref for Sampled<A> {
 
     fn deref(&self) -> &A {
         &self.accumulator
-    }
-}
-
-impl<A> DerefMut for Sampled<A> {
-    fn deref_mut(&mut self) -> &mut A {
-        &mut self.accumulator
     }
 }
 

@@ -255,17 +255,13 @@ impl<'a> Snapshot<'a> {
     /// With a radius of 0, the result is the area that matter can fill. A part of the region beyond the
     /// domain has no area.
     pub fn area(&self, region: &Region, radius: f64) -> Option<f64> {
-        self.area_inside(&self.inside(region), radius)
+        let (Walls { boundary, time }, inside) = (self.walls?, self.inside(region));
+        if inside.min.cmplt(inside.max).all() { boundary.area(&inside, radius, time) } else { Some(0.0) }
     }
 
     /// Returns the part of a region in the domain. On a torus, the rest are images.
     fn inside(&self, region: &Region) -> Region {
         region.within(&self.domain.region())
-    }
-
-    fn area_inside(&self, inside: &Region, radius: f64) -> Option<f64> {
-        let Walls { boundary, time } = self.walls?;
-        if inside.min.cmplt(inside.max).all() { boundary.area(inside, radius, time) } else { Some(0.0) }
     }
 
     /// Returns the share of a region that matter can fill, or `None` if the share is not known. A snapshot
@@ -275,7 +271,7 @@ impl<'a> Snapshot<'a> {
         const WHOLE: f64 = 1.0 - 1e-12;
         let inside = self.inside(region);
         let is_clear = || self.walls.is_none() || self.is_clear(&inside);
-        let area = self.area_inside(&inside, 0.0).or_else(|| is_clear().then(|| inside.area()))?;
+        let area = self.area(region, 0.0).or_else(|| is_clear().then(|| inside.area()))?;
         let share = area / region.area();
         Some(if share > WHOLE { 1.0 } else { share })
     }

@@ -144,11 +144,6 @@ impl Stress {
         self.collisional.estimate()
     }
 
-    /// Returns the number of intervals that were measured.
-    pub fn samples(&self) -> u64 {
-        self.total.pressure.count()
-    }
-
     /// Returns the fraction of the segment between two positions that lies in the region, summed over the
     /// images of the segment in a periodic box.
     fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {

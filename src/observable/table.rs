@@ -93,6 +93,23 @@ pub trait Tabular: Observable {
     fn add_numbers(&self, value: &Self::Value, row: &mut Vec<f64>);
 }
 
+/// Implements `Tabular` for an observable: each column by its name, its unit and its number.
+macro_rules! tabular {
+    ($observable:ty, $value:ident => { $($name:literal [$unit:expr]: $number:expr),+ $(,)? }) => {
+        impl Tabular for $observable {
+            fn headings(&self) -> Vec<Heading> {
+                vec![$(Heading::new($name, $unit)),+]
+            }
+
+            fn add_numbers(&self, $value: &Self::Value, row: &mut Vec<f64>) {
+                row.extend([$($number),+]);
+            }
+        }
+    };
+}
+
+pub(super) use tabular;
+
 /// An observable of one number, with its name and unit; made by
 /// [`MeasuredBy::named`](super::MeasuredBy::named).
 #[derive(Debug, Clone)]
@@ -198,16 +215,44 @@ pub trait Table {
     where
         Self: Sized,
     {
-        let labels = labels(self)?;
-        writeln!(out, "{}", labels.join(","))?;
+        let headings = self.headings();
+        check(&headings)?;
+        writeln!(out, "{}", headings.iter().map(label).collect::<Vec<_>>().join(","))?;
         for row in self.rows() {
-            let cells: Vec<String> =
-                complete(&row, &labels)?.iter().map(|number| format!("{number:?}")).collect();
+            if row.len() != headings.len() {
+                let message = format!("a row has {} numbers for {} headings", row.len(), headings.len());
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+            }
+            let cells: Vec<String> = row.iter().map(|number| format!("{number:?}")).collect();
             writeln!(out, "{}", cells.join(","))?;
         }
         out.flush()
     }
 }
+
+/// Implements `Table`: the columns of each row by their names, units and numbers, and after a semicolon by
+/// names, units and estimates.
+macro_rules! table {
+    (
+        $(#[$attribute:meta])*
+        $table:ident $(<$part:ident: $bound:ident>)?, $this:ident: for $item:pat in $rows:expr;
+        $($name:literal [$unit:expr]: $number:expr),+ $(; $($mean:literal [$of_mean:expr]: $estimate:expr),+)?
+    ) => {
+        $(#[$attribute])*
+        impl $(<$part: $bound>)? crate::observable::Table for $table $(<$part>)? {
+            fn headings(&self) -> Vec<crate::observable::Heading> {
+                crate::observable::table::headings(&[$(($name, $unit)),+], &[$($(($mean, $of_mean)),+)?])
+            }
+
+            fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+                let ($this, row) = (self, crate::observable::table::row);
+                Box::new($rows.map(move |$item| row(&[$($number),+], &[$($($estimate),+)?])))
+            }
+        }
+    };
+}
+
+pub(super) use table;
 
 impl<Q: Tabular> Table for Series<Q> {
     fn headings(&self) -> Vec<Heading> {
@@ -274,22 +319,6 @@ pub(super) fn histogram_rows<const COUNT: usize>(
         }
         Some(all)
     }))
-}
-
-/// Returns the headings of all columns as they appear in files.
-fn labels(table: &impl Table) -> io::Result<Vec<String>> {
-    let headings = table.headings();
-    check(&headings)?;
-    Ok(headings.iter().map(label).collect())
-}
-
-/// Returns a row, or an error if its length differs from the number of labels.
-fn complete<'a>(row: &'a [f64], labels: &[String]) -> io::Result<&'a [f64]> {
-    if row.len() == labels.len() {
-        return Ok(row);
-    }
-    let message = format!("a row has {} numbers for {} headings", row.len(), labels.len());
-    Err(io::Error::new(io::ErrorKind::InvalidInput, message))
 }
 
 fn label(heading: &Heading) -> String {

@@ -128,14 +128,9 @@ impl Estimate {
     /// of [`block_average`](super::block_average)), all samples are equal, a sample is NaN, or there are
     /// fewer than two samples.
     pub const fn is_converged(&self) -> bool {
-        let is_known =
-            self.standard_error > 0.0 || (self.standard_error == 0.0 && !self.assumes_independence());
+        let are_equal = self.standard_error == 0.0 && matches!(self.basis, Basis::Independent);
+        let is_known = self.standard_error >= 0.0 && !are_equal;
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks) && is_known && !self.mean.is_nan()
-    }
-
-    /// Returns whether the error assumes independent samples.
-    const fn assumes_independence(&self) -> bool {
-        matches!(self.basis, Basis::Independent)
     }
 
     /// Returns the number of decimals with which the error shows two digits.

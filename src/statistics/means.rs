@@ -83,19 +83,26 @@ impl RunningMean {
     }
 }
 
-impl Extend<f64> for RunningMean {
-    fn extend<T: IntoIterator<Item = f64>>(&mut self, values: T) {
-        values.into_iter().for_each(|value| self.push(value));
-    }
+/// Implements `Extend` and `FromIterator` for means of numbers that come one by one.
+macro_rules! collect_numbers {
+    ($($mean:ident),+) => {
+        $(impl Extend<f64> for $mean {
+            fn extend<T: IntoIterator<Item = f64>>(&mut self, values: T) {
+                values.into_iter().for_each(|value| self.push(value));
+            }
+        }
+
+        impl FromIterator<f64> for $mean {
+            fn from_iter<T: IntoIterator<Item = f64>>(values: T) -> Self {
+                let mut mean = Self::default();
+                mean.extend(values);
+                mean
+            }
+        })+
+    };
 }
 
-impl FromIterator<f64> for RunningMean {
-    fn from_iter<T: IntoIterator<Item = f64>>(values: T) -> Self {
-        let mut mean = Self::default();
-        mean.extend(values);
-        mean
-    }
-}
+collect_numbers! { RunningMean, BlockedMean }
 
 /// Largest allowed magnitude of a sample, so that a sum of squares stays finite.
 const LARGEST: f64 = 1e100;
@@ -343,19 +350,5 @@ impl BlockedMean {
         });
         let growth = error / naive;
         Estimate::blocked(whole.mean(), raised, whole.count(), growth * growth, plateau.is_some())
-    }
-}
-
-impl Extend<f64> for BlockedMean {
-    fn extend<T: IntoIterator<Item = f64>>(&mut self, values: T) {
-        values.into_iter().for_each(|value| self.push(value));
-    }
-}
-
-impl FromIterator<f64> for BlockedMean {
-    fn from_iter<T: IntoIterator<Item = f64>>(values: T) -> Self {
-        let mut mean = Self::default();
-        mean.extend(values);
-        mean
     }
 }

@@ -361,18 +361,11 @@ pub struct StateCriteria {
     packing_fraction: f64,
     collapsed_order: f64,
     two_rolls: f64,
-    least_weight: f64,
 }
 
 impl Default for StateCriteria {
     fn default() -> Self {
-        Self {
-            noise_multiple: 3.0,
-            packing_fraction: 0.60,
-            collapsed_order: 0.03,
-            two_rolls: 2.0,
-            least_weight: 0.05,
-        }
+        Self { noise_multiple: 3.0, packing_fraction: 0.60, collapsed_order: 0.03, two_rolls: 2.0 }
     }
 }
 
@@ -430,16 +423,6 @@ impl StateCriteria {
         Ok(Self { two_rolls: positive("ratio of two rolls to one", ratio)?, ..self })
     }
 
-    /// Sets the smallest weight that one roll and two rolls must each have to count as coexisting; 0.05
-    /// unless set.
-    ///
-    /// # Errors
-    /// If the weight is not in `[0, 0.5]`.
-    pub fn with_least_weight(self, weight: f64) -> Result<Self, ParameterError> {
-        let valid = (0.0..=0.5).contains(&weight);
-        Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
-    }
-
     /// Finds the states of these samples above the thermal noise `noise`.
     ///
     /// `layer` is the [densest layer](granular_edmd::observable::HeightProfile::densest_layer) of the height
@@ -459,11 +442,12 @@ impl StateCriteria {
         let clusters = distinct_clusters(&points, noise, SEED)?;
         let compact = layer.is_some_and(|layer| self.is_compact(layer));
         let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::NoRoll };
-        let has_died = compact && mean_of_two_rolls(&clusters).abs() < self.collapsed_order;
+        let two_rolls: f64 = clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum();
+        let has_died = compact && two_rolls.abs() < self.collapsed_order;
         let flow = |cluster| if has_died { None } else { self.flow(cluster, noise) };
         let name = |cluster| flow(cluster).unwrap_or(without_flow);
         let states = clusters.iter().map(name).collect();
-        Ok(Classification { clusters, states, least_weight: self.least_weight })
+        Ok(Classification { clusters, states })
     }
 
     fn is_compact(&self, layer: DenseLayer) -> bool {
@@ -485,17 +469,14 @@ impl StateCriteria {
     }
 }
 
-/// Returns the mean of Ψ₂ over all samples.
-fn mean_of_two_rolls(clusters: &Clusters) -> f64 {
-    clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum()
-}
+/// The smallest weight that one roll and two rolls must each have to count as coexisting.
+const LEAST_WEIGHT: f64 = 0.05;
 
 /// The clusters of a run with their names; made by [`StateCriteria::classify`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Classification {
     clusters: Clusters,
     states: Vec<ConvectiveState>,
-    least_weight: f64,
 }
 
 impl Classification {
@@ -534,16 +515,16 @@ impl Classification {
         self.iter().filter(|&(state, _)| counts(state)).map(|(_, cluster)| cluster.weight()).sum()
     }
 
-    /// Returns the region of Fig. 5. It is coexistence if one roll and two rolls each have at least the
-    /// [least weight](StateCriteria::with_least_weight), while no roll and the collapsed state together have
-    /// less. Otherwise, the largest weight decides.
+    /// Returns the region of Fig. 5. It is coexistence if one roll and two rolls each have at least a weight
+    /// of 0.05, while no roll and the collapsed state together have less. Otherwise, the largest weight
+    /// decides.
     ///
     /// Near the collapse, two rolls come and go, and lean to one side in between. This is a transition from
     /// flow to no flow, not a coexistence of one roll and two rolls.
     pub fn regime(&self) -> ConvectiveRegime {
         let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
         let collapsed = self.weight(ConvectiveState::Collapsed);
-        let least = |weight: f64| weight > 0.0 && weight >= self.least_weight;
+        let least = |weight: f64| weight >= LEAST_WEIGHT;
         if self.state() == ConvectiveState::Collapsed {
             ConvectiveRegime::Collapsed
         } else if none >= one.max(two) {

@@ -96,18 +96,19 @@ pub fn main_from<E: Experiment>(
     arguments: impl IntoIterator<Item = OsString>,
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,
 ) -> u8 {
+    let done = |()| End::Done;
     let ended = match Arguments::parse_from(arguments).command {
-        Command::New { file } => plans::new(example, file.as_deref()),
-        Command::Explain { key } => plans::explain::<E>(key.as_deref()),
-        Command::Check { plan } => plans::check::<E>(&plan),
+        Command::New { file } => plans::new(example, file.as_deref()).map(done),
+        Command::Explain { key } => plans::explain::<E>(key.as_deref()).map(done),
+        Command::Check { plan } => plans::check::<E>(&plan).map(done),
         Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
-        Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
-        Command::Trajectory(wishes) => replay::trajectory::<E>(&wishes),
-        Command::Convert(wishes) => convert::convert(&wishes),
-        Command::Replay(wishes) => replay::replay::<E>(&wishes),
-        Command::Accept { folder } => accept::<E>(&folder),
-        Command::Bench { plan, json, quick } => plans::bench::<E>(&plan, json, quick),
+        Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()).map(done),
+        Command::Trajectory(wishes) => replay::trajectory::<E>(&wishes).map(done),
+        Command::Convert(wishes) => convert::convert(&wishes).map(done),
+        Command::Replay(wishes) => replay::replay::<E>(&wishes).map(done),
+        Command::Accept { folder } => accept::<E>(&folder).map(done),
+        Command::Bench { plan, json, quick } => plans::bench::<E>(&plan, json, quick).map(done),
     };
     match ended {
         Ok(end) => end as u8,
@@ -231,14 +232,13 @@ fn list<E: Experiment>(
     if values.len() > LISTED { say("  …") } else { Ok(()) }
 }
 
-fn tables<E: Experiment>(folder: &Path, out: Option<&Path>) -> Result<End, Failure> {
+fn tables<E: Experiment>(folder: &Path, out: Option<&Path>) -> Result<(), Failure> {
     let study = Study::<E>::open(folder)?;
     let finished = out.map_or_else(|| study.write_tables(), |out| study.write_tables_to(out))?;
-    say(&format!("tables of {finished} values are in {}", out.unwrap_or(folder).display()))?;
-    Ok(End::Done)
+    say(&format!("tables of {finished} values are in {}", out.unwrap_or(folder).display()))
 }
 
-fn accept<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+fn accept<E: Experiment>(folder: &Path) -> Result<(), Failure> {
     let differences = Study::<E>::accept_changes(folder)?;
     for difference in &differences {
         say(&difference.to_string())?;
@@ -247,8 +247,7 @@ fn accept<E: Experiment>(folder: &Path) -> Result<End, Failure> {
         "the study is of this code: there is nothing to accept"
     } else {
         "from here on, records are of this code: the column made_by of values.csv tells them from those before"
-    })?;
-    Ok(End::Done)
+    })
 }
 
 /// Returns a time on one core as text.

@@ -114,14 +114,12 @@ pub enum StudyError {
         /// The reason.
         reason: String,
     },
-    /// The study has no such ramp, or the grid has no such point.
-    #[error("there is no {what} {index}: the study has {count}, counted from 0")]
+    /// The study has no such ramp.
+    #[error("there is no ramp {ramp}: the study has {count}, counted from 0")]
     Absent {
-        /// `ramp` or `point`.
-        what: &'static str,
         /// The requested index.
-        index: usize,
-        /// The number of ramps or points.
+        ramp: usize,
+        /// The number of ramps.
         count: usize,
     },
     /// A file or folder cannot be read or written.

@@ -5,6 +5,7 @@ pub(super) mod value;
 
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::fmt;
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -15,7 +16,7 @@ use granular_edmd::ParameterError;
 use granular_edmd::quantity::positive;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-use super::parameters::{self, anywhere};
+use super::parameters;
 use super::store::Head;
 use super::{Difference, Experiment, Plan, PlanError, Study, StudyError};
 
@@ -460,9 +461,12 @@ impl Blocks {
     }
 }
 
-/// Rotates the blocks so that they begin at a random one.
+/// Rotates the blocks so that they begin at a random one, which has no influence on results.
 fn begun_anywhere(mut blocks: VecDeque<usize>) -> VecDeque<usize> {
-    blocks.rotate_left(anywhere(blocks.len()));
+    // The standard library seeds its hash tables from the operating system, so a random number needs no
+    // dependency.
+    let random = RandomState::new().build_hasher().finish();
+    blocks.rotate_left(random.checked_rem(blocks.len() as u64).unwrap_or(0) as usize);
     blocks
 }
 

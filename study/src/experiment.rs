@@ -106,6 +106,7 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
     label = "an `Experiment` is expected here",
     note = "implement `Experiment` for the type whose fields are your parameters"
 )]
+#[expect(unused_variables, reason = "what is shown need not be looked at")]
 pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Type of the collision rule.
     type Rule: CollisionRule;
@@ -195,7 +196,6 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// # Errors
     /// If these parameters do not give one.
     fn driving(&self, seed: u64) -> Result<Option<Box<dyn SavedDriving>>, ExperimentError> {
-        let _ = seed;
         Ok(None)
     }
 
@@ -209,7 +209,6 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// # Errors
     /// If the companion cannot be made: for example, it cannot write its file.
     fn companion(&self, start: &Start<'_>) -> Result<Option<Box<dyn Observer>>, ExperimentError> {
-        let _ = start;
         Ok(None)
     }
 
@@ -284,14 +283,12 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns whether this parameter (by its full name, such as `base.amplitude`) may change while the disks
     /// stay in place. Return false for a frequency.
     fn can_be_ramped(parameter: &str) -> bool {
-        let _ = parameter;
         true
     }
 
     /// Returns the name of the state in a record, for a refined ramp
     /// ([`Ramp::with_refinement`](super::Ramp::with_refinement)); `None` if the record shows no state.
     fn state(record: &Record<Self>) -> Option<String> {
-        let _ = record;
         None
     }
 }

@@ -17,7 +17,7 @@ use values::{Axis, tried};
 
 use super::errors::chain;
 use super::experiment::{Column, OF_TABLES, Table, error_names};
-use super::parameters::{self, Scalar, derived_seed, place, probe, seed_at, whole_name};
+use super::parameters::{self, Scalar, derived, place, probe, seed_at, whole_name};
 use super::{Experiment, ExperimentError, Leg, PlanError};
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
@@ -140,11 +140,6 @@ impl<E: Experiment> Plan<E> {
         &self.parts.protocol
     }
 
-    /// Returns the seed from which all other seeds follow.
-    pub const fn seed(&self) -> u64 {
-        self.parts.seed
-    }
-
     /// Returns the number of repeats of each point.
     pub const fn repeats(&self) -> usize {
         self.parts.repeats
@@ -178,7 +173,7 @@ impl<E: Experiment> Plan<E> {
         // The order of the axes does not matter.
         swept.sort_by_key(|(name, _)| *name);
         let point = swept.iter().fold(self.parts.seed, |seed, (name, (_, value))| seed_at(seed, name, value));
-        derived_seed(point, (ramp % self.parts.repeats) as u64)
+        derived(point, &((ramp % self.parts.repeats) as u64).to_le_bytes())
     }
 
     /// Returns the parameters that vary, with their settings in the given value. The list is empty if there

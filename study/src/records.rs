@@ -33,23 +33,11 @@ use super::{Experiment, Study, StudyError};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Point<E: Experiment> {
-    pub(super) index: usize,
-    pub(super) value: usize,
     /// The records of the finished repeats, at least one.
-    pub(super) records: Vec<Record<E>>,
+    records: Vec<Record<E>>,
 }
 
 impl<E: Experiment> Point<E> {
-    /// Returns the index of the point in the grid.
-    pub const fn index(&self) -> usize {
-        self.index
-    }
-
-    /// Returns the index of the value in the ramp.
-    pub const fn value_index(&self) -> usize {
-        self.value
-    }
-
     /// Returns the direction from which the ramp came to the value; `None` without a ramp.
     pub fn leg(&self) -> Option<Leg> {
         self.records[0].leg()
@@ -149,7 +137,7 @@ impl<E: Experiment> Study<E> {
         let ramps = index * repeats..(index + 1) * repeats;
         let records = ramps.filter_map(|ramp| self.known_record(ramp, value).transpose());
         let records = records.collect::<Result<Vec<_>, _>>()?;
-        Ok((!records.is_empty()).then_some(Point { index, value, records }))
+        Ok((!records.is_empty()).then_some(Point { records }))
     }
 
     /// Reads, one by one, all values that have a finished repeat, at all points of the grid.

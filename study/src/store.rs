@@ -12,15 +12,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use granular_edmd::file::Seal;
 use log::{HEAD, Log, Piece};
 use serde::de::DeserializeOwned;
 
 use super::StudyError;
 use super::folder::{BLOCKS, decoded, try_lock};
-
-/// Mark of a log of records, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal::new(*b"GRANSTUD", 7);
 
 /// Largest number of blocks. With 64 processes, a few percent of the time is lost at the end, when some
 /// processes have a block left and the others none. The folder of a study stays below a thousand files.
@@ -186,7 +182,7 @@ impl Store {
 
 impl Block {
     const fn new(path: PathBuf) -> Self {
-        Self { log: Log::new(path, SEAL), entries: Vec::new(), at_risk: 0.0 }
+        Self { log: Log::new(path), entries: Vec::new(), at_risk: 0.0 }
     }
 
     fn refresh(&mut self) -> Result<(), StudyError> {

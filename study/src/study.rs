@@ -218,7 +218,7 @@ impl<E: Experiment> Study<E> {
     /// Checks that a ramp with this index exists.
     pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
         let count = self.plan.ramp_count();
-        if ramp < count { Ok(()) } else { Err(StudyError::Absent { what: "ramp", index: ramp, count }) }
+        if ramp < count { Ok(()) } else { Err(StudyError::Absent { ramp, count }) }
     }
 
     pub(super) fn origin(&self, ramp: usize, value: usize) -> Origin {

@@ -256,7 +256,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         // A double cannot represent every 64-bit integer. With a letter before the digits, every reader of
         // tables takes the seed for text.
         let seed = format!("x{:016x}", record.seed());
-        let (maker, outcome) = (record.contents.origin.maker.to_string(), record.outcome().name());
+        let (maker, outcome) = (record.contents.origin.maker.cell(), record.outcome().name());
         let mut row = vec![seed.into(), maker.into(), outcome.into(), record.samples().len().into()];
         let mut estimates = Vec::new();
         for column in self.columns.iter().filter(|column| column.in_values) {

@@ -344,12 +344,12 @@ pub enum Sides {
 
 impl Base {
     fn period(&self) -> Option<f64> {
-        let &(Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. }) =
-            self
-        else {
-            return None;
-        };
-        BiParabolic::new(1.0, angular_frequency).ok().and_then(|motion| motion.period())
+        match *self {
+            Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. } => {
+                BiParabolic::new(1.0, angular_frequency).ok()?.period()
+            }
+            Self::Thermal { .. } => None,
+        }
     }
 
     /// Returns the typical speed that the base gives to disks of mass 1.

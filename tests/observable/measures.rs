@@ -45,7 +45,7 @@ fn points_at_random_places_are_not_correlated() -> Outcome {
             let disks = points(100, &mut chance)?;
             correlation.add(&Snapshot::new(f64::from(time), &disks, domain, 0.0)).unwrap();
         }
-        assert_eq!(correlation.samples(), 499);
+        assert!(correlation.iter().all(|(_, value)| value.samples() == 499));
         assert!(is_one(correlation.iter()), "{domain:?}: {:?}", correlation.iter().collect::<Vec<_>>());
     }
     Ok(())

@@ -227,19 +227,19 @@ fn shape_at(entries: &[u8], frame: usize) -> Shape {
     let own = || entries.chunks_exact(ENTRY).take(CHUNKS.len()).take_while(is_of_frame);
     let rows = |chunk| {
         let rows = own().find(|entry| id(entry) == chunk).map(|entry| number(entry, 8));
-        rows.and_then(|rows| u32::try_from(rows).ok()).map_or(0, |rows| rows as usize)
+        rows.and_then(|rows| u32::try_from(rows).ok()).map_or(0, u64::from)
     };
-    Shape { number: frame, disks: rows(5), kinds: rows(4), walls: rows(20) }
+    Shape { number: frame as u64, disks: rows(5), kinds: rows(4), walls: rows(20) }
 }
 
 /// Returns the entries of a frame whose chunks begin at byte `start`, and the position after the last chunk.
 /// Chunks without rows have no entry.
 fn entries(shape: Shape, start: u64) -> (Vec<u8>, u64) {
     let (mut entries, mut location) = (Vec::new(), start);
-    for (id, &(_, kind, columns, rows)) in (0_u16..).zip(&CHUNKS) {
-        let rows = shape.rows(rows);
+    for (id, &(_, kind, columns, rows_of)) in (0_u16..).zip(&CHUNKS) {
+        let rows = rows_of(&shape);
         if rows > 0 {
-            let numbers = [shape.number as u64, rows, location];
+            let numbers = [shape.number, rows, location];
             entries.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
             entries.extend(columns.to_le_bytes());
             entries.extend(id.to_le_bytes());

@@ -2,14 +2,14 @@
 
 use std::cell::RefCell;
 use std::f64::consts::PI;
-use std::io::{BufRead, Cursor, Read, Seek};
+use std::io::{Read, Seek};
 use std::rc::Rc;
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 
-use super::{Archive, Chunk};
+use super::{Archive, Chunk, F32};
 use crate::ReadError;
 use crate::column::Column;
 use crate::lines::{as_whole, checked_box, is_upright};
@@ -24,23 +24,11 @@ pub(crate) fn is_gsd(head: &[u8]) -> bool {
     head.starts_with(&0x65DF_65DF_65DF_65DF_u64.to_le_bytes())
 }
 
-/// Returns the frames of an input, which has to be in memory, since the index may be anywhere.
-pub(crate) fn frames<'a>(mut input: impl BufRead + 'a) -> Frames<'a> {
-    let mut bytes = Vec::new();
-    match input.read_to_end(&mut bytes) {
-        Ok(_) => frames_of_file(Cursor::new(bytes)),
-        Err(error) => Box::new(std::iter::once(Err(ReadError::gsd(error.to_string())))),
-    }
-}
-
 /// Returns the frames of a file, each of which is read only on request.
-pub(crate) fn frames_of_file<'a>(input: impl Read + Seek + 'a) -> Frames<'a> {
-    let archive = match Archive::open(input) {
-        Ok(archive) => archive,
-        Err(error) => return Box::new(std::iter::once(Err(error))),
-    };
+pub(crate) fn frames<'a>(input: impl Read + Seek + 'a) -> Result<Frames<'a>, ReadError> {
+    let archive = Archive::open(input)?;
     let (count, archive) = (archive.frames(), Rc::new(RefCell::new(archive)));
-    Box::new((0..count).map(move |frame| {
+    Ok(Box::new((0..count).map(move |frame| {
         let step = archive.borrow_mut().chunk(frame, "configuration/step")?;
         let step = step.map_or(0, |step| step.number(0, 0) as u64);
         let archive = Rc::clone(&archive);
@@ -50,7 +38,7 @@ pub(crate) fn frames_of_file<'a>(input: impl Read + Seek + 'a) -> Frames<'a> {
                 View { archive: &mut archive.borrow_mut(), frame, settings, notes: Vec::new() }.table()
             }),
         })
-    }))
+    })))
 }
 
 /// A frame of a file.
@@ -117,16 +105,18 @@ impl<R: Read + Seek> View<'_, R> {
         let Some(position) = position.or_else(|| (count == 0).then(Chunk::default)) else {
             return Err(self.wrong("the chunk `particles/position` is missing"));
         };
-        let (center, columns) = (self.center()?, self.columns(count)?);
-        let names = columns.iter().map(|column| (column.name, column.size)).chain([("pos", 3)]);
-        let mut table = Table::new(names.flat_map(|(name, size)| Column::of(name, size)), 1);
+        let center = self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array);
+        let mut columns = self.columns(count)?;
+        let places =
+            position.numbers(&[0, 1, 2]).into_iter().zip([center.x, center.y, 0.0].into_iter().cycle());
+        columns.push(("pos", 3, places.map(|(place, center)| place + center).collect()));
+        let mut table = Table::new(columns.iter().flat_map(|(name, size, _)| Column::of(name, *size)), 1);
         table.binary_frame = Some(self.frame);
         self.space(center, &mut table)?;
         for row in 0..count {
-            let values =
-                columns.iter().flat_map(|column| (0..column.size).map(|part| (column.value)(row, part)));
-            let place = (0..3).map(|axis| position.number(row, axis) + [center.x, center.y, 0.0][axis]);
-            table.push_numbers(&values.chain(place).collect::<Vec<_>>(), row + 1);
+            let numbers =
+                columns.iter().flat_map(|(_, size, numbers)| &numbers[row * size..(row + 1) * size]);
+            table.push_numbers(numbers.copied(), row + 1);
         }
         if let Some(types) = self.find("particles/types")? {
             let names = types.bytes.chunks(types.columns.max(1)).map(String::from_utf8_lossy);
@@ -142,7 +132,7 @@ impl<R: Read + Seek> View<'_, R> {
     }
 
     /// Returns the columns that the frame has besides the positions.
-    fn columns(&mut self, count: usize) -> Result<Vec<Values>, ReadError> {
+    fn columns(&mut self, count: usize) -> Result<Vec<Numbers>, ReadError> {
         let mut columns = Vec::new();
         for (chunk, name, order) in [
             ("particles/typeid", "kind", [0].as_slice()),
@@ -153,7 +143,7 @@ impl<R: Read + Seek> View<'_, R> {
             ("log/particles/id", "id", &[0]),
         ] {
             if let Some(chunk) = self.rows(chunk, count, order.len())? {
-                columns.push(Values::new(name, order.len(), move |row, part| chunk.number(row, order[part])));
+                columns.push((name, order.len(), chunk.numbers(order)));
             }
         }
         let diameters = self.diameters(count)?;
@@ -163,46 +153,39 @@ impl<R: Read + Seek> View<'_, R> {
                 .push("masses follow from the density, since the file has none (all may be 1)".to_owned());
         }
         if let Some(inertia) = self.rows("particles/moment_inertia", count, 3)? {
-            let sizes = diameters.clone();
-            let factor = move |row: usize, moment: f64| {
-                let square = 0.25 * sizes[row] * sizes[row];
+            let moments = inertia.numbers(&[2]);
+            let turned = self.rows("particles/orientation", count, 4)?;
+            if let Some(momentum) = self.rows("particles/angmom", count, 4)? {
+                // The angular momentum is twice the orientation times the angular momentum in the frame of
+                // the body.
+                let spin = |row| {
+                    let half =
+                        turned.as_ref().map_or([1.0, 0.0], |it| [0, 3].map(|part| it.number(row, part)));
+                    let about = half[0] * momentum.number(row, 3) - half[1] * momentum.number(row, 0);
+                    let turning = if moments[row] > 0.0 { 0.5 * about / moments[row] } else { 0.0 };
+                    [momentum.number(row, 1), momentum.number(row, 2), turning]
+                };
+                columns.push(("omega", 3, (0..count).flat_map(spin).collect()));
+            }
+            let factor = |row: usize| {
+                let square = 0.25 * diameters[row] * diameters[row];
                 let by_density = || density.map_or(1.0, |density| density * PI * square);
                 let unit = square * masses.as_ref().map_or_else(by_density, |mass| mass.number(row, 0));
                 let homogeneous = Disk::HOMOGENEOUS_INERTIA_FACTOR;
-                let factor = if moment > 0.0 { moment / unit } else { homogeneous };
+                let factor = if moments[row] > 0.0 { moments[row] / unit } else { homogeneous };
                 // Rounding must not change the inertia factor of a homogeneous disk, and must not take a ring
                 // or a heavy point beyond the limits.
                 let exact = [homogeneous, 1.0, 1e-6].into_iter();
                 let mut near = exact.filter(|exact| (factor - exact).abs() <= ROUNDING * exact);
                 near.next().unwrap_or(factor)
             };
-            let moments: Vec<f64> = (0..count).map(|row| inertia.number(row, 2)).collect();
-            let turned = self.rows("particles/orientation", count, 4)?;
-            if let Some(momentum) = self.rows("particles/angmom", count, 4)? {
-                let moments = moments.clone();
-                columns.push(Values::new("omega", 3, move |row, axis| {
-                    // The angular momentum is twice the orientation times the angular momentum in the frame
-                    // of the body.
-                    let half = turned
-                        .as_ref()
-                        .map_or([1.0, 0.0], |turned| [0, 3].map(|part| turned.number(row, part)));
-                    let about = half[0] * momentum.number(row, 3) - half[1] * momentum.number(row, 0);
-                    let turning = if moments[row] > 0.0 { 0.5 * about / moments[row] } else { 0.0 };
-                    if axis == 2 { turning } else { momentum.number(row, axis + 1) }
-                }));
-            }
-            columns.push(Values::new("inertia_factor", 1, move |row, _| factor(row, moments[row])));
+            columns.push(("inertia_factor", 1, (0..count).map(factor).collect()));
         } else if self.rows("particles/angmom", count, 4)?.is_some() {
             let note = "angular momenta are ignored, since the file has no moments of inertia";
             self.notes.push(note.to_owned());
         }
-        columns.push(Values::new("diameter", 1, move |row, _| diameters[row]));
+        columns.push(("diameter", 1, diameters));
         Ok(columns)
-    }
-
-    /// Returns the point from which positions are measured.
-    fn center(&mut self) -> Result<DVec2, ReadError> {
-        Ok(self.finite("log/center")?.map_or(DVec2::ZERO, DVec2::from_array))
     }
 
     /// Sets the box, the time and gravity.
@@ -283,22 +266,12 @@ impl<R: Read + Seek> View<'_, R> {
     }
 }
 
-/// The values of a property of each disk, by row and component.
-struct Values {
-    name: &'static str,
-    size: usize,
-    value: Box<dyn Fn(usize, usize) -> f64>,
-}
-
-impl Values {
-    fn new(name: &'static str, size: usize, value: impl Fn(usize, usize) -> f64 + 'static) -> Self {
-        Self { name, size, value: Box::new(value) }
-    }
-}
+/// The name of a property, the number of its components, and their values for one disk after another.
+type Numbers = (&'static str, usize, Vec<f64>);
 
 /// Returns the largest rounding error of positions in single precision.
 fn rounding(position: &Chunk, center: DVec2) -> f64 {
     let places = (0..position.rows).flat_map(|row| [0, 1].map(|axis| position.number(row, axis).abs()));
     let largest = places.fold(center.abs().max_element() * 1e-9, f64::max);
-    if position.is_single() { f64::from(f32::EPSILON) * largest } else { 0.0 }
+    if position.kind == F32 { f64::from(f32::EPSILON) * largest } else { 0.0 }
 }

@@ -38,7 +38,6 @@ fn data_of_lammps_by_sections_and_styles() {
     let mass = "m3.141592653589793";
     let small = "m0.39269908169872414";
     let two = format!("0..8 0..6; (2 3) r0.5 {mass} #1; (5 3) r0.25 {small} k1 #2");
-    let two_in = |corner: &str| two.replace("0..8 0..6", corner);
     let plain = |name: &str| data(BOX, &format!("Atoms{name}{ATOMS}"));
     let with = |lines: &str| data(&format!("{BOX}\n{lines}"), &format!("Atoms{ATOMS}"));
     let after = |section: &str| format!("{}\n{section}", plain(""));
@@ -82,16 +81,8 @@ fn data_of_lammps_by_sections_and_styles() {
             "refused: line 7: the box must be a rectangle, but is \"0.5 0 0 xy xz yz\"".into(),
         ),
         (
-            data(
-                "2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec\n-1 -2 0 abc origin",
-                &format!("Atoms # sphere{ATOMS}"),
-            ),
-            two_in("-1..7 -2..4"),
-        ),
-        (data("2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")), two.clone()),
-        (
-            data("2 atoms\n8 1 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")),
-            "refused: line 6: the box must be a rectangle, but is \"1 0 0 0 0 0 off the diagonal\"".into(),
+            data("2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")),
+            "refused: line 8: `xlo xhi` is missing".into(),
         ),
         // Labels, comments, line breaks.
         (

@@ -79,7 +79,10 @@ fn boxes_of_dumps() {
         ("pp pp pp\n0 10\n0 5\n-1 1", "0..10p 0..5p; (1 2) r0.5"),
         ("ff fs pp\n0 10\n0 5\n-1 1", "0..10 0..inf; (1 2) r0.5"),
         ("xy xz yz pp pp pp\n0 10 0\n0 5 0\n-1 1 0", "0..10p 0..5p; (1 2) r0.5"),
-        ("abc origin pp pp pp\n10 0 0 0\n0 5 0 0\n0 0 1 -0.5", "0..10p 0..5p; (1 2) r0.5"),
+        (
+            "abc origin pp pp pp\n10 0 0 0\n0 5 0 0\n0 0 1 -0.5",
+            "refused: line 7: the box must be three lines of 2 or 3 numbers, but is \"0 5 0 0\"",
+        ),
         (
             "\n0 10\n0 5\n-1 1",
             "0..10 0..5; (1 2) r0.5 | no side is periodic, since the dump does not say which are",

@@ -9,7 +9,7 @@ use granular_edmd::{Disk, ParameterError};
 use granular_edmd_files::{ByEnding, ExtendedXyz, Frame, FrameFormat, LammpsDump, Reader, Recorder, State};
 
 use super::arguments::Convert;
-use super::{End, Failure, PlanError, tell, write_new};
+use super::{Failure, PlanError, tell, write_new};
 
 impl Convert {
     fn reader(&self) -> Result<Reader, ParameterError> {
@@ -25,7 +25,7 @@ impl Convert {
 }
 
 /// Converts a file, and reports what is ignored, changed or lost.
-pub(super) fn convert(wishes: &Convert) -> Result<End, Failure> {
+pub(super) fn convert(wishes: &Convert) -> Result<(), Failure> {
     let ending = Ending::need(&wishes.out, |_| true)?;
     let reader = wishes.reader().map_err(PlanError::from)?;
     let state = match &wishes.input {
@@ -41,7 +41,7 @@ pub(super) fn convert(wishes: &Convert) -> Result<End, Failure> {
     if !lost.is_empty() {
         tell(&format!("{} has no place for the {} of the file", wishes.out.display(), lost.join(", ")));
     }
-    Ok(End::Done)
+    Ok(())
 }
 
 /// A file format for disks.

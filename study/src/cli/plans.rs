@@ -9,7 +9,7 @@ use std::time::Duration;
 use granular_edmd::simulation::Limits;
 use granular_edmd::speed::Meter;
 
-use super::{End, Failure, LISTED, core_time, read, say, write_new};
+use super::{Failure, LISTED, core_time, read, say, write_new};
 use crate::experiment::{Meanings, OF_TABLES, find, meanings, of_error};
 use crate::vibrated_box::{Base, VibratedBox};
 use crate::{
@@ -38,18 +38,16 @@ pub fn example() -> Result<Plan<VibratedBox>, PlanError> {
 pub(super) fn new<E: Experiment>(
     example: impl FnOnce() -> Result<Plan<E>, PlanError>,
     file: Option<&Path>,
-) -> Result<End, Failure> {
+) -> Result<(), Failure> {
     let text = commented(&example()?)?;
-    file.map_or_else(|| say(text.trim_end()), |path| write_new(path, text.as_bytes()))?;
-    Ok(End::Done)
+    file.map_or_else(|| say(text.trim_end()), |path| write_new(path, text.as_bytes()))
 }
 
-pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<End, Failure> {
-    say(&explained::<E>(key).map_err(PlanError::Refused)?)?;
-    Ok(End::Done)
+pub(super) fn explain<E: Experiment>(key: Option<&str>) -> Result<(), Failure> {
+    say(&explained::<E>(key).map_err(PlanError::Refused)?)
 }
 
-pub(super) fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
+pub(super) fn check<E: Experiment>(path: &Path) -> Result<(), Failure> {
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
     let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
     let repeats = match plan.repeats() {
@@ -59,14 +57,14 @@ pub(super) fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
     let (ramp, value) = (counted(ramps, "ramp"), counted(values, "value"));
     say(&format!("{ramp} of {value} of {cycles} cycles{repeats}"))?;
     if plan.varied().next().is_none() {
-        return Ok(End::Done);
+        return Ok(());
     }
     let points = plan.point_count();
     (0..points.min(LISTED)).try_for_each(|point| say(&values_of(&plan, point)))?;
     if points > LISTED {
         say(&format!("and {} more", counted(ramps - LISTED * plan.repeats(), "ramp")))?;
     }
-    Ok(End::Done)
+    Ok(())
 }
 
 fn counted(count: usize, name: &str) -> String {
@@ -214,7 +212,7 @@ fn begins(line: &str, start: &str) -> bool {
 const RAMPS: usize = 4;
 
 /// Prints the core hours of a plan, estimated from short runs of the first values of some ramps.
-pub(super) fn bench<E: Experiment>(path: &Path, json: bool, quick: bool) -> Result<End, Failure> {
+pub(super) fn bench<E: Experiment>(path: &Path, json: bool, quick: bool) -> Result<(), Failure> {
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
     let (ramps, share) = (plan.ramp_count(), Duration::from_millis(if quick { 200 } else { 2000 }));
     let chosen: Vec<usize> = (0..ramps.min(RAMPS)).map(|k| k * ramps / ramps.min(RAMPS)).collect();
@@ -233,8 +231,7 @@ pub(super) fn bench<E: Experiment>(path: &Path, json: bool, quick: bool) -> Resu
             "{mean} for {values} values, from the first ones of {measured} ramps ({least} if all were as the \
              cheapest of them, {most} if as the dearest); denser or refined values add to it"
         )
-    })?;
-    Ok(End::Done)
+    })
 }
 
 /// Returns the core hours that the first value of a ramp takes if all its cycles take as long as the measured

@@ -18,36 +18,42 @@ use granular_edmd_files::{ByEnding, Recorder};
 
 use super::arguments::{Place, Replay, Trajectory};
 use super::convert::Ending;
-use super::{End, Failure, Watch, chain, end_at_once, read, say, tell, wrote};
-use crate::execution::value::play::{Found, Pause};
+use super::{Failure, Watch, chain, end_at_once, read, say, tell, wrote};
+use crate::execution::value::Value;
+use crate::folder::Folder;
 use crate::{Experiment, Plan, PlanError, Progress, Run, Scalar, Study, StudyError};
 
+/// Opens the study in a folder, or a study of a plan, which has no folder.
+fn study<E: Experiment>(path: &Path, &Place { ramp, value, .. }: &Place) -> Result<Study<E>, Failure> {
+    if path.is_dir() {
+        return Ok(Study::open(path)?);
+    }
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
+    plan.experiment(ramp, value)?;
+    if value > 0 {
+        let source = "it starts where another one ended: `run` the plan, and give the folder".into();
+        return Err(StudyError::Build { ramp, value, source }.into());
+    }
+    // A study reads and writes its folder only when it is asked to.
+    Ok(Study::in_folder(Folder::new(path)?, plan)?)
+}
+
 /// A value at its start.
-struct Source<E: Experiment> {
-    found: Found<E>,
+struct Source<'a, E: Experiment> {
+    value: Value<'a, E>,
     run: Run<E>,
     /// Time at which the run ends.
     end: f64,
 }
 
-impl<E: Experiment> Source<E> {
-    /// Opens a value of a plan, or of the study in a folder, at its start.
-    fn open(path: &Path, &Place { ramp, value, until }: &Place) -> Result<Self, Failure> {
-        let found = if path.is_dir() {
-            Study::open(path)?.find(ramp, value)?
-        } else {
-            let plan = Plan::<E>::from_toml(&read(path)?).map_err(StudyError::unreadable(path))?;
-            plan.experiment(ramp, value)?;
-            if value > 0 {
-                let source = "it starts where another one ended: `run` the plan, and give the folder".into();
-                return Err(StudyError::Build { ramp, value, source }.into());
-            }
-            Found::first(path, plan, ramp)?
-        };
-        let (run, end) = found.start()?;
+impl<'a, E: Experiment> Source<'a, E> {
+    fn of(study: &'a Study<E>, &Place { ramp, value, until }: &Place) -> Result<Self, Failure> {
+        let is_saved = study.folder().is_dir();
+        let value = if is_saved { study.find(ramp, value)? } else { study.first(ramp)? };
+        let (run, end) = value.at_start()?;
         let (start, until) = (run.time(), until.unwrap_or(end));
         if until > start && until <= end {
-            return Ok(Self { found, run, end: until });
+            return Ok(Self { value, run, end: until });
         }
         let message = format!("the run starts at {start} and ends at {end}: it cannot go until {until}");
         Err(PlanError::Refused(message).into())
@@ -55,7 +61,7 @@ impl<E: Experiment> Source<E> {
 
     /// Returns a display of the simulated time, in cycles.
     fn clock(&self) -> impl Fn(f64) + use<E> {
-        let cycle = self.found.experiment().cycle();
+        let cycle = self.value.experiment.cycle();
         let (watch, start, end) = (Watch::new(), self.run.time(), self.end);
         move |time| {
             let [done, total] = [time, end].map(|time| ((time - start) / cycle) as u64);
@@ -98,21 +104,20 @@ fn row(number: u64, it: &Collision, boundary: &impl Boundary) -> String {
 }
 
 /// Runs a value again, and writes a frame after each cycle.
-pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<End, Failure> {
+pub(super) fn trajectory<E: Experiment>(wishes: &Trajectory) -> Result<(), Failure> {
     let Trajectory { plan, out, place, cycles } = wishes;
     Ending::need(out, Ending::is_trajectory)?;
-    let Source { found, run, end } = Source::<E>::open(plan, place)?;
-    let (cycle, disks) = (found.experiment().cycle(), run.len());
+    let study = study::<E>(plan, place)?;
+    let Source { value, run, end } = Source::of(&study, place)?;
+    let (cycle, disks) = (value.experiment.cycle(), run.len());
     let (times, count) = (SampleTimes::every(cycle)?, Rc::new(Cell::new(0)));
     let (recorder, counted) = (Recorder::create(out, ByEnding, times)?, Rc::clone(&count));
     let counter = on_sample(times, move |_: &Snapshot<'_>| counted.set(counted.get() + 1));
     // The run lasts half a cycle longer, so that rounding cannot lose the last frame.
     let end = end.min(run.time() + cycle * (f64::from(*cycles) + 0.5));
-    let value = found.value();
     let mut played = value.played(run, Box::new((recorder, counter)))?;
-    while played.play(end)? == Pause::Slice {}
-    say(&format!("{} frames of {disks} disks are in {}", count.get(), out.display()))?;
-    Ok(End::Done)
+    while played.play(end)? {}
+    say(&format!("{} frames of {disks} disks are in {}", count.get(), out.display()))
 }
 
 /// Default number of collisions to write.
@@ -123,8 +128,9 @@ const BATCH: usize = 1024;
 
 /// Runs a value again, and writes the requested collisions or the requested state. An incomplete file is
 /// removed.
-pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
-    let source = Source::<E>::open(&wishes.plan, &wishes.place)?;
+pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<(), Failure> {
+    let study = study::<E>(&wishes.plan, &wishes.place)?;
+    let source = Source::of(&study, &wishes.place)?;
     wishes.check(&source)?;
     let mut out: Box<dyn Write> = match &wishes.out {
         Some(path) => Box::new(fs::File::create_new(path).map_err(StudyError::io("write", path))?),
@@ -139,12 +145,12 @@ pub(super) fn replay<E: Experiment>(wishes: &Replay) -> Result<End, Failure> {
     if let (Some(path), Err(_)) = (&wishes.out, &written) {
         let _ = fs::remove_file(path);
     }
-    written.map(|()| End::Done)
+    written
 }
 
 impl Replay {
     /// Returns an error if the run ends before `--from`, or cannot contain the disk of `--disk`.
-    fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<E>) -> Result<(), PlanError> {
+    fn check<E: Experiment>(&self, Source { run, end, .. }: &Source<'_, E>) -> Result<(), PlanError> {
         let is_there = |id: &u64| run.index_of(*id).is_some() || !run.inlets().is_empty();
         match (self.from, self.disk.filter(|id| !is_there(id))) {
             (Some(from), _) if from.is_nan() || from >= *end => {
@@ -161,14 +167,13 @@ impl Replay {
 /// Writes all collisions as they occur, or the last collisions at the end.
 fn rows<E: Experiment>(
     wishes: &Replay,
-    source: Source<E>,
+    source: Source<'_, E>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
 ) -> Result<(), Failure> {
     let show = source.clock();
-    let Source { found, run, end } = source;
+    let Source { value, run, end } = source;
     let last = wishes.last.unwrap_or(if wishes.from.is_some() { usize::MAX } else { FEW });
     let caught = Rc::new(RefCell::new(VecDeque::new()));
-    let value = found.value();
     let catcher = wishes.catcher::<E>(&run, last, Rc::clone(&caught));
     let mut played = value.played(run, catcher)?;
     let (mut kept, mut text) = (VecDeque::new(), HEADINGS.to_owned() + "\n");
@@ -178,7 +183,7 @@ fn rows<E: Experiment>(
         kept.extend(caught.borrow_mut().drain(..).map(|(number, it)| row(number, &it, boundary) + "\n"));
         kept.drain(..kept.len().saturating_sub(last));
         show(played.run().time());
-        let is_over = !matches!(paused, Ok(Pause::Slice));
+        let is_over = !matches!(paused, Ok(true));
         // If the run ends with an error, the collisions before the error are still written.
         if let Err(error) = paused {
             tell_end(played.run(), &error);

@@ -78,7 +78,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
             Some(before) if before + 1 < value => study.record(self.ramp, before)?,
             _ => self.last.take(),
         };
-        self.new_value(step, before.as_ref())
+        self.new_value(step, before)
     }
 
     /// Returns the record of the next value, or `None` if the value is not finished.
@@ -103,7 +103,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
 
     /// Takes over the next value from an earlier study, or runs it from the record `before`. Returns false if
     /// the value was interrupted.
-    fn new_value(&mut self, step: Step, before: Option<&Record<E>>) -> Result<bool, StudyError> {
+    fn new_value(&mut self, step: Step, before: Option<Record<E>>) -> Result<bool, StudyError> {
         let (study, value, started) = (self.session.study, self.seen.len(), Instant::now());
         // The value is checked now, since a new plan with many values is checked at only some of them.
         let experiment = study.plan.sound_experiment(self.ramp, step.at)?;

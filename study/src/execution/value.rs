@@ -23,10 +23,10 @@ use crate::{Experiment, Run, SavedDriving, Start, Study};
 pub(crate) struct Value<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) origin: Origin,
-    pub(super) experiment: E,
+    pub(crate) experiment: E,
     pub(super) step: Step,
     /// The record from which the value starts; `None` for a fresh start.
-    pub(super) before: Option<&'a Record<E>>,
+    pub(super) before: Option<Record<E>>,
 }
 
 /// The saved data of an unfinished value.
@@ -154,14 +154,14 @@ impl<'a, E: Experiment> Value<'a, E> {
     /// Returns the time at which the value starts. It continues the count of whole cycles if the length of a
     /// cycle has not changed.
     fn start(&self) -> Cycles {
-        let Some(before) = self.before else { return Cycles::START };
+        let Some(before) = &self.before else { return Cycles::START };
         let (end, cycle) = (before.contents.end, before.experiment.cycle());
         if cycle == self.experiment.cycle() { end } else { Cycles { since: end.time(0.0, cycle), count: 0 } }
     }
 
     /// Returns the simulation at the start of the value.
     fn first_state(&self) -> Result<Run<E>, StudyError> {
-        let Some(before) = self.before else {
+        let Some(before) = &self.before else {
             return self.experiment.build(self.origin.seed).map_err(|source| self.cannot_start(source));
         };
         let state =

@@ -286,13 +286,10 @@ impl Maker {
     pub(crate) fn key(&self) -> String {
         format!("{}:{}:{}", self.results, self.revision, self.columns)
     }
-}
 
-/// Formats a record's maker for a cell of a table.
-impl fmt::Display for Maker {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { version, results, revision, .. } = self;
-        write!(formatter, "{version} results={results} revision={revision}")
+    /// Returns the cell of a table that names the maker.
+    pub(crate) fn cell(&self) -> String {
+        format!("{} results={} revision={}", self.version, self.results, self.revision)
     }
 }
 

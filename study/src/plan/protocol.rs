@@ -131,17 +131,3 @@ impl Protocol {
         step.checked_sub(self.settling_steps())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_tile_a_value() {
-        let protocol = Protocol::new(25, 3, 10).unwrap();
-        let ends: Vec<u64> = (0..=protocol.steps()).map(|steps| protocol.cycles_of(steps)).collect();
-        assert_eq!(ends, [0, 10, 20, 25, 35, 45, 55]);
-        assert_eq!(ends.last(), Some(&protocol.cycles()));
-        assert_eq!((0..6).filter(|&step| protocol.sample_of(step).is_some()).count(), 3);
-    }
-}

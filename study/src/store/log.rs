@@ -4,7 +4,10 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
-use granular_edmd::file::{Damage, Locked, Seal};
+use granular_edmd::file::{Damage, Locked};
+
+/// First bytes of every log: its kind, and the version of the format.
+const HEADING: [u8; START as usize] = *b"GRANSTUD\x07\0\0\0";
 
 /// First bytes of every piece, by which the next piece is found after damage.
 const MARK: [u8; 4] = *b"\xabPC\n";
@@ -16,7 +19,7 @@ pub(crate) const HEAD: usize = 16;
 /// checksum of the contents.
 const BEFORE: usize = 4 + HEAD + 4 + 8 + 16;
 
-/// Number of bytes before the first piece: the first bytes and the version of the format.
+/// Number of bytes before the first piece.
 pub(crate) const START: u64 = 12;
 
 /// The number of the error with which Windows refuses to read a file that another process has locked.
@@ -30,7 +33,6 @@ const LOCKED_ON_WINDOWS: i32 = 33;
 #[derive(Debug)]
 pub(crate) struct Log {
     pub(crate) path: PathBuf,
-    seal: Seal,
     /// End of the last complete piece.
     end: u64,
     /// True if bytes that are not a piece precede a piece.
@@ -55,8 +57,8 @@ pub(crate) struct Piece {
 }
 
 impl Log {
-    pub(crate) const fn new(path: PathBuf, seal: Seal) -> Self {
-        Self { path, seal, end: 0, is_damaged: false, file: None, is_cut: false }
+    pub(crate) const fn new(path: PathBuf) -> Self {
+        Self { path, end: 0, is_damaged: false, file: None, is_cut: false }
     }
 
     /// Returns the complete pieces that were added since the last reading. The checksums of the contents are
@@ -85,7 +87,7 @@ impl Log {
         let found = self.read(file.file())?;
         self.file = Some(file);
         if self.end < START {
-            self.append(&start(self.seal))?;
+            self.append(&HEADING)?;
         }
         Ok(found)
     }
@@ -102,7 +104,7 @@ impl Log {
         }
         file.seek(SeekFrom::Start(self.end))?;
         let mut input = BufReader::with_capacity(1 << 16, file);
-        if self.end == 0 && !begins(&mut input, self.seal)? {
+        if self.end == 0 && !begins(&mut input)? {
             return Ok(found);
         }
         self.end = self.end.max(START);
@@ -172,15 +174,11 @@ fn contents(mut file: &File, piece: &Piece) -> io::Result<Result<Vec<u8>, Damage
 }
 
 /// Returns whether a log begins with the right bytes; false if it is cut short before their end.
-fn begins(input: &mut impl Read, seal: Seal) -> io::Result<bool> {
+fn begins(input: &mut impl Read) -> io::Result<bool> {
     let mut start = Vec::new();
     input.take(START).read_to_end(&mut start)?;
-    let expected = self::start(seal);
-    if expected == start {
-        return Ok(true);
-    }
-    if expected.starts_with(&start) {
-        return Ok(false);
+    if HEADING.starts_with(&start) {
+        return Ok(start.len() == HEADING.len());
     }
     let reason = "it is of another format, or of another version of it";
     Err(io::Error::new(io::ErrorKind::InvalidData, reason))
@@ -226,11 +224,6 @@ fn piece_of(before: &[u8; BEFORE], place: u64, length: u64) -> Option<Piece> {
     let start = place + BEFORE as u64;
     let is_whole = before.starts_with(&MARK) && check(checked) == rest[..8];
     (is_whole && start + u64::from(size) <= length).then_some(Piece { head, start, length: size })
-}
-
-/// Returns the bytes before the first piece.
-fn start(seal: Seal) -> Vec<u8> {
-    seal.seal(&[])[..START as usize].to_vec()
 }
 
 fn check(bytes: &[u8]) -> [u8; 8] {

@@ -4,15 +4,15 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
+use crate::logs::begun;
 use crate::logs::log::{HEAD, Log, Piece, START};
-use crate::logs::{SEAL, begun};
 
 fn found_in(path: &Path) -> Vec<Piece> {
-    Log::new(path.to_owned(), SEAL).news().unwrap()
+    Log::new(path.to_owned()).news().unwrap()
 }
 
 fn pieces(path: &Path) -> Vec<Vec<u8>> {
-    let log = Log::new(path.to_owned(), SEAL);
+    let log = Log::new(path.to_owned());
     found_in(path).iter().filter_map(|piece| log.contents(piece).unwrap().ok()).collect()
 }
 
@@ -46,7 +46,7 @@ fn whole_pieces_survive_cuts_and_damage() {
         assert!(found.iter().all(|piece| written.contains(piece)), "{place}");
     }
     fs::write(&path, b"something else").unwrap();
-    let error = Log::new(path.clone(), SEAL).news().unwrap_err();
+    let error = Log::new(path.clone()).news().unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::InvalidData);
     fs::remove_file(&path).unwrap();
 }

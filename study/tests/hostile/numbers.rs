@@ -74,11 +74,6 @@ fn analysis() -> Vec<Case> {
         ),
         ("ratio of two rolls", |value| told(StateCriteria::default().with_two_rolls(value)), positive),
         ("packing fraction", |value| told(StateCriteria::default().with_collapse(value, 0.1)), not_negative),
-        (
-            "least weight",
-            |value| told(StateCriteria::default().with_least_weight(value)),
-            |value| (0.0..=0.5).contains(&value),
-        ),
     ]
 }
 

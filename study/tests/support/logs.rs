@@ -6,15 +6,13 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::file::{Locked, Seal};
+use granular_edmd::file::Locked;
 
 use log::{Log, Piece};
 
 // The store's own reader and writer, which are not public.
 #[path = "../../src/store/log.rs"]
 pub(crate) mod log;
-
-pub(crate) const SEAL: Seal = Seal::new(*b"GRANSTUD", 7);
 
 /// A piece of a log, with ramp and value.
 struct Found {
@@ -25,7 +23,7 @@ struct Found {
 
 impl Found {
     fn contents(&self) -> Vec<u8> {
-        Log::new(self.log.clone(), SEAL).contents(&self.piece).unwrap().unwrap_or_default()
+        Log::new(self.log.clone()).contents(&self.piece).unwrap().unwrap_or_default()
     }
 }
 
@@ -43,7 +41,7 @@ fn pieces(log: &Path) -> Vec<Found> {
         let place = [number(&piece.head[..4]), number(&piece.head[4..8])];
         Found { log: log.to_owned(), piece, place }
     };
-    Log::new(log.to_owned(), SEAL).news().unwrap().into_iter().map(found).collect()
+    Log::new(log.to_owned()).news().unwrap().into_iter().map(found).collect()
 }
 
 /// Returns the last piece of each record.
@@ -95,7 +93,7 @@ fn rewrite(log: &Path, mut change: impl FnMut([u32; 2], Vec<u8>) -> Option<Vec<u
 /// Begins to append to a log.
 pub(crate) fn begun(path: &Path) -> Log {
     let file = fs::File::options().read(true).write(true).create(true).truncate(false).open(path).unwrap();
-    let mut log = Log::new(path.to_owned(), SEAL);
+    let mut log = Log::new(path.to_owned());
     log.begin(Locked::take(file).unwrap()).unwrap();
     log
 }
