@@ -22,7 +22,7 @@
 //!
 //! Parts are added and removed by name, even between runs; this is how a gate opens. With the
 //! feature `serde`, bricks, parts and containers can be written to files, and reading them repeats their
-//! checks. A rule or a custom motion cannot be written.
+//! checks. A custom rule or a custom motion cannot be written.
 //!
 //! A custom geometry implements [`Boundary`]; [`roots`](crate::roots) provides the numerical methods that it
 //! needs, and [`laws`] checks it.

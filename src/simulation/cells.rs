@@ -2,7 +2,7 @@
 //! cells around it.
 //!
 //! A disk passes to a neighbor cell when it leaves its own cell, which is widened by a margin (`layout.rs`,
-//! `grid.rs`). The function `prediction::cell_exit` gives this time. The disk then searches the three cells
+//! `grid.rs`). The function `prediction::leave_cell` gives this time. The disk then searches the three cells
 //! ahead (`Cells::ahead`).
 
 mod contents;

@@ -100,7 +100,7 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     (collision, [Kick::between(&first, &outcome.first), Kick::between(&second, &outcome.second)])
 }
 
-/// Returns a disk that a wall has captured. Both move on together, so a wall with a mass gains no energy.
+/// Returns a disk that a wall has captured. Both move on together, so no energy is added.
 #[inline]
 fn captured(arriving: &Body, surface: &Surface<'_>, mass: f64) -> Body {
     let (against, normal) = (arriving.velocity - surface.velocity, surface.normal);
@@ -271,7 +271,7 @@ fn kinetic_energy(body: &Body, mass: f64, inertia: f64) -> f64 {
 }
 
 /// Largest number of pushes, each twice as strong as the last, with which two partners are made to part. If
-/// these fail, the partners stay unchanged.
+/// these fail, the pushes remain: some 1e-9 of the speeds.
 const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, relative to the speeds of the disks, above which it is not a rounding

@@ -45,6 +45,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         let cycles = self.study.plan.protocol().cycles() as f64;
         Ok((self.first_state()?, self.start().time(cycles, self.experiment.cycle())))
     }
+
     /// Begins the value in its first state, with this companion.
     pub(crate) fn played(
         &'a self,
