@@ -1,4 +1,4 @@
-//! The names that a run of the paper's system needs, and the traits for custom parts, in one line: `use
+//! The names that a run of the paper's system needs, and most traits for custom parts, in one line: `use
 //! granular_edmd::prelude::*;`.
 //!
 //! All other names are imported from their modules.

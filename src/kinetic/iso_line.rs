@@ -12,7 +12,7 @@ use crate::quantity::{accept, non_negative};
 ///
 /// If the condition changes more than once in between, the search finds one of the changes. It halves the
 /// interval until no floating-point number is left inside. About two thousand halvings always suffice.
-pub(super) fn boundary(inside: f64, outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn bisected(inside: f64, outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut inside, mut outside) = (inside, outside);
     loop {
         let middle = 0.5 * (inside + outside);
@@ -102,7 +102,7 @@ impl Slope {
     }
 
     fn root(&self) -> Option<f64> {
-        (self.at(1.0) > 0.0).then(|| boundary(0.0, 1.0, |sine| self.at(sine) < 0.0))
+        (self.at(1.0) > 0.0).then(|| bisected(0.0, 1.0, |sine| self.at(sine) < 0.0))
     }
 }
 
@@ -236,7 +236,7 @@ fn within(inelasticity: f64, largest: f64) -> Option<f64> {
 /// Cuts the graph of `line` into connected pieces with exact ends.
 fn pieces(frictions: &[f64], line: impl Fn(f64) -> Option<f64>) -> Vec<Piece> {
     let point = |friction| line(friction).map(|inelasticity| (friction, inelasticity));
-    let end = |inside, outside| point(boundary(inside, outside, |friction| line(friction).is_some()));
+    let end = |inside, outside| point(bisected(inside, outside, |friction| line(friction).is_some()));
     let (mut pieces, mut piece, mut before) = (Vec::new(), Piece::new(), None);
     for &friction in frictions {
         if let Some(inside) = point(friction) {

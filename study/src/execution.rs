@@ -222,7 +222,7 @@ impl<E: Experiment> Study<E> {
         self.check_unchanged()?;
         let is_whole = ramps.len() == self.plan().ramp_count();
         let session = Session::new(self, control, ramps)?;
-        all(&session)?;
+        run_blocks(&session)?;
         let summary = session.summary()?;
         let is_done = || (0..self.plan.ramp_count()).all(|ramp| self.store.is_done(ramp));
         if control.writes_tables && summary.is_complete() && is_done() {
@@ -248,12 +248,12 @@ impl<E: Experiment> Study<E> {
 
 /// Runs blocks until all are finished by this process or others. Blocks of other processes are left if the
 /// control does not wait, or if the run must stop.
-fn all<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
+fn run_blocks<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
     session.strike_done()?;
     let mut patience = PATIENCE[0];
     loop {
         let threads = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
-        threads.try_for_each(|_| work(session))?;
+        threads.try_for_each(|_| run_waiting(session))?;
         session.strike_done()?;
         if session.blocks().elsewhere.is_empty() || !session.control.waits || session.must_stop() {
             return Ok(());
@@ -266,7 +266,7 @@ fn all<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
 }
 
 /// Runs the waiting blocks until none is left.
-fn work<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
+fn run_waiting<E: Experiment>(session: &Session<'_, E>) -> Result<(), StudyError> {
     while !session.must_stop() {
         let next = session.blocks().waiting.pop_front();
         let Some(block) = next else { break };
