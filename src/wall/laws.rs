@@ -123,10 +123,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 self.extreme(last, next)?;
             }
             jumps += u32::from(!self.is_integral(last, next, &whole)?);
-            let [from, to] = [start, next.phase];
             require!(PART, "displacement", jumps <= JUMPS;
-                "between the phases {from:?} and {to:?} its displacement is not the integral of its \
-                 velocity");
+                "between the phases {start:?} and {:?} its displacement is not the integral of its velocity",
+                next.phase);
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
             answers.push(next);
             last = next;
@@ -144,9 +143,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let (displacement, low, high) = (state.displacement, self.low, self.high);
         let slack = ROUNDING * self.length();
         let is_inside = displacement >= low - slack && displacement <= high + slack;
-        let sentence = "is beyond its reach";
         require!(PART, "reach", is_inside;
-            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}");
+            "at phase {phase:?} its displacement {displacement:?} is beyond its reach, {low:?} to {high:?}");
         Ok(Sample { phase, state })
     }
 
@@ -287,9 +285,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 // The times at which pieces end are rounded. The bounds there change with the third
                 // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
-            let sentence = "differs from the state at phase";
             require!(PART, "period", !differs;
-                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}");
+                "with the period {period:?}, the state at phase {later:?} differs from the state at phase \
+                 {phase:?}");
         }
         Ok(())
     }
