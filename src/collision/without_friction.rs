@@ -203,7 +203,7 @@ pub(super) fn tangential_inelasticity(value: f64) -> Result<f64, ParameterError>
 }
 
 /// Returns the inelasticity of a normal restitution, which must be in `[0, 1]`.
-pub(super) fn of_normal_restitution(value: f64) -> Result<f64, ParameterError> {
+fn of_normal_restitution(value: f64) -> Result<f64, ParameterError> {
     Ok(0.5 * (1.0 - accept((0.0..=1.0).contains(&value), "normal restitution", "in [0, 1]", value)?))
 }
 

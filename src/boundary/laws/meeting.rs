@@ -80,8 +80,8 @@ impl Meeting {
     }
 }
 
-/// Returns the response of a wall as text; a rule is represented by a digest of its impulses in some contacts,
-/// since the impulses would fill a page.
+/// Returns the response of a wall as text; a rule is represented by a digest of its impulses in some
+/// contacts, since the impulses would fill a page.
 fn in_words(response: Response<'_>) -> String {
     let Response::Rule(rule) = response else { return format!("{response:?}") };
     let impulses = hostile_contacts().take(CONTACTS).map(|contact| rule.impulse(&contact));

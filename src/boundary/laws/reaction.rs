@@ -11,9 +11,9 @@ use crate::error::require;
 /// Speeds that the tested impacts give to a wall, in units of the typical speed.
 const BLOWS: [f64; 4] = [1e-6, 1e-3, 5e-2, 2.0];
 
-/// Speed that a wall gains, in either direction, before it meets disks at rest, in the same units; the times of these meetings
-/// after the blow, in units of the time that a disk takes to cross the domain; and the distances of disks
-/// from the wall, relative to the radius.
+/// Speed that a wall gains, in either direction, before it meets disks at rest, in the same units; the times
+/// of these meetings after the blow, in units of the time that a disk takes to cross the domain; and the
+/// distances of disks from the wall, relative to the radius.
 const BLOW: f64 = 0.5;
 const LATER: [f64; 3] = [0.02, 0.1, 1.0];
 const NEAR: [f64; 3] = [0.05, 0.5, 2.0];
