@@ -34,34 +34,6 @@ macro_rules! from_file {
 
 pub(crate) use from_file;
 
-/// A value without fields, as files hold it: an empty table. Some formats, TOML among them, have no unit
-/// value.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Empty {}
-
-/// Implements reading and writing of a type without fields as [`Empty`].
-macro_rules! without_fields {
-    ($($name:ident),+) => {
-        $(#[cfg(feature = "serde")]
-        impl From<crate::gate::Empty> for $name {
-            fn from(_: crate::gate::Empty) -> Self {
-                Self
-            }
-        }
-
-        #[cfg(feature = "serde")]
-        impl From<$name> for crate::gate::Empty {
-            fn from(_: $name) -> Self {
-                Self {}
-            }
-        })+
-    };
-}
-
-pub(crate) use without_fields;
-
 /// Writes a number, or leaves it out if it is infinite or NaN, which not all formats can represent.
 #[cfg(feature = "serde")]
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]

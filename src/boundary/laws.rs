@@ -6,6 +6,7 @@
 
 mod area;
 mod flight;
+mod meeting;
 mod reaction;
 mod surface;
 mod trial;
@@ -58,14 +59,14 @@ const SMALLEST: f64 = 0.3;
 ///   the rate at which the wall moves there, and the radius of the surface is its radius of curvature. The
 ///   angular velocity agrees with the velocities of the points beside the touch.
 /// - `may_touch` and `may_meet` hold for all kinds of regions around the touch, including regions that extend
-///   to infinity at the edges of the domain. `may_meet` of a wall also holds where other disks touch walls
-///   that a blow on this wall moves.
+///   to infinity at the edges of the domain. `may_meet` of a wall also holds where walls that a blow on this
+///   wall moves reach disks at rest.
 /// - With another time origin, the same flight touches the same wall at the same absolute time, and finds the
 ///   same surface with the same response.
 /// - A wall that reacts to an impact moves according to its mass, also after an earlier impact, and does not
-///   jump. `state` and `set_state` restore all walls. An impact on a wall whose mass is infinite changes
-///   neither the motion of its surface nor a gap, now or later. A stop that takes the impulse of a wall, as a
-///   [`Piston`](crate::wall::Piston) has it, is refused.
+///   jump. `state` and `set_state` restore all walls. An impact on a wall whose mass is infinite changes no
+///   gap, now or later. A stop that takes the impulse of a wall, as a [`Piston`](crate::wall::Piston) has it,
+///   is refused.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain. On both sides of
 ///   a periodic seam, a disk is equally deep in a wall.
 ///
@@ -112,15 +113,7 @@ fn check_disk(trial: &mut Trial<'_>, random: &mut Random, number: usize) -> Resu
     let sizes = [1.0, 1.0, random.between(SMALLEST, 1.0), 0.7, SMALLEST];
     trial.radius = trial.largest * sizes[number % sizes.len()];
     trial.kind = Kind::new(KINDS[number % KINDS.len()]);
-    let Some((origin, flight)) = random.flight(trial)? else {
-        let radius = trial.radius;
-        return Err(Violation::new(
-            PART,
-            "room",
-            format!("there is no room for a disk of radius {radius:?}"),
-        ));
-    };
-    trial.begin(origin)?;
+    let flight = random.flight(trial)?;
     trial.check_seams(flight.position(flight.time()), flight.time())?;
     check_flights(trial, flight, FLIGHTS)?;
     // Disks of all sizes.
@@ -129,8 +122,8 @@ fn check_disk(trial: &mut Trial<'_>, random: &mut Random, number: usize) -> Resu
 
 /// Checks that the domain is a rectangle, which may be open only above, and that it contains the interior.
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
-    let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
-    let is_rectangle = is_bounded && domain.left < domain.right && domain.bottom < domain.top;
+    let Region { min, max } = domain.region();
+    let is_rectangle = min.is_finite() && max.x.is_finite() && min.cmplt(max).all();
     require!(PART, "domain", is_rectangle;
         "the domain {domain} is not a rectangle with a finite bottom and sides");
     let Region { min, max } = interior.region();
@@ -148,15 +141,14 @@ impl Random {
         low + (high - low) * uniform(&mut self.0)
     }
 
-    /// Returns a time origin, and a flight that begins at a free position soon after this time, if there is
-    /// room.
-    fn flight(&mut self, trial: &mut Trial<'_>) -> Result<Option<(f64, Flight)>, Violation> {
+    /// Sets a time origin, and returns a flight that begins at a free position soon after this time.
+    fn flight(&mut self, trial: &mut Trial<'_>) -> Result<Flight, Violation> {
         let crossing = trial.crossing();
         let late = self.between(-21.0, 3.0).max(0.0);
         let origin = self.between(0.0, LATEST * crossing) * libm::exp10(late);
         let time = self.between(0.0, crossing);
         trial.begin(origin)?;
-        let Some(position) = self.place(trial, time) else { return Ok(None) };
+        let place = self.place(trial, time)?;
         let speed = trial.speed * self.share();
         // The direction comes from a point in a square, not from an angle: sine and cosine differ
         // between platforms.
@@ -166,8 +158,7 @@ impl Random {
         let gravity = [0.0, 0.5 * pull, 4.0 * pull, -pull][choice as usize];
         // A third of the pulls are not vertical.
         let down = if choice.fract() < 1.0 / 3.0 { DVec2::new(0.6, -0.8) } else { DVec2::NEG_Y };
-        let flight = Flight::new(time, position, speed * direction, gravity * down, trial.radius);
-        Ok(Some((origin, flight.with_kind(trial.kind))))
+        Ok(trial.flight(time, place, speed * direction, gravity * down))
     }
 
     /// Returns a speed in units of the typical speed: mostly about 1, sometimes from a range of several
@@ -182,10 +173,11 @@ impl Random {
     }
 
     /// Returns a position in the domain at which a disk overlaps no wall.
-    fn place(&mut self, trial: &Trial<'_>, time: f64) -> Option<DVec2> {
-        let Region { min, max } = trial.rectangle();
+    fn place(&mut self, trial: &Trial<'_>, time: f64) -> Result<DVec2, Violation> {
+        let (Region { min, max }, radius) = (trial.rectangle(), trial.radius);
         (0..PLACES)
             .map(|_| DVec2::new(self.between(min.x, max.x), self.between(min.y, max.y)))
             .find(|&place| !trial.gap().is_below(0.0, place, time))
+            .ok_or_else(|| Violation::new(PART, "room", format!("there is none for the radius {radius:?}")))
     }
 }

@@ -120,21 +120,13 @@ impl Parts {
         let (part, phase) = (&placed.part, placed.phase.after(time));
         let (count, number, pose) = (part.bricks().len(), wall - placed.first, part.travel().pose(phase));
         let (anchor, aside) = brick.anchor();
+        let which = if number < count { ("brick", number) } else { ("corner", number - count) };
         let mut view = WallView::new(placed.name.as_str()).with_point(pose.outward(anchor) + aside);
-        if number < count {
-            view = view.with_brick(*brick, pose);
-        }
-        if count > 1 {
-            view =
-                view.with_number(if number < count { ("brick", number) } else { ("corner", number - count) });
-        }
+        view.brick = (number < count).then_some((*brick, pose));
+        view.number = (count > 1).then_some(which);
         // The bricks of a part move together.
-        if let Some((displacement, phase)) = part.travel().moved(phase).filter(|_| number == 0) {
-            view = view.with_motion(displacement, phase);
-        }
-        if let Some(piston) = part.travel().piston() {
-            view = view.with_energy(piston.energy(time));
-        }
+        view.motion = part.travel().moved(phase).filter(|_| number == 0);
+        view.energy = part.travel().piston().map(|piston| piston.energy(time));
         view
     }
 

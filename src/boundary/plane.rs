@@ -183,15 +183,14 @@ impl Plane {
 
     /// Returns the view of the wall at a time.
     pub(super) fn view(&self, time: f64) -> WallView<'_> {
-        let view = WallView::new(self.wall.name()).with_side(self.wall).with_point(self.place(time));
+        let mut view = WallView::new(self.wall.name()).with_side(self.wall).with_point(self.place(time));
         let ((low, high), phase) = (self.motion.reach(), self.motion.phase(time + self.phase));
-        let view = match self.motion.stroke() {
-            Some(piston) => view.with_energy(piston.energy(time)),
-            None if low == high => return view,
-            None => view,
-        };
+        let displacement = self.motion.state(time + self.phase).displacement;
+        view.energy = self.motion.stroke().map(|piston| piston.energy(time));
         // Adding zeros turns negative zeros into positive ones.
-        view.with_motion(self.motion.state(time + self.phase).displacement * self.normal + DVec2::ZERO, phase)
+        let moved = (displacement * self.normal + DVec2::ZERO, phase);
+        view.motion = (low != high || view.energy.is_some()).then_some(moved);
+        view
     }
 
     /// Returns whether a disk is near enough to overlap the wall at some phase of the motion.

@@ -47,10 +47,10 @@ pub struct WallView<'a> {
     /// Energy of a wall with a mass, kinetic and potential.
     pub energy: Option<f64>,
     /// The number of a brick or a corner in a part of several bricks.
-    number: Option<(&'static str, usize)>,
+    pub(super) number: Option<(&'static str, usize)>,
     line: Vec<DVec2>,
-    /// Points along arcs are computed on request.
-    brick: Option<(Brick, Pose)>,
+    /// A brick and its position. Points along arcs are computed on request.
+    pub(super) brick: Option<(Brick, Pose)>,
 }
 
 impl<'a> WallView<'a> {
@@ -97,16 +97,6 @@ impl<'a> WallView<'a> {
     #[must_use]
     pub fn with_line(self, line: Vec<DVec2>) -> Self {
         Self { line, ..self }
-    }
-
-    /// Returns the same view of a brick at this position.
-    pub(super) fn with_brick(self, brick: Brick, pose: Pose) -> Self {
-        Self { brick: Some((brick, pose)), ..self }
-    }
-
-    /// Returns the same view of a brick or a corner with this number.
-    pub(super) fn with_number(self, number: (&'static str, usize)) -> Self {
-        Self { number: Some(number), ..self }
     }
 
     /// Returns points along the wall, for pictures. It has no points at the edge of the domain, which is

@@ -97,11 +97,6 @@ impl<R> RulesByKind<R> {
     fn place(&self, kinds: [Kind; 2]) -> Result<usize, usize> {
         self.pairs.binary_search_by_key(&kinds, |pair| pair.kinds)
     }
-
-    fn rule_of(&self, contact: &Contact) -> &R {
-        let [first, second] = contact.kinds();
-        self.rule(first, second)
-    }
 }
 
 #[inline]
@@ -112,7 +107,8 @@ fn ordered([first, second]: [Kind; 2]) -> [Kind; 2] {
 impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        self.rule_of(contact).impulse(contact)
+        let [first, second] = contact.kinds();
+        self.rule(first, second).impulse(contact)
     }
 
     /// Returns `None` if one of the rules has no fingerprint: two such tables could not be distinguished.

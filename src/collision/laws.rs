@@ -39,20 +39,7 @@ const ROUNDING: f64 = 1e-12;
 /// Smallest product whose relative rounding error is bounded. Smaller numbers have fewer digits.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
-/// Returns the violation of a law by an impulse if the condition does not hold.
-fn unless(
-    holds: bool,
-    law: &'static str,
-    contact: &Contact,
-    impulse: Impulse,
-    found: impl FnOnce() -> String,
-) -> Result<(), Violation> {
-    if holds {
-        return Ok(());
-    }
-    let sentence = format!("the impulse {impulse} {} ({contact})", found());
-    Err(Violation::new("collision rule", law, sentence))
-}
+const PART: &str = "collision rule";
 
 /// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it adds no
 /// energy, even through its couple.
@@ -75,15 +62,16 @@ pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violatio
         let spin = contact.relative_spin();
         available += 0.5 * contact.spin_inertia() * spin * spin;
     }
-    unless(change <= ROUNDING * available + LEAST, "energy", contact, impulse, || {
-        format!("gains the energy {change:?}")
-    })
+    require!(PART, "energy", change <= ROUNDING * available + LEAST;
+        "the impulse {impulse} gains the energy {change:?} ({contact})");
+    Ok(())
 }
 
 fn check_finite(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     let numbers = [impulse.normal(), impulse.tangential(), impulse.couple()];
     let are_finite = numbers.iter().all(|number| number.is_finite());
-    unless(are_finite, "finite", contact, impulse, || "is not finite".to_owned())
+    require!(PART, "finite", are_finite; "the impulse {impulse} is not finite ({contact})");
+    Ok(())
 }
 
 /// Checks all laws except the law of energy.
@@ -91,9 +79,9 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
     check_finite(contact, impulse)?;
     let speed = impulse.closing_speed_after(contact);
     let rounding = rounding_of(contact.closing_speed(), contact.normal_mass());
-    unless(speed <= rounding, "separation", contact, impulse, || {
-        format!("leaves the surfaces closing, at speed {speed:?}")
-    })
+    require!(PART, "separation", speed <= rounding;
+        "the impulse {impulse} leaves the surfaces closing, at speed {speed:?} ({contact})");
+    Ok(())
 }
 
 /// Checks that the tangential impulse can be friction: it slows the slip, and at most reverses it.
@@ -116,9 +104,9 @@ pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Resul
     // The sign is exact, however small the impulse is compared with the slip.
     let opposes = opposes(impulse.tangential(), contact.slip_speed());
     let bound = contact.slip_speed().abs() + rounding_of(contact.slip_speed(), contact.tangential_mass());
-    unless(opposes && slip.abs() <= bound, "opposed slip", contact, impulse, || {
-        format!("makes the slip faster: {slip:?}")
-    })
+    require!(PART, "opposed slip", opposes && slip.abs() <= bound;
+        "the impulse {impulse} makes the slip faster: {slip:?} ({contact})");
+    Ok(())
 }
 
 /// Checks that the impulse lies in the cone of friction, |Δ_t| ≤ κ_s Δ_n.
@@ -139,9 +127,9 @@ pub fn check_friction_cone(
 ) -> Result<(), Violation> {
     let limit = static_friction * impulse.normal();
     let is_inside = impulse.tangential().abs() <= limit * (1.0 + ROUNDING) + LEAST;
-    unless(is_inside, "friction cone", contact, impulse, || {
-        format!("leaves the friction cone: {limit:?} is the most along the tangent")
-    })
+    require!(PART, "friction cone", is_inside;
+        "the impulse {impulse} leaves the friction cone: {limit:?} is the most along the tangent ({contact})");
+    Ok(())
 }
 
 /// Checks that the couple can be rolling friction: it is at most μ_r Δ_n R, it slows the relative spin that
@@ -150,19 +138,16 @@ fn check_rolling(contact: &Contact, impulse: Impulse, coefficient: f64) -> Resul
     let limit = coefficient * impulse.normal() * contact.effective_radius();
     let couple = impulse.couple();
     let is_inside = couple.abs() <= limit * (1.0 + ROUNDING) + LEAST;
-    unless(is_inside, "rolling friction", contact, impulse, || format!("is beyond its limit {limit:?}"))?;
+    require!(PART, "rolling friction", is_inside;
+        "the impulse {impulse} is beyond its limit {limit:?} ({contact})");
     let spin = impulse.with_couple(0.0).relative_spin_after(contact);
     let least = rounding_of(contact.relative_spin(), contact.spin_inertia())
         + ROUNDING * (contact.spin_response() * impulse.tangential()).abs();
     let stops = (contact.spin_inertia() * spin).abs() * (1.0 + ROUNDING);
     let slows = opposes(couple, spin) && couple.abs() <= stops;
-    unless(
-        slows || couple.abs() <= contact.spin_inertia() * least,
-        "rolling friction",
-        contact,
-        impulse,
-        || format!("does not slow the spin {spin:?} that friction leaves"),
-    )
+    require!(PART, "rolling friction", slows || couple.abs() <= contact.spin_inertia() * least;
+        "the impulse {impulse} does not slow the spin {spin:?} that friction leaves ({contact})");
+    Ok(())
 }
 
 /// Returns whether an impulse is zero, or acts against this speed.
@@ -310,27 +295,25 @@ impl Promises {
         Ok(())
     }
 
-    /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and in its mirror
-    /// image.
-    fn check_answer(&self, rule: &dyn CollisionRule, contact: &Contact) -> Result<Impulse, Violation> {
-        let impulse = self.check_both_orders(rule, contact)?;
-        if self.mirror {
-            check_same(contact, impulse, rule.impulse(&mirrored(contact)), -1.0, "mirror image")?;
-        }
-        Ok(impulse)
-    }
-
-    /// Checks the impulse of a rule in a contact, and in the contact with partners exchanged.
-    fn check_both_orders(&self, rule: &dyn CollisionRule, contact: &Contact) -> Result<Impulse, Violation> {
+    /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and, if `mirror`, in
+    /// its mirror image.
+    fn check_answer(
+        &self,
+        rule: &dyn CollisionRule,
+        contact: &Contact,
+        mirror: bool,
+    ) -> Result<(), Violation> {
         let impulse = rule.impulse(contact);
         self.check(contact, impulse)?;
         let is_between_disks = contact.radii()[1] > 0.0 && !contact.kinds().contains(&Kind::WALL);
         if is_between_disks && contact.radii()[1].is_finite() {
-            let exchanged = exchanged(contact);
-            let other = rule.impulse(&exchanged);
+            let other = rule.impulse(&exchanged(contact));
             check_same(contact, impulse, other, 1.0, "exchange of partners")?;
         }
-        Ok(impulse)
+        if mirror {
+            check_same(contact, impulse, rule.impulse(&mirrored(contact)), -1.0, "mirror image")?;
+        }
+        Ok(())
     }
 
     /// Returns the contacts of a check, with kinds of these promises.
@@ -363,19 +346,12 @@ impl Promises {
 /// # Errors
 /// The first broken promise, with the contact.
 pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
-    check_any(&rule, promises)
-}
-
-/// Checks a rule of any type, so that the check is compiled once.
-fn check_any(rule: &dyn CollisionRule, promises: &Promises) -> Result<(), Violation> {
+    // A rule of any type, so that the checks are compiled once.
+    let rule: &dyn CollisionRule = &rule;
     check_equal_answers(rule, promises)?;
-    for contact in promises.contacts() {
-        promises.check_answer(rule, &contact)?;
-    }
-    for contact in promises.contacts_of_kinds() {
-        promises.check_both_orders(rule, &contact)?;
-    }
-    Ok(())
+    promises.contacts().try_for_each(|contact| promises.check_answer(rule, &contact, promises.mirror))?;
+    // These are many, and their mirror images would show nothing else.
+    promises.contacts_of_kinds().try_for_each(|contact| promises.check_answer(rule, &contact, false))
 }
 
 /// Checks that a rule returns the same impulses when it is called again in other orders.
@@ -386,8 +362,11 @@ fn check_equal_answers(rule: &dyn CollisionRule, promises: &Promises) -> Result<
     let answers: Vec<_> = promises.contacts().map(|contact| (contact, rule.impulse(&contact))).collect();
     let count = answers.len();
     for index in (0..count).rev().chain((0..count).map(|step| step * STRIDE % count)) {
-        let (contact, impulse) = &answers[index];
-        check_again(contact, *impulse, rule.impulse(contact))?;
+        let (contact, impulse) = answers[index];
+        let later = rule.impulse(&contact);
+        require!(PART, "repeatable", bits(impulse) == bits(later);
+            "the impulse {impulse} changes when the rule is called again: {later}, {:?} ({contact})",
+            later.regime());
     }
     Ok(())
 }
@@ -420,10 +399,10 @@ where
     let difference = contacts.find(differ).map(|contact| format!("in {contact}"));
     let (Some(one), Some(other)) = (first.fingerprint(), second.fingerprint()) else { return Ok(()) };
     if let Some(difference) = difference {
-        require!("collision rule", "fingerprint", one != other;
+        require!(PART, "fingerprint", one != other;
             "two rules have the fingerprint {one}, but differ {difference}");
     } else if type_name::<R>() == type_name::<S>() {
-        require!("collision rule", "fingerprint", one == other;
+        require!(PART, "fingerprint", one == other;
             "rules of one type that are alike in every contact have the fingerprints {one} and {other}");
     }
     Ok(())
@@ -470,15 +449,9 @@ fn check_same(
         && close(expected.tangential(), other.tangential(), impulse.normal())
         && close(expected.couple(), other.couple(), turning);
     let change = if sign < 0.0 { "tangential impulse and couple change" } else { "the couple changes" };
-    unless(is_same, law, contact, impulse, || {
-        format!("should be {expected} in the {law}, where {change} sign, but is {other} there")
-    })
-}
-
-fn check_again(contact: &Contact, impulse: Impulse, later: Impulse) -> Result<(), Violation> {
-    unless(bits(impulse) == bits(later), "repeatable", contact, impulse, || {
-        format!("changes when the rule is called again: {later}, {:?}", later.regime())
-    })
+    require!(PART, law, is_same;
+        "the impulse {impulse} should be {expected} in the {law}, where {change} sign, but is {other} there ({contact})");
+    Ok(())
 }
 
 /// Returns the bits of an impulse, and its regime.

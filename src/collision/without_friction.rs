@@ -14,10 +14,29 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "crate::gate::Empty", into = "crate::gate::Empty"))]
+#[cfg_attr(feature = "serde", serde(from = "Empty", into = "Empty"))]
 pub struct Elastic;
 
-crate::gate::without_fields!(Elastic);
+/// A value without fields, as files hold it: an empty table. Some formats, TOML among them, have no unit
+/// value.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Empty {}
+
+#[cfg(feature = "serde")]
+impl From<Empty> for Elastic {
+    fn from(_: Empty) -> Self {
+        Self
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Elastic> for Empty {
+    fn from(_: Elastic) -> Self {
+        Self {}
+    }
+}
 
 impl CollisionRule for Elastic {
     #[inline]
@@ -184,7 +203,7 @@ pub(super) fn tangential_inelasticity(value: f64) -> Result<f64, ParameterError>
 }
 
 /// Returns the inelasticity of a normal restitution, which must be in `[0, 1]`.
-pub(super) fn of_normal_restitution(value: f64) -> Result<f64, ParameterError> {
+fn of_normal_restitution(value: f64) -> Result<f64, ParameterError> {
     Ok(0.5 * (1.0 - accept((0.0..=1.0).contains(&value), "normal restitution", "in [0, 1]", value)?))
 }
 

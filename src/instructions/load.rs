@@ -35,7 +35,7 @@ pub(crate) fn eight(numbers: &[f64; 8]) -> __m512d {
 /// Reads one number without any of its neighbors.
 #[allow(unsafe_code)]
 #[inline(always)]
-pub(crate) fn one(number: &u32) -> u32 {
+pub(crate) fn alone(number: &u32) -> u32 {
     // SAFETY: the number is borrowed, so nothing changes it during the read.
     unsafe { std::ptr::from_ref(number).read_volatile() }
 }

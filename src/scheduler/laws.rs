@@ -4,8 +4,6 @@
 //! separately, against the plain [`LinearScan`], with scripts of operations that look random and are the same
 //! on every run.
 
-use std::fmt;
-
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -65,9 +63,11 @@ const COUNTS: [u32; 2] = [1 << 8, 1 << 16];
 /// # Ok::<(), granular_edmd::Violation>(())
 /// ```
 pub fn check<S: EventScheduler>(mut make: impl FnMut() -> S) -> Result<(), Violation> {
-    SCRIPTS.iter().try_for_each(|script| {
-        script.disks.iter().try_for_each(|&disks| Performance::new(script, disks, make()).run())
-    })?;
+    for Script(name, disks, steps, time, next) in scripts() {
+        for &disks in disks {
+            Performance::new(name, disks, time, make()).run(steps, next)?;
+        }
+    }
     COUNTS.iter().try_for_each(|&count| check_counters(make(), count))
 }
 
@@ -86,111 +86,13 @@ fn check_counters(mut scheduler: impl EventScheduler, count: u32) -> Result<(), 
     Ok(())
 }
 
-/// A script in progress, and the scheduler that is checked.
-struct Performance<S> {
-    script: &'static Script,
-    disks: usize,
-    step: usize,
-    stage: Stage,
-    oracle: LinearScan,
-    scheduler: S,
-}
+/// A script, a kind of calls that are repeated for some steps: its name, the numbers of disks at its start,
+/// the number of steps, a function for the times of the first call, a reset, and a function that makes the
+/// next call, from the earliest disk and its time. Both functions are called only while there are disks.
+struct Script<S>(&'static str, &'static [usize], usize, Time<S>, Next<S>);
 
-impl<S: EventScheduler> Performance<S> {
-    fn new(script: &'static Script, disks: usize, scheduler: S) -> Self {
-        Self { script, disks, step: 0, stage: Stage::new(disks as u64), oracle: LinearScan::new(), scheduler }
-    }
-
-    fn run(mut self) -> Result<(), Violation> {
-        self.compare(|| "before the first reset".to_owned())?;
-        let mut operation = reset(&mut self.stage, self.disks, self.script.time);
-        for step in 0..self.script.steps {
-            self.step = step;
-            self.stage.note(&operation);
-            operation.perform(&mut self.oracle);
-            operation.perform(&mut self.scheduler);
-            self.compare(|| format!("after {operation}"))?;
-            if self.stage.is_time_to_look() {
-                self.look_ahead()?;
-            }
-            operation = self.stage.next(self.script, self.oracle.earliest());
-        }
-        Ok(())
-    }
-
-    /// Checks the scheduler's earliest event. The closure `after` describes the last operation.
-    fn compare(&self, after: impl FnOnce() -> String) -> Result<(), Violation> {
-        let expected = self.oracle.earliest();
-        let (given, again) = (self.scheduler.earliest(), self.scheduler.earliest());
-        if (expected, expected) == (given, again) {
-            return Ok(());
-        }
-        let Self { script, disks, step, .. } = *self;
-        let (name, after, right) = (script.name, after(), told(expected));
-        let wrong = told(if given == expected { again } else { given });
-        let sentence = "the earliest is";
-        let found = format!(
-            "script \"{name}\" of {disks} disks, step {step}, {after}: {sentence} {right}, not {wrong}"
-        );
-        Err(Violation::new(PART, "earliest", found))
-    }
-
-    /// Queries upcoming disks, as the engine does in large systems.
-    fn look_ahead(&mut self) -> Result<(), Violation> {
-        // Arbitrary numbers serve as the disks that the engine has collected already.
-        let kept = [usize::MAX, usize::MAX, 0, 1];
-        let mut named = kept.to_vec();
-        self.scheduler.upcoming(&mut named);
-        let Self { script, disks, step, .. } = *self;
-        let (name, sentence) = (script.name, "`upcoming` changes disks that the list held already");
-        require!(PART, "hint", named.starts_with(&kept);
-            "script \"{name}\" of {disks} disks, step {step}: {sentence}");
-        self.compare(|| "after a look at upcoming disks".to_owned())
-    }
-}
-
-/// Returns a scheduler's result as text.
-fn told((disk, due): (usize, f64)) -> String {
-    if (disk, due) == NOTHING_DUE { "nothing".to_owned() } else { format!("disk {disk} at {due:?}") }
-}
-
-impl Operation {
-    fn perform(&self, scheduler: &mut impl EventScheduler) {
-        match *self {
-            Self::Reset(ref due) => scheduler.reset(due),
-            Self::Set(disk, due) => scheduler.set(disk, due),
-        }
-    }
-}
-
-/// A call of a scheduler.
-#[derive(Debug, Clone)]
-enum Operation {
-    Reset(Vec<f64>),
-    Set(usize, f64),
-}
-
-impl fmt::Display for Operation {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Reset(due) => write!(formatter, "a reset to {} disks", due.len()),
-            Self::Set(disk, due) => write!(formatter, "disk {disk} was set to {due:?}"),
-        }
-    }
-}
-
-/// A script: a kind of operations, repeated for some steps.
-struct Script {
-    name: &'static str,
-    /// Numbers of disks at the start.
-    disks: &'static [usize],
-    steps: usize,
-    /// Generates the times of the first operation, a reset.
-    time: fn(&mut Stage) -> f64,
-    /// Makes the next operation from the earliest disk and its time. It is called only while there are disks.
-    /// If there is no such function, the first disk or a random one gets another time.
-    next: Option<fn(&mut Stage, usize, f64) -> Operation>,
-}
+type Time<S> = fn(&mut Performance<S>) -> f64;
+type Next<S> = fn(&mut Performance<S>, usize, f64) -> Result<(), Violation>;
 
 /// Zero, a few, and powers of two and of four with their neighbors.
 const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
@@ -203,74 +105,108 @@ const SOME: &[usize] = &[600];
 /// count.
 const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
 
-const SCRIPTS: [Script; 13] = [
-    script("a run", FEW, 300, Stage::spread_time, Some(run)),
-    script("to and fro", FEW, 300, Stage::spread_time, None),
-    script("ties", FEW, 300, Stage::tied_time, None),
-    script("extremes", FEW, 300, Stage::extreme_time, None),
-    script("near ties", FEW, 300, Stage::near_time, None),
-    script("ties of a few", FEW, 300, Stage::late_time, None),
-    script("one busy disk", FEW, 300, |_| f64::INFINITY, Some(one_busy)),
-    script("resets", FEW, 300, Stage::spread_time, Some(reset_often)),
-    script("resets to as many", &[1, 2, 20], 4000, Stage::spread_time, Some(reset_to_as_many)),
-    script("a long run", SOME, 8000, Stage::spread_time, Some(run)),
-    script("a longer run", &[17], 3_000_000, Stage::spread_time, Some(run)),
-    script("a large run", MANY, 200, Stage::spread_time, Some(run)),
-    script("large and small", MANY, 12, Stage::spread_time, Some(reset_to_few)),
-];
-
-const fn script(
-    name: &'static str,
-    disks: &'static [usize],
-    steps: usize,
-    time: fn(&mut Stage) -> f64,
-    next: Option<fn(&mut Stage, usize, f64) -> Operation>,
-) -> Script {
-    Script { name, disks, steps, time, next }
+fn scripts<S: EventScheduler>() -> [Script<S>; 13] {
+    use Performance as P;
+    [
+        Script("a run", FEW, 300, P::spread_time, P::run_on),
+        Script("to and fro", FEW, 300, P::spread_time, P::any),
+        Script("ties", FEW, 300, P::tied_time, P::any),
+        Script("extremes", FEW, 300, P::extreme_time, P::any),
+        Script("near ties", FEW, 300, P::near_time, P::any),
+        Script("ties of a few", FEW, 300, P::late_time, P::any),
+        Script("one busy disk", FEW, 300, |_| f64::INFINITY, P::keep_one_busy),
+        Script("resets", FEW, 300, P::spread_time, P::reset_often),
+        Script("resets to as many", &[1, 2, 20], 4000, P::spread_time, P::reset_to_as_many),
+        Script("a long run", SOME, 8000, P::spread_time, P::run_on),
+        Script("a longer run", &[17], 3_000_000, P::spread_time, P::run_on),
+        Script("a large run", MANY, 200, P::spread_time, P::run_on),
+        Script("large and small", MANY, 12, P::spread_time, P::reset_to_few),
+    ]
 }
 
-/// Random numbers, and the present and previous times of the disks.
-struct Stage {
+/// A script in progress: random numbers, the present and previous times of the disks, the scheduler that is
+/// checked, and the plain one.
+struct Performance<S> {
+    script: &'static str,
+    /// Number of disks at the start of the script.
+    disks: usize,
+    step: usize,
+    time: Time<S>,
     generator: Xoshiro256PlusPlus,
     due: Vec<f64>,
     before: Vec<f64>,
+    oracle: LinearScan,
+    scheduler: S,
 }
 
-impl Stage {
-    fn new(seed: u64) -> Self {
-        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-        Self { generator, due: Vec::new(), before: Vec::new() }
+impl<S: EventScheduler> Performance<S> {
+    fn new(script: &'static str, disks: usize, time: Time<S>, scheduler: S) -> Self {
+        let generator = Xoshiro256PlusPlus::seed_from_u64(disks as u64);
+        let (due, before, oracle) = (Vec::new(), Vec::new(), LinearScan::new());
+        Self { script, disks, step: 0, time, generator, due, before, oracle, scheduler }
     }
 
-    /// Notes an operation.
-    fn note(&mut self, operation: &Operation) {
-        match operation {
-            Operation::Reset(due) => (self.due, self.before) = (due.clone(), due.clone()),
-            Operation::Set(disk, due) => self.before[*disk] = std::mem::replace(&mut self.due[*disk], *due),
+    fn run(mut self, steps: usize, next: Next<S>) -> Result<(), Violation> {
+        self.compare(|| "before the first reset".to_owned())?;
+        self.reset(self.disks, self.time)?;
+        for step in 1..steps {
+            self.look_ahead()?;
+            self.step = step;
+            let (first, now) = self.oracle.earliest();
+            // Without disks, only a reset is possible.
+            if self.due.is_empty() { self.reset_to_any()? } else { next(&mut self, first, now)? }
         }
+        self.look_ahead()
     }
 
-    /// Returns the next operation of a script. Without disks, only a reset is possible.
-    fn next(&mut self, script: &Script, (first, now): (usize, f64)) -> Operation {
-        match script.next {
-            _ if self.due.is_empty() => few(self),
-            Some(next) => next(self, first, now),
-            None => self.any(first, script.time),
+    /// Checks the scheduler's earliest event. The closure `after` describes the last call.
+    fn compare(&self, after: impl FnOnce() -> String) -> Result<(), Violation> {
+        let expected = self.oracle.earliest();
+        let answers = [self.scheduler.earliest(), self.scheduler.earliest()];
+        let Some(wrong) = answers.into_iter().find(|&answer| answer != expected) else { return Ok(()) };
+        let (place, after, right, wrong) = (self.place(), after(), told(expected), told(wrong));
+        let found = format!("{place}, {after}: the earliest is {right}, not {wrong}");
+        Err(Violation::new(PART, "earliest", found))
+    }
+
+    fn place(&self) -> String {
+        let Self { script, disks, step, .. } = self;
+        format!("script \"{script}\" of {disks} disks, step {step}")
+    }
+
+    /// Gives a disk this time.
+    fn set(&mut self, disk: usize, due: f64) -> Result<(), Violation> {
+        self.before[disk] = std::mem::replace(&mut self.due[disk], due);
+        self.oracle.set(disk, due);
+        self.scheduler.set(disk, due);
+        self.compare(|| format!("after disk {disk} was set to {due:?}"))
+    }
+
+    /// Gives times to this number of disks.
+    fn reset(&mut self, disks: usize, time: Time<S>) -> Result<(), Violation> {
+        self.due = (0..disks).map(|_| time(self)).collect();
+        self.before.clone_from(&self.due);
+        self.oracle.reset(&self.due);
+        self.scheduler.reset(&self.due);
+        self.compare(|| format!("after a reset to {disks} disks"))
+    }
+
+    /// Queries upcoming disks now and then, as the engine does in large systems.
+    fn look_ahead(&mut self) -> Result<(), Violation> {
+        if self.below(4) != 0 {
+            return Ok(());
         }
-    }
-
-    fn is_time_to_look(&mut self) -> bool {
-        self.below(4) == 0
+        // Arbitrary numbers serve as the disks that the engine has collected already.
+        let kept = [usize::MAX, usize::MAX, 0, 1];
+        let mut named = kept.to_vec();
+        self.scheduler.upcoming(&mut named);
+        require!(PART, "hint", named.starts_with(&kept);
+            "{}: `upcoming` changes disks that the list held already", self.place());
+        self.compare(|| "after a look at upcoming disks".to_owned())
     }
 
     fn below(&mut self, count: usize) -> usize {
         (uniform(&mut self.generator) * count as f64) as usize
-    }
-
-    /// Returns an operation that gives a new time to the first disk or to a random one.
-    fn any(&mut self, first: usize, time: fn(&mut Self) -> f64) -> Operation {
-        let other = self.any_disk();
-        Operation::Set([first, other][self.below(2)], time(self))
     }
 
     fn any_disk(&mut self) -> usize {
@@ -308,72 +244,65 @@ impl Stage {
     }
 
     fn extreme_time(&mut self) -> f64 {
-        const EXTREMES: [f64; 10] = [
-            f64::NEG_INFINITY,
-            f64::MIN,
-            -f64::MIN_POSITIVE,
-            -5e-324,
-            -0.0,
-            0.0,
-            5e-324,
-            f64::MIN_POSITIVE,
-            f64::MAX,
-            f64::INFINITY,
-        ];
+        let sizes = [0.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY];
         match self.below(12) {
-            choice if choice < EXTREMES.len() => EXTREMES[choice],
+            choice @ 0..5 => sizes[choice],
+            choice @ 5..10 => -sizes[choice - 5],
             _ => self.spread_time(),
+        }
+    }
+
+    /// Gives a new time to the first disk or to a random one.
+    fn any(&mut self, first: usize, _: f64) -> Result<(), Violation> {
+        let other = self.any_disk();
+        let (disk, due) = ([first, other][self.below(2)], (self.time)(self));
+        self.set(disk, due)
+    }
+
+    /// Goes on as a run does: the disk whose event is due gets a later time. At intervals, another disk gets
+    /// a later time, or returns to its previous time.
+    fn run_on(&mut self, first: usize, now: f64) -> Result<(), Violation> {
+        if !now.is_finite() {
+            return self.any(first, now);
+        }
+        let (wait, other) = (self.wait(), self.any_disk());
+        match self.below(10) {
+            0..=6 => self.set(first, now + wait),
+            7 | 8 => self.set(other, now + wait),
+            _ => self.set(other, self.before[other]),
+        }
+    }
+
+    /// Gives one disk many events, far apart, while all others wait forever.
+    fn keep_one_busy(&mut self, first: usize, now: f64) -> Result<(), Violation> {
+        if now < f64::INFINITY { self.set(first, now + 1e6) } else { self.set(self.due.len() / 2, 0.0) }
+    }
+
+    fn reset_to_any(&mut self) -> Result<(), Violation> {
+        let disks = self.below(70);
+        self.reset(disks, Self::extreme_time)
+    }
+
+    fn reset_often(&mut self, first: usize, now: f64) -> Result<(), Violation> {
+        if self.below(4) == 0 { self.reset_to_any() } else { self.run_on(first, now) }
+    }
+
+    fn reset_to_as_many(&mut self, first: usize, now: f64) -> Result<(), Violation> {
+        let disks = self.due.len();
+        if self.below(3) == 0 { self.reset(disks, Self::spread_time) } else { self.run_on(first, now) }
+    }
+
+    /// Resets to few disks after many, and back to many.
+    fn reset_to_few(&mut self, first: usize, now: f64) -> Result<(), Violation> {
+        match self.below(4) {
+            0 => self.reset_to_any(),
+            1 => self.reset(MANY[0], Self::spread_time),
+            _ => self.run_on(first, now),
         }
     }
 }
 
-fn reset(stage: &mut Stage, disks: usize, time: fn(&mut Stage) -> f64) -> Operation {
-    Operation::Reset((0..disks).map(|_| time(stage)).collect())
-}
-
-fn few(stage: &mut Stage) -> Operation {
-    let disks = stage.below(70);
-    reset(stage, disks, Stage::extreme_time)
-}
-
-/// Makes the operations of a run: the disk whose event is due gets a later time. At intervals, another disk
-/// gets a later time, or returns to its previous time.
-fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
-    if !now.is_finite() {
-        return stage.any(first, Stage::spread_time);
-    }
-    let wait = stage.wait();
-    let other = stage.any_disk();
-    match stage.below(10) {
-        0..=6 => Operation::Set(first, now + wait),
-        7 | 8 => Operation::Set(other, now + wait),
-        _ => Operation::Set(other, stage.before[other]),
-    }
-}
-
-/// Gives one disk many events, far apart, while all others wait forever.
-fn one_busy(stage: &mut Stage, first: usize, now: f64) -> Operation {
-    if now < f64::INFINITY {
-        Operation::Set(first, now + 1e6)
-    } else {
-        Operation::Set(stage.due.len() / 2, 0.0)
-    }
-}
-
-fn reset_often(stage: &mut Stage, first: usize, now: f64) -> Operation {
-    if stage.below(4) == 0 { few(stage) } else { run(stage, first, now) }
-}
-
-fn reset_to_as_many(stage: &mut Stage, first: usize, now: f64) -> Operation {
-    let disks = stage.due.len();
-    if stage.below(3) == 0 { reset(stage, disks, Stage::spread_time) } else { run(stage, first, now) }
-}
-
-/// Resets to few disks after many, and back to many.
-fn reset_to_few(stage: &mut Stage, first: usize, now: f64) -> Operation {
-    match stage.below(4) {
-        0 => few(stage),
-        1 => reset(stage, MANY[0], Stage::spread_time),
-        _ => run(stage, first, now),
-    }
+/// Returns a scheduler's result as text.
+fn told((disk, due): (usize, f64)) -> String {
+    if (disk, due) == NOTHING_DUE { "nothing".to_owned() } else { format!("disk {disk} at {due:?}") }
 }

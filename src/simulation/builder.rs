@@ -183,12 +183,8 @@ fn check_ids(disks: &[Disk]) -> Result<(), BuildError> {
 
 /// Checks that times at this offset are not too coarse, so that time cannot stand still.
 pub(super) fn check_epoch(clock: &Clock, offset: f64) -> Result<(), BuildError> {
-    match clock.coarseness(offset) {
-        Some(spacing) => {
-            Err(BuildError::StartTime { start: clock.origin + offset, spacing, epoch: clock.epoch_length })
-        }
-        None => Ok(()),
-    }
+    let Some(spacing) = clock.coarseness(offset) else { return Ok(()) };
+    Err(BuildError::StartTime { start: clock.origin + offset, spacing, epoch: clock.epoch_length })
 }
 
 /// Returns the number of walls, or an error if there are too many for the engine.

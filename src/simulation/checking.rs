@@ -205,15 +205,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// that the disk has passed.
     pub(super) fn check_passed(&self, disk: usize) -> Outcome<()> {
         let probe = self.engine.probe(disk);
-        match self.parts.boundary.overlap(&probe) {
-            Some(Overlap { with: wall, depth })
-                if depth.is_nan()
-                    || depth > DEEP * probe.radius() + self.rounding_at(disk, Partner::Wall(wall)) =>
-            {
-                Err(self.false_contact(disk, Partner::Wall(wall), depth).into())
-            }
-            _ => Ok(()),
-        }
+        let Some(Overlap { with: wall, depth }) = self.parts.boundary.overlap(&probe) else { return Ok(()) };
+        let most = DEEP * probe.radius() + self.rounding_at(disk, Partner::Wall(wall));
+        let is_false = depth.is_nan() || depth > most;
+        if is_false { Err(self.false_contact(disk, Partner::Wall(wall), depth).into()) } else { Ok(()) }
     }
 
     /// Checks all disks at the end of a run or a step, if there were as many events as disks since the last

@@ -153,7 +153,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // Because of rounding, the disk may already be leaving the wall in the engine's arithmetic. The rule
         // then receives a closing speed of zero and may change nothing, and the boundary would find the same
         // touch again.
-        let parts = (engine.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
+        let is_leaving = (engine.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (mut collision, kick) = resolve_wall(engine, rule, &surface, &engine.clock, disk, wall);
         if !kick.is_possible() {
             let name = self.name_of(Partner::Wall(wall));
@@ -179,7 +179,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let reaction = self.parts.boundary.react(&impact_of(&collision, wall, self.engine.clock.now));
         let velocities = before.map(|before| [before, self.see_wall(wall, &mut collision)]);
         self.find_next(disk);
-        if parts {
+        if is_leaving {
             self.leave_wall(disk, wall, &mut collision);
         }
         observer.on_collision(&collision);

@@ -65,15 +65,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn end_flight(&mut self, disk: usize) {
         self.engine.instructions.run(
             #[inline(always)]
-            move || self.end_flight_here(disk),
+            move || {
+                if leave_cell(&mut self.engine.bodies, &self.engine.cells, disk, self.engine.clock.now) {
+                    self.end_at_wall(disk);
+                }
+            },
         );
-    }
-
-    #[inline(always)]
-    fn end_flight_here(&mut self, disk: usize) {
-        if leave_cell(&mut self.engine.bodies, &self.engine.cells, disk, self.engine.clock.now) {
-            self.end_at_wall(disk);
-        }
     }
 
     /// Ends the flight at a wall, if the disk touches one before it leaves its cell.

@@ -157,11 +157,6 @@ impl Inlet {
         if let Source::TakenOut { velocity, .. } = self.source { Some(velocity) } else { None }
     }
 
-    /// Returns whether the inlet puts back disks that sinks remove.
-    pub(super) fn takes_back(&self) -> bool {
-        matches!(self.source, Source::TakenOut { .. })
-    }
-
     /// Receives a disk that a sink has removed.
     pub(super) fn take_back(&mut self, gone: &Disk) {
         if let Source::TakenOut { velocity, kind } = self.source {

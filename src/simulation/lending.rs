@@ -2,9 +2,20 @@
 //!
 //! The event loop is generic, so that a release build compiles it for the rule, the boundary, the scheduler
 //! and the observer of each run. Tests have hundreds of such combinations, and compiling the loop for each
-//! takes far longer than the tests. In builds with debug assertions, a simulation therefore lends its engine
-//! to a run whose parts are trait objects, and this loop is compiled once, in this crate. The arithmetic is
-//! the same, so the bits are, too.
+//! takes far longer than the tests. In builds with debug assertions, a simulation therefore runs as another
+//! one, whose parts are trait objects, and whose loop is compiled once, in this crate:
+//!
+//! ```text
+//! Simulation<R, B, S>::run            generic, compiled where it is called
+//!   lend                              refers to the parts as trait objects, and moves the engine over
+//!     run_erased                      not generic, compiled here
+//!       Simulation<&dyn ..>::run_here the event loop
+//!   the loan ends                     moves the engine back
+//! ```
+//!
+//! The arithmetic is the same, so the bits are, too. A simulation owns its engine, so that release builds
+//! reach it without a pointer. It cannot be borrowed for a run, therefore, and moves, while a spare one takes
+//! its place; in these builds it is in a box (`engine::Held`), so that only a pointer moves.
 
 use std::cell::Cell;
 use std::mem::replace;
@@ -23,13 +34,15 @@ pub(super) type Erased<'a> =
     Simulation<&'a dyn CollisionRule, &'a mut dyn Boundary, &'a mut dyn EventScheduler>;
 
 thread_local! {
-    /// An engine without disks, which stands in for the next one that is lent.
+    /// An engine without disks, which stands in for the next one that is lent. It is kept, so that no run
+    /// allocates one.
     static SPARE: Cell<Option<Held>> = const { Cell::new(None) };
 }
 
-/// An erased run, which returns the engine to its owner at the end, even if a part panics.
+/// A run that has the engine of another simulation, and returns it at the end, even if a part panics.
 struct Loan<'a> {
     run: Option<Erased<'a>>,
+    /// Where the engine belongs; the spare one until then.
     owner: &'a mut Held,
 }
 

@@ -266,9 +266,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if self.engine.clock.guard.left(events, disks) == 0 {
             let least = watch.least_progress(self.engine.clock.epoch_length, disks);
             if let Some(standstill) = self.engine.clock.guard.end_window(due, events, least)
-                && self.is_stalled(disk, due)
+                && let Some(error) = self.stalled(&standstill, disk, due)
             {
-                return Err(self.stalled(&standstill, disk, due).into());
+                return Err(error.into());
             }
         }
         let left = self.engine.clock.guard.left(events, disks);

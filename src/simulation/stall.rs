@@ -30,31 +30,27 @@ const ALIKE: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns the error of a run that stands still before an event of this disk.
-    #[cold]
-    pub(super) fn stalled(&self, standstill: &Standstill, disk: usize, due: f64) -> RunError {
-        let (disk, due) = self.engine.next_collider(disk, due);
-        let partner = self.engine.partner_of(disk);
-        let wall = partner.and_then(|partner| self.name_of(partner));
-        let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
-        let Standstill { events, elapsed } = *standstill;
-        let is_default_met =
-            elapsed >= least_progress(self.engine.clock.epoch_length, self.len()) * events as f64;
-        let remedy = if is_default_met { Remedy::LessProgress } else { remedy };
-        RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
-    }
-
-    /// Returns whether a run in which time hardly advances before this event is stuck.
+    /// Returns the error of a run in which time hardly advances before an event of this disk, or `None` if the
+    /// run gets more time.
     ///
     /// Many lossless collisions in a short time may end by themselves, as for a light disk between a wall and
     /// a heavy disk that comes near. Such a run gets more time, as long as its windows differ. If the windows
     /// are alike, a disk is squeezed.
     #[cold]
-    pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
+    pub(super) fn stalled(&self, standstill: &Standstill, disk: usize, due: f64) -> Option<RunError> {
         let (disk, due) = self.engine.next_collider(disk, due);
-        let remedy = self.engine.partner_of(disk).map(|partner| self.remedy(disk, partner, due));
+        let partner = self.engine.partner_of(disk);
+        let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
         let is_stuck = self.engine.clock.guard.alike >= STUCK || self.engine.clock.guard.slow >= PATIENCE;
-        remedy != Some(Remedy::FasterDisks) || is_stuck
+        if remedy == Remedy::FasterDisks && !is_stuck {
+            return None;
+        }
+        let wall = partner.and_then(|partner| self.name_of(partner));
+        let Standstill { events, elapsed } = *standstill;
+        let is_default_met =
+            elapsed >= least_progress(self.engine.clock.epoch_length, self.len()) * events as f64;
+        let remedy = if is_default_met { Remedy::LessProgress } else { remedy };
+        Some(RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy })
     }
 
     fn remedy(&self, disk: usize, partner: Partner, due: f64) -> Remedy {

@@ -186,7 +186,7 @@ impl Engine {
 
     /// Passes a disk, which a sink has removed, to the inlet that puts such disks back.
     pub(super) fn take_back(&mut self, gone: &Disk) {
-        let inlets = self.inlets.iter_mut().filter(|inlet| inlet.takes_back());
+        let inlets = self.inlets.iter_mut().filter(|inlet| inlet.velocity_of_return().is_some());
         if let Some(inlet) = inlets.min_by_key(|inlet| inlet.waiting()) {
             inlet.take_back(gone);
         }

@@ -31,7 +31,7 @@ const JUMPS: u32 = 8;
 /// Fraction of a piece over which the acceleration at its ends is first measured, and number of these
 /// measurements, each over half of the previous fraction.
 const SLOPE: f64 = 3e-4;
-const STEPS: u32 = 12;
+const STEPS: i32 = 12;
 
 /// Checks that a motion keeps its contract between two phases.
 ///
@@ -123,10 +123,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 self.extreme(last, next)?;
             }
             jumps += u32::from(!self.is_integral(last, next, &whole)?);
-            let [from, to] = [start, next.phase];
             require!(PART, "displacement", jumps <= JUMPS;
-                "between the phases {from:?} and {to:?} its displacement is not the integral of its \
-                 velocity");
+                "between the phases {start:?} and {:?} its displacement is not the integral of its velocity",
+                next.phase);
             self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
             answers.push(next);
             last = next;
@@ -144,9 +143,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let (displacement, low, high) = (state.displacement, self.low, self.high);
         let slack = ROUNDING * self.length();
         let is_inside = displacement >= low - slack && displacement <= high + slack;
-        let sentence = "is beyond its reach";
         require!(PART, "reach", is_inside;
-            "at phase {phase:?} its displacement {displacement:?} {sentence}, {low:?} to {high:?}");
+            "at phase {phase:?} its displacement {displacement:?} is beyond its reach, {low:?} to {high:?}");
         Ok(Sample { phase, state })
     }
 
@@ -222,16 +220,15 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let AccelerationBounds { min, max, .. } = *bounds;
         let end = start + (1.0 - LAST) * length;
         for (place, step) in [(start, SLOPE * length), (end, -SLOPE * length)] {
-            let mut step = step;
-            let [mut first, mut second] = [f64::NAN; 2];
-            for _ in 0..STEPS {
-                let (slope, rounding) = self.slope(place, step, bounds)?;
+            let slope = |halvings: i32| self.slope(place, libm::scalbn(step, -halvings), bounds);
+            let slopes = (0..STEPS).map(slope).collect::<Result<Vec<_>, _>>()?;
+            for three in slopes.windows(3) {
+                let [(first, _), (second, _), (slope, rounding)] = [three[0], three[1], three[2]];
                 let slack = 2.0 * ((first - second).abs() + (second - slope).abs()) + rounding;
                 let is_beyond = slope < min - slack || slope > max + slack;
                 require!(PART, "bounds", !is_beyond;
                     "at phase {place:?} its velocity has the slope {slope:?} ± {slack:?}, beyond its bounds \
                      {min:?} and {max:?}");
-                (first, second, step) = (second, slope, 0.5 * step);
             }
         }
         Ok(())
@@ -287,9 +284,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
                 // The times at which pieces end are rounded. The bounds there change with the third
                 // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
-            let sentence = "differs from the state at phase";
             require!(PART, "period", !differs;
-                "with the period {period:?}, the state at phase {later:?} {sentence} {phase:?}");
+                "with the period {period:?}, the state at phase {later:?} differs from the state at phase \
+                 {phase:?}");
         }
         Ok(())
     }

@@ -163,9 +163,8 @@ pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> R
     // The row must advance by more than two floating-point numbers for each piece. No search can follow
     // shorter pieces.
     let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
-    let sentence = "pieces of its motion lead only from phase";
     require!(PART, "pieces", phase > least;
-        "{PIECES_IN_A_ROW} {sentence} {start:?} to {phase:?}: they are too short");
+        "{PIECES_IN_A_ROW} pieces of its motion lead only from phase {start:?} to {phase:?}: they are too short");
     Ok(())
 }
 
@@ -185,11 +184,10 @@ pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
     finite("lower bound of the acceleration", bounds.min, phase)?;
     finite("upper bound of the acceleration", bounds.max, phase)?;
     let AccelerationBounds { until, min, max } = bounds;
-    let sentence = "its lower bound of the acceleration";
     require!(PART, "bounds", min <= max;
-        "at phase {phase:?} {sentence} {min:?} is above the upper one, {max:?}");
-    let sentence = "the piece of its motion from phase";
-    require!(PART, "pieces", until > phase; "{sentence} {phase:?} on ends at {until:?}, which is not later");
+        "at phase {phase:?} its lower bound of the acceleration {min:?} is above the upper one, {max:?}");
+    require!(PART, "pieces", until > phase;
+        "the piece of its motion from phase {phase:?} on ends at {until:?}, which is not later");
     Ok(bounds)
 }
 

@@ -1,31 +1,12 @@
-//! The check of a whole rule: it passes every rule of the library, and names the law that a fault breaks.
+//! The check of a whole rule passes every rule of the library. The target `laws` plants the faults that it
+//! must find.
 
-use std::cell::Cell;
-
-use granular_edmd::Violation;
 use granular_edmd::collision::laws::{Promises, check, hostile_contacts};
 use granular_edmd::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
     LeastRebound, Rough, Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 use support::cases::few;
-
-fn caught(rule: impl Fn(&Contact) -> Impulse, promises: Promises) -> Violation {
-    check(&from_fn(rule), &promises).expect_err("the fault was not caught")
-}
-
-/// A rule with this normal impulse, in units of the one that stops, and no other.
-fn pushing(push: impl Fn(&Contact) -> f64) -> impl Fn(&Contact) -> Impulse {
-    move |contact| Impulse::new(push(contact) * contact.normal_mass() * contact.closing_speed(), 0.0)
-}
-
-/// A rule of restitution 1/2 with this tangential impulse for the contact and the normal impulse.
-fn rubbing(friction: impl Fn(&Contact, f64) -> f64) -> impl Fn(&Contact) -> Impulse {
-    move |contact| {
-        let normal = contact.normal_impulse(0.5);
-        Impulse::new(normal, friction(contact, normal))
-    }
-}
 
 /// Numbers of a rule: inelasticities along the normal and the tangent, static and dynamic friction, a speed.
 type Numbers = [f64; 5];
@@ -105,55 +86,10 @@ fn speed_dependent_passes() {
     });
 }
 
-type Faulty = Box<dyn Fn(&Contact) -> Impulse>;
-
-/// Each law has its name, also where a fault shows in few contacts only.
-#[test]
-fn laws_are_named() {
-    let (plain, gain) = (Promises::new(), Promises::new().with_energy_gain());
-    let opposed = gain.with_opposed_slip();
-    let slightly = Friction::from_inelasticity(0.1, 0.5 + 1e-9).unwrap();
-    let inverse =
-        |contact: &Contact| Impulse::new(contact.normal_impulse(1.0) + 1.0 / contact.closing_speed(), 0.0);
-    let all: [(&str, Promises, Faulty); 6] = [
-        (
-            "separation",
-            gain,
-            Box::new(pushing(|contact| if contact.closing_speed() > 1e11 { 0.9 } else { 1.5 })),
-        ),
-        ("energy", plain, Box::new(pushing(|contact| if contact.normal_mass() > 1e20 { 2.5 } else { 2.0 }))),
-        (
-            "friction cone",
-            plain.with_friction(0.5),
-            Box::new(rubbing(move |contact, normal| slightly.impulse(contact, normal).tangential())),
-        ),
-        // The sign of a zero is one, not zero.
-        (
-            "opposed slip",
-            opposed,
-            Box::new(rubbing(|contact, normal| 0.1 * normal * contact.slip_speed().signum())),
-        ),
-        ("finite", gain, Box::new(inverse)),
-        ("repeatable", plain, Box::new(remembering())),
-    ];
-    for (law, promises, rule) in all {
-        assert_eq!(caught(rule, promises).law(), law);
-    }
-}
-
-/// A rule that remembers the fastest contact.
-fn remembering() -> impl Fn(&Contact) -> Impulse {
-    let fastest = Cell::new(0.0_f64);
-    pushing(move |contact| {
-        fastest.set(fastest.get().max(contact.closing_speed()));
-        if contact.closing_speed() < 0.5 * fastest.get() { 1.5 } else { 1.6 }
-    })
-}
-
 #[test]
 fn a_rule_that_drives_may_say_so() {
-    let driven = pushing(|_| 2.5);
-    assert_eq!(check(&from_fn(driven), &Promises::new().with_energy_gain()), Ok(()));
+    let driven = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(1.5), 0.0));
+    assert_eq!(check(&driven, &Promises::new().with_energy_gain()), Ok(()));
     assert_eq!(Promises::default(), Promises::new());
 }
 

@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 
-use granular_edmd::Disk;
 use granular_edmd::collision::Regime;
 use granular_edmd::observable::{Collision, Observer, ObserverError, SampleTimes, Snapshot, laws};
 
@@ -21,7 +20,6 @@ struct Altered {
     start: fn(&mut Self, f64),
     sample: fn(&mut Self, f64),
     collision: fn(&mut Self, &Collision),
-    insert: fn(&mut Self, f64),
     ask: fn(&Self) -> f64,
 }
 
@@ -37,7 +35,6 @@ impl Altered {
             start: |_, _| (),
             sample: |_, _| (),
             collision: |_, _| (),
-            insert: |_, _| (),
             ask: |clock| clock.next,
         }
     }
@@ -78,10 +75,6 @@ impl Observer for Altered {
         self.times.advance_past(snapshot.time());
         self.next = self.times.upcoming();
         (self.sample)(self, snapshot.time());
-    }
-
-    fn on_insert(&mut self, _: &Disk, time: f64) {
-        (self.insert)(self, time);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every scheduler against the obvious one: by the public check, and over scripts that are shrunk when they
 //! fail.
 
-mod liars;
+mod ghosts;
 
 use granular_edmd::scheduler::{
     BucketQueue, BySize, EventScheduler, LinearScan, NOTHING_DUE, TournamentTree, laws,

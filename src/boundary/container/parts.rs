@@ -5,11 +5,11 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::Container;
-use crate::Disk;
 use crate::boundary::parts::{Parts, Placed};
 use crate::boundary::{Boundary, Part, Region, WallError};
 use crate::error::Rounded;
 use crate::quantity::accept;
+use crate::{Disk, Kind};
 
 /// Largest number of walls of a container.
 const MOST_WALLS: usize = 1 << 16;
@@ -93,7 +93,11 @@ impl Container {
     pub fn with_pegs(self, disks: impl IntoIterator<Item = Disk>) -> Result<Self, WallError> {
         let number = |name: &str| name.strip_prefix("peg ")?.parse::<usize>().ok();
         let first = self.part_names().filter_map(number).max().map_or(0, |last| last.saturating_add(1));
-        let peg = |(number, disk): (usize, Disk)| Ok((format!("peg {number}"), Part::peg_of(&disk)?));
+        let peg = |(number, disk): (usize, Disk)| {
+            let kind = if disk.kind() == Kind::DEFAULT { Kind::WALL } else { disk.kind() };
+            let peg = Part::peg(disk.position(), disk.radius())?.with_kind(kind);
+            Ok((format!("peg {number}"), peg))
+        };
         let pegs: Result<Vec<_>, WallError> = (first..).zip(disks).map(peg).collect();
         self.with_parts(pegs?)
     }

@@ -53,13 +53,14 @@ pub(super) fn check_areas(trial: &Trial<'_>, time: f64, random: &mut Random) -> 
 
 fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Result<(), Violation> {
     let Some(area) = trial.boundary.area(region, radius, time) else { return Ok(()) };
+    let gap = Gap { boundary: &*trial.boundary, radius, kind: Kind::DEFAULT };
     let (mut found, mut uncertain) = (0.0, 0.0);
-    let Region { min, max } = region.within(&trial.domain.region());
-    let mut cells = vec![Cell { middle: 0.5 * (min + max), half: 0.5 * (max - min), halvings: 0 }];
-    while let Some(cell) = cells.pop() {
-        match cell.free_share(trial, radius, time) {
+    let mut cells = vec![(region.within(&trial.domain.region()), 0)];
+    while let Some((cell, halvings)) = cells.pop() {
+        let is_small = halvings >= FEWEST && (cell.max - cell.min).max_element() <= 2.0 * FINE * trial.radius;
+        match free_share(gap, cell, time, is_small || halvings == MOST) {
             Some(share) => found += share * cell.area(),
-            None if cell.halvings < MOST => cells.extend(cell.halves()),
+            None if halvings < MOST => cells.extend(halves(cell).map(|half| (half, halvings + 1))),
             None => uncertain += cell.area(),
         }
     }
@@ -70,55 +71,34 @@ fn check_area(trial: &Trial<'_>, region: &Region, radius: f64, time: f64) -> Res
     Ok(())
 }
 
-/// A rectangle in a region.
-struct Cell {
-    middle: DVec2,
-    half: DVec2,
-    halvings: u32,
+/// Returns both halves of a cell across its longer side.
+fn halves(Region { min, max }: Region) -> [Region; 2] {
+    let size = max - min;
+    let half = 0.5 * if size.x > size.y { DVec2::new(size.x, 0.0) } else { DVec2::new(0.0, size.y) };
+    [Region::new(min, max - half), Region::new(min + half, max)]
 }
 
-impl Cell {
-    fn area(&self) -> f64 {
-        4.0 * self.half.x * self.half.y
+/// Returns the share of a cell in which the center of a disk is free, or `None` if it is unknown. In a small
+/// cell, a wall may count as straight.
+fn free_share(of_disk: Gap<'_>, cell: Region, time: f64, is_small: bool) -> Option<f64> {
+    let (middle, half) = (0.5 * (cell.min + cell.max), 0.5 * (cell.max - cell.min));
+    let reach = half.length();
+    let gap = |x: f64, y: f64| of_disk.at(middle + DVec2::new(x, y) * half, 2.0 * reach, time);
+    let here = gap(0.0, 0.0);
+    if here.abs() >= reach {
+        return Some(if here > 0.0 { 1.0 } else { 0.0 });
     }
-
-    /// Returns both halves across the longer side.
-    fn halves(&self) -> [Self; 2] {
-        let is_wide = self.half.x > self.half.y;
-        let step = 0.5 * if is_wide { DVec2::new(self.half.x, 0.0) } else { DVec2::new(0.0, self.half.y) };
-        [-step, step].map(|step| Self {
-            middle: self.middle + step,
-            half: self.half - step.abs(),
-            halvings: self.halvings + 1,
-        })
+    if !is_small {
+        return None;
     }
-
-    /// Returns the share of the cell in which the center of a disk is free, or `None` if it is unknown.
-    fn free_share(&self, trial: &Trial<'_>, radius: f64, time: f64) -> Option<f64> {
-        let reach = self.half.length();
-        let of_disk = Gap { boundary: &*trial.boundary, radius, kind: Kind::DEFAULT };
-        let gap =
-            |x: f64, y: f64, reach: f64| of_disk.at(self.middle + DVec2::new(x, y) * self.half, reach, time);
-        let middle = gap(0.0, 0.0, reach);
-        if middle.abs() >= reach {
-            return Some(if middle > 0.0 { 1.0 } else { 0.0 });
-        }
-        let is_large = self.halvings < FEWEST || self.half.max_element() > FINE * trial.radius;
-        if is_large && self.halvings < MOST {
-            return None;
-        }
-        let corner = |x: f64, y: f64| gap(x, y, 2.0 * reach);
-        let [one, two, three, four] =
-            [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
-        let bends = [one + four - 2.0 * middle, two + three - 2.0 * middle];
-        let change = 0.25 * DVec2::new(two + four - one - three, three + four - one - two);
-        let slope = (change / self.half).length();
-        let is_straight =
-            bends.iter().all(|bend| bend.abs() <= 2.0 * BEND * reach) && (slope - 1.0).abs() <= BEND;
-        // The mean of a gap that is quadratic in the coordinates.
-        let mean = middle + (bends[0] + bends[1]) / 12.0;
-        is_straight.then(|| share_beside_line(mean, change))
-    }
+    let [one, two, three, four] = [gap(-1.0, -1.0), gap(1.0, -1.0), gap(-1.0, 1.0), gap(1.0, 1.0)];
+    let change = 0.25 * DVec2::new(two + four - one - three, three + four - one - two);
+    let bends = [one + four - 2.0 * here, two + three - 2.0 * here];
+    let is_straight = bends.iter().all(|bend| bend.abs() <= 2.0 * BEND * reach);
+    // The mean of a gap that is quadratic in the coordinates.
+    let mean = here + (bends[0] + bends[1]) / 12.0;
+    let slope = (change / half).length();
+    (is_straight && (slope - 1.0).abs() <= BEND).then(|| share_beside_line(mean, change))
 }
 
 /// Returns the share of the square [-1, 1]² in which a linear function is positive, from its value in the

@@ -61,16 +61,13 @@ pub(super) struct Trial<'a> {
     pub(super) origin: f64,
     /// The initial state of the walls.
     pub(super) state: Vec<f64>,
-    /// Number of touches so far, by which the check varies blows.
-    pub(super) touches: usize,
 }
 
 impl<'a> Trial<'a> {
     pub(super) fn new(boundary: &'a mut dyn Boundary, domain: Domain, radius: f64, speed: f64) -> Self {
-        let (wall_count, kind) = (boundary.wall_count(), Kind::DEFAULT);
-        let (state, origin, touches) = (boundary.state(), 0.0, 0);
-        let largest = radius;
-        Self { boundary, domain, wall_count, largest, radius, kind, speed, origin, state, touches }
+        let (wall_count, state) = (boundary.wall_count(), boundary.state());
+        let (largest, kind, origin) = (radius, Kind::DEFAULT, 0.0);
+        Self { boundary, domain, wall_count, largest, radius, kind, speed, origin, state }
     }
 
     /// Returns the gap of the present disk.
@@ -139,20 +136,19 @@ impl<'a> Trial<'a> {
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
         let mut rest = *flight;
         for _ in 0..MOST_SEARCHES {
-            let open = match self.boundary.first_touch(&rest, until) {
+            match self.boundary.first_touch(&rest, until) {
                 FirstTouch::At(touch) => {
-                    let (wall, count) = (touch.wall, self.wall_count);
+                    let (Touch { time, wall, .. }, count) = (touch, self.wall_count);
                     require!(PART, "touched wall", wall < count;
                         "wall {wall} is touched, but there are {count}, on {flight:?}");
+                    require!(PART, "touch time", (rest.time()..=until).contains(&time);
+                        "wall {wall} is touched at {time:?}, not on the flight until {until:?}: {rest:?}");
                     return Ok(Some(touch));
                 }
                 FirstTouch::NotBefore(open) if open >= until => return Ok(None),
-                FirstTouch::NotBefore(open) => open,
-            };
-            if open.is_nan() || open <= rest.time() {
-                break;
+                FirstTouch::NotBefore(open) if open > rest.time() => rest = self.restarted(flight, open),
+                FirstTouch::NotBefore(_) => break,
             }
-            rest = restarted(flight, open);
         }
         let sentence = format!("the search gets no further than time {:?}, on {flight:?}", rest.time());
         Err(Violation::new(PART, "progress", sentence))
@@ -161,18 +157,28 @@ impl<'a> Trial<'a> {
     /// Checks that a disk is equally deep in the walls on both sides of each seam of a periodic domain, at
     /// the height or the width of this place.
     pub(super) fn check_seams(&self, place: DVec2, time: f64) -> Result<(), Violation> {
-        let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
-        let sides = [left, right].map(|x| DVec2::new(x, place.y));
-        let ends = [bottom, top].map(|y| DVec2::new(place.x, y));
-        for (_, places) in [(periodic_sides, sides), (periodic_ends, ends)].iter().filter(|seam| seam.0) {
+        let Domain { left, bottom, .. } = self.domain;
+        for (one, axis) in [(DVec2::new(left, place.y), DVec2::X), (DVec2::new(place.x, bottom), DVec2::Y)] {
+            // Where the domain has no seam, this is the same place.
+            let other = one + axis * self.domain.periods();
             // Deep inside a wall, gaps need not be continuous.
-            let [here, there] = places.map(|place| self.gap().at(place, self.rounding(), time));
-            let apart = here.max(-self.radius) - there.max(-self.radius);
-            require!(PART, "periodic images", apart.abs() <= 2.0 * self.rounding();
-                "the gap to the nearest wall is {here:?} at {:?}, time {time:?}, but {there:?} at its image {:?}",
-                places[0], places[1]);
+            let gap = |place| self.gap().at(place, self.rounding(), time).max(-self.radius);
+            let (here, there) = (gap(one), gap(other));
+            require!(PART, "periodic images", (here - there).abs() <= 2.0 * self.rounding();
+                "the gap to the nearest wall is {here:?} at {one:?}, time {time:?}, but {there:?} at its image \
+                 {other:?}");
         }
         Ok(())
+    }
+
+    /// Returns a flight of the present disk.
+    pub(super) fn flight(&self, time: f64, place: DVec2, velocity: DVec2, acceleration: DVec2) -> Flight {
+        Flight::new(time, place, velocity, acceleration, self.radius).with_kind(self.kind)
+    }
+
+    /// Returns the remainder of a flight from this time on.
+    pub(super) fn restarted(&self, flight: &Flight, time: f64) -> Flight {
+        self.flight(time, flight.position(time), flight.velocity(time), flight.acceleration())
     }
 
     /// Returns the longest duration of a flight. Like flights of the engine, it ends at a periodic side or
@@ -183,23 +189,7 @@ impl<'a> Trial<'a> {
         let way = (max - place).min(place - min).max(DVec2::ZERO);
         let fall = speed * speed + 2.0 * flight.acceleration().abs() * way;
         let wait = 2.0 * way / (speed + DVec2::new(fall.x.sqrt(), fall.y.sqrt()));
-        let seams = [(self.domain.periodic_sides, wait.x), (self.domain.periodic_ends, wait.y)];
-        let waits = seams.into_iter().filter(|seam| seam.0).map(|seam| seam.1);
-        waits.fold(LONGEST * self.crossing(), f64::min)
+        let has_seam = self.domain.periods().cmpgt(DVec2::ZERO);
+        DVec2::select(has_seam, wait, DVec2::INFINITY).min_element().min(LONGEST * self.crossing())
     }
-
-    /// Checks that the domain and the number of walls have not changed.
-    pub(super) fn check_constants(&self) -> Result<(), Violation> {
-        let (before, now) =
-            ((self.domain, self.wall_count), (self.boundary.domain(), self.boundary.wall_count()));
-        require!(PART, "constants", now == before;
-            "the domain was {} with {} walls, and is now {} with {}", before.0, before.1, now.0, now.1);
-        Ok(())
-    }
-}
-
-/// Returns the remainder of a flight from this time on.
-pub(super) fn restarted(flight: &Flight, time: f64) -> Flight {
-    let (place, velocity) = (flight.position(time), flight.velocity(time));
-    Flight::new(time, place, velocity, flight.acceleration(), flight.radius()).with_kind(flight.kind())
 }

@@ -5,12 +5,12 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use super::{Part, Travel};
+use crate::Kind;
 use crate::boundary::WallError;
 use crate::boundary::brick::Brick;
 use crate::boundary::domain::finite_point;
 use crate::boundary::surface::Conduct;
 use crate::quantity::accept;
-use crate::{Disk, Kind};
 
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.
@@ -97,14 +97,6 @@ impl Part {
     /// If a coordinate is not finite, or the radius is not finite and positive.
     pub fn peg(center: DVec2, radius: f64) -> Result<Self, WallError> {
         Self::new([Brick::circle(center, radius)?.reversed()])
-    }
-}
-
-impl Part {
-    /// Creates a peg with the position, the radius and the kind of a disk.
-    pub(in crate::boundary) fn peg_of(disk: &Disk) -> Result<Self, WallError> {
-        let peg = Self::peg(disk.position(), disk.radius())?;
-        Ok(if disk.kind() == Kind::DEFAULT { peg } else { peg.with_kind(disk.kind()) })
     }
 }
 

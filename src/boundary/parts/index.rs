@@ -30,8 +30,8 @@ pub(super) struct Index {
 /// A brick, or one of its periodic images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Entry {
-    /// Index of the wall.
-    pub(super) wall: u32,
+    /// Index of the brick among those of all parts.
+    pub(super) brick: u32,
     /// Displacement of the image; zero for the brick itself.
     pub(super) image: DVec2,
 }
@@ -42,8 +42,8 @@ impl Index {
         let travel = |of: &PlacedBrick| placed[of.part].part.travel();
         let images: Vec<(u32, DVec2, Region)> = (0..)
             .zip(bricks.iter().map(|of| travel(of).bounds(&of.brick)))
-            .flat_map(|(wall, bounds)| {
-                domain.images_of(&bounds).map(move |image| (wall, image, bounds.shifted(image)))
+            .flat_map(|(brick, bounds)| {
+                domain.images_of(&bounds).map(move |image| (brick, image, bounds.shifted(image)))
             })
             .collect();
         let Region { min, max } = rectangle(domain, images.iter().map(|(_, _, bounds)| *bounds));
@@ -55,11 +55,11 @@ impl Index {
         let (columns, rows) = (columns as usize, rows as usize);
         let mut index = Self { corner: min, density, columns, rows, starts: vec![0], entries: Vec::new() };
         let mut cells = vec![Vec::new(); columns * rows];
-        for (wall, image, bounds) in images {
-            let of = &bricks[wall as usize];
+        for (brick, image, bounds) in images {
+            let of = &bricks[brick as usize];
             for cell in index.cells(&bounds) {
                 if travel(of).may_reach(&of.brick, &index.region(cell).shifted(-image), 0.0) {
-                    cells[cell].push(Entry { wall, image });
+                    cells[cell].push(Entry { brick, image });
                 }
             }
         }

@@ -44,7 +44,7 @@ impl Parts {
     /// Returns the bricks at rest in the cells around a disk, as seen from its center.
     fn near_at_rest(&self, position: DVec2, radius: f64) -> impl Iterator<Item = Seen> {
         self.index.near(&Region::around(position, radius)).filter_map(move |entry| {
-            let number = entry.wall as usize;
+            let number = entry.brick as usize;
             let PlacedBrick { part, brick } = &self.bricks[number];
             let blocks = |part: &Part| part.travel().is_at_rest() && !part.takes_centers();
             let seen = || (*part, number + self.first, brick.nearest(position - entry.image));
@@ -84,7 +84,7 @@ impl Parts {
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick = |cell: usize| {
-            self.index.within(cell).any(|entry| self.bricks[entry.wall as usize].part == number)
+            self.index.within(cell).any(|entry| self.bricks[entry.brick as usize].part == number)
         };
         let is_behind = |cell: usize| self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some();
         // The results so far for cells without a brick of the part: true if the cell is behind the part.
@@ -133,7 +133,7 @@ impl Parts {
         // The region holds centers of disks. The margin keeps rounding from hiding a touch at its edge.
         let reach = 1.001 * radius;
         self.index.near(&region.enlarged(reach)).any(|entry| {
-            let (placed, brick) = self.owner(entry.wall as usize);
+            let (placed, brick) = self.owner(entry.brick as usize);
             placed.part.travel().may_reach(brick, &region.shifted(-entry.image), reach)
         })
     }

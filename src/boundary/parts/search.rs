@@ -72,7 +72,7 @@ impl Parts {
             if last.replace(entry) == Some(entry) {
                 continue;
             }
-            let (placed, brick) = self.owner(entry.wall as usize);
+            let (placed, brick) = self.owner(entry.brick as usize);
             if !placed.part.stops(flight.kind()) {
                 continue;
             }
@@ -92,7 +92,7 @@ impl Parts {
     /// Returns the flight as seen from a periodic image of a brick. For a brick that takes out centers, the
     /// disk shrinks to its center.
     fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
-        let is_line = self.owner(entry.wall as usize).0.part.takes_centers();
+        let is_line = self.owner(entry.brick as usize).0.part.takes_centers();
         if entry.image == DVec2::ZERO && !is_line {
             return *flight;
         }
@@ -103,7 +103,7 @@ impl Parts {
     }
 
     fn touch(&self, entry: Entry, time: f64) -> Touch {
-        Touch::new(time, entry.wall as usize + self.first)
+        Touch::new(time, entry.brick as usize + self.first)
     }
 
     /// Searches for the first touch of the `moving` bricks, in rounds, up to `until` or the touch of another
@@ -122,7 +122,7 @@ impl Parts {
             // and a search of the back alone would use up all steps.
             let mut first = other;
             for &entry in moving {
-                let (placed, brick) = self.owner(entry.wall as usize);
+                let (placed, brick) = self.owner(entry.brick as usize);
                 let (flight, until) = (&self.seen_from(entry, flight), until.min(first.time()));
                 let search = Search { brick, placed, flight, until };
                 first = first.or(search.run(from, &mut steps).map(|time| self.touch(entry, time)));
@@ -148,7 +148,7 @@ impl Parts {
         let normal_of = |wall: usize| self.surface(wall, place, touch.time).normal;
         let normal = planes.get(touch.wall).map_or_else(|| normal_of(touch.wall), |plane| plane.normal);
         let mut near = self.index.near(&Region::around(place, 2.0 * radius)).filter(|entry| {
-            let brick = entry.wall as usize;
+            let brick = entry.brick as usize;
             let gap = || self.nearest_image(brick, place, touch.time).2.distance - radius;
             let is_along = || normal_of(brick + self.first).dot(normal) >= 1.0 - IN_WALL;
             let is_one = part(brick).is_patch() && part(brick).stops(flight.kind());

@@ -155,10 +155,6 @@ impl Random {
         libm::exp10(decades * (2.0 * uniform(&mut self.0) - 1.0))
     }
 
-    fn sign(&mut self) -> f64 {
-        if self.below(2) == 0 { 1.0 } else { -1.0 }
-    }
-
     /// Returns an ordinary speed, or a speed from a range of a few or of many decades.
     fn speed(&mut self) -> f64 {
         match self.below(3) {
@@ -174,7 +170,7 @@ impl Random {
             1..=3 => 5.0 * closing * uniform(&mut self.0),
             _ => self.speed(),
         };
-        self.sign() * size
+        [size, -size][self.below(2)]
     }
 
     fn size(&mut self) -> f64 {

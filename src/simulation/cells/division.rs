@@ -104,8 +104,8 @@ const EVENT: f64 = 20.0;
 /// A group of disks, with its rate of collisions and its speed. All disks are taken to have the same energy,
 /// and masses in proportion to their areas.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Group {
-    pub(super) class: SizeClass,
+struct Group {
+    class: SizeClass,
     /// Collisions of all its disks per unit of time.
     collisions: f64,
     /// Sum of the speeds of all its disks.
@@ -114,7 +114,7 @@ pub(super) struct Group {
 
 impl Group {
     /// Returns one group for each of these classes.
-    pub(super) fn of_each(classes: &[SizeClass]) -> Vec<Self> {
+    fn of_each(classes: &[SizeClass]) -> Vec<Self> {
         let area = area(classes);
         let group = |&class: &SizeClass| {
             let (count, speed) = (class.count as f64, 1.0 / class.largest);
@@ -129,7 +129,7 @@ impl Group {
     }
 
     /// Returns the union of this group and a group of larger disks.
-    pub(super) fn with(&self, larger: &Self) -> Self {
+    fn with(&self, larger: &Self) -> Self {
         let class = self.class.with(&larger.class);
         let (collisions, speed) = (self.collisions + larger.collisions, self.speed + larger.speed);
         Self { class, collisions, speed }
@@ -137,7 +137,7 @@ impl Group {
 }
 
 /// Returns the area of a system of these disks at the assumed area fraction.
-pub(super) fn area(classes: &[SizeClass]) -> f64 {
+fn area(classes: &[SizeClass]) -> f64 {
     let square = |class: &SizeClass| class.count as f64 * class.largest * class.largest;
     0.25 * std::f64::consts::PI / AREA_FRACTION * classes.iter().map(square).sum::<f64>()
 }
@@ -209,7 +209,7 @@ impl Gridded {
 }
 
 /// Returns the cost of all events per unit of time, for disks in these groups and a system of this area.
-pub(super) fn cost(groups: &[Group], area: f64) -> f64 {
+fn cost(groups: &[Group], area: f64) -> f64 {
     let all: Vec<Gridded> = (0..groups.len()).map(|index| Gridded::new(groups, index, area)).collect();
     all.iter().enumerate().map(|(index, group)| group.cost(&all[..index], &all[index + 1..])).sum()
 }

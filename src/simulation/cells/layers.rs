@@ -101,7 +101,8 @@ impl Layers {
             least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
         let homes = |class: usize| match class {
-            0 => homes_of(grid),
+            // In the smallest class, cell and home are the same.
+            0 => Homes { grid, cells: 1, stride: grid.stride, first: grid.stride + 1 },
             class => larger[class - 1].homes(),
         };
         let reach = |a: usize, b: usize| Reach::new(&larger[a - 1].grid, &homes(b), distances(a, b));
@@ -240,11 +241,6 @@ fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) ->
         (half.cmpeq(DVec2::ZERO) | apart.cmplt(half)).all()
     };
     (1..larger.len()).all(|b| (0..b).all(|a| is_narrow(a, b)))
-}
-
-/// Returns the cells of the smallest class as homes: each cell is the home of its disks.
-fn homes_of(grid: &Grid) -> Homes<'_> {
-    Homes { grid, cells: 1, stride: grid.stride, first: grid.stride + 1 }
 }
 
 /// The layouts of all cells, which a run must keep in order to continue with the same bits.

@@ -63,7 +63,10 @@ impl Identities {
         self.list(leaves.len());
         let mut leaves = leaves.iter();
         self.ids.retain(|_| leaves.next() == Some(&false));
-        self.forget_the_obvious();
+        // The ids that a list would have anyway need no list.
+        if self.ids.iter().zip(1_u64..).all(|(&id, number)| id == number) {
+            self.ids = Vec::new();
+        }
     }
 
     /// Returns whether these are the ids of `count` disks.
@@ -75,12 +78,6 @@ impl Identities {
     fn list(&mut self, count: usize) {
         if self.ids.is_empty() {
             self.ids = (1..=count as u64).collect();
-        }
-    }
-
-    fn forget_the_obvious(&mut self) {
-        if self.ids.iter().zip(1_u64..).all(|(&id, number)| id == number) {
-            self.ids = Vec::new();
         }
     }
 }

@@ -69,7 +69,7 @@ impl Search {
     #[inline]
     fn improve<const IS_PERIODIC: bool>(&mut self, bodies: &Bodies, lanes: &[u32; LANES], common: &Common) {
         let Common { now, contact_squared, period_x, period_y } = *common;
-        let [a, b, c, d] = lanes.each_ref().map(load::one);
+        let [a, b, c, d] = lanes.each_ref().map(load::alone);
         let row = |other: u32| &bodies.particles[other as usize].trajectory;
         let [x, y, velocity_x, velocity_y] = columns(row(a), row(b), row(c), row(d));
         let velocity_x = subtract(velocity_x, self.velocity_x);
