@@ -4,7 +4,8 @@
 //! resist, the kinds and radii of the partners) to an [`Impulse`]. The engine applies the impulse to one
 //! partner at the contact point, and its opposite to the other. Momentum, angular momentum and Galilean
 //! invariance therefore hold for *any* rule. A rule can only get energy, separation and friction wrong, and
-//! [`laws`] checks those. A wall is a partner of infinite mass, unless it reacts, so one rule serves disks and walls.
+//! [`laws`] checks those. A wall is a partner of infinite mass, unless it reacts, so one rule serves disks
+//! and walls.
 //!
 //! | rule | energy loss | source |
 //! |---|---|---|
@@ -72,8 +73,9 @@ use crate::forward::forward;
 /// The law of a collision, which turns a contact into an impulse.
 ///
 /// # Contract
-/// The engine calls [`Self::impulse`] at least once for each collision that the rule decides, between disks or
-/// with a wall; to prepare or to diagnose a run, it may ask again, and about other contacts. The engine guarantees the following about the contact:
+/// The engine calls [`Self::impulse`] at least once for each collision that the rule decides, between disks
+/// or with a wall; to prepare or to diagnose a run, it may ask again, and about other contacts. The engine
+/// guarantees the following about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed and the relative spin are finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one; masses and radii of

@@ -279,8 +279,8 @@ impl Promises {
     /// # Errors
     /// The first broken promise.
     pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
-        // First, since an impulse that is no number breaks the other laws, too, and friction of the wrong sign gains
-        // energy.
+        // First, since an impulse that is no number breaks the other laws, too, and friction of the wrong
+        // sign gains energy.
         check_finite(contact, impulse)?;
         if self.opposed_slip {
             check_friction_opposes_slip(contact, impulse)?;
@@ -295,8 +295,8 @@ impl Promises {
         Ok(())
     }
 
-    /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and, if `mirror`, in
-    /// its mirror image.
+    /// Checks the impulse of a rule in a contact, in the contact with partners exchanged, and, if `mirror`,
+    /// in its mirror image.
     fn check_answer(
         &self,
         rule: &dyn CollisionRule,

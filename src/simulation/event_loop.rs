@@ -2,11 +2,11 @@
 //!
 //! This file shows one collision from top to bottom. [`Simulation::next_due`] queries the scheduler, and
 //! [`Simulation::advance`] carries out the event. [`Simulation::collide`] lets the rule decide
-//! (`resolution.rs`, and `encounter.rs` of the rules) and kicks both disks. It then predicts the next event of each disk, and passes its time
-//! to the scheduler (`forecasting.rs`). The arithmetic of predictions is in `prediction.rs`, and epochs are
-//! in `epoch.rs`. If rounding leaves partners approaching after a collision, `resolution.rs` makes them part.
-//! The results of rules, boundaries and schedulers are checked where they are used; `checking.rs` makes the errors.
-//! None of these files calls back into the event loop.
+//! (`resolution.rs`, and `encounter.rs` of the rules) and kicks both disks. It then predicts the next event
+//! of each disk, and passes its time to the scheduler (`forecasting.rs`). The arithmetic of predictions is in
+//! `prediction.rs`, and epochs are in `epoch.rs`. If rounding leaves partners approaching after a collision,
+//! `resolution.rs` makes them part. The results of rules, boundaries and schedulers are checked where they
+//! are used; `checking.rs` makes the errors. None of these files calls back into the event loop.
 
 use glam::DVec2;
 

@@ -30,8 +30,8 @@ const ALIKE: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns the error of a run in which time hardly advances before an event of this disk, or `None` if the
-    /// run gets more time.
+    /// Returns the error of a run in which time hardly advances before an event of this disk, or `None` if
+    /// the run gets more time.
     ///
     /// Many lossless collisions in a short time may end by themselves, as for a light disk between a wall and
     /// a heavy disk that comes near. Such a run gets more time, as long as its windows differ. If the windows

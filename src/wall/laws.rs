@@ -1,7 +1,7 @@
 //! Checks of a wall motion's contract, for custom motions.
 //!
-//! [`check`] tests the contract between two phases, except for fingerprints. [`check_finite`] tests only that all numbers are
-//! finite and that pieces advance; a container runs this check on every motion.
+//! [`check`] tests the contract between two phases, except for fingerprints. [`check_finite`] tests only that
+//! all numbers are finite and that pieces advance; a container runs this check on every motion.
 
 use super::motion::{PART, check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, WallMotion, WallState, check_finite};
