@@ -45,8 +45,8 @@ impl Level {
         Self::Avx512,
     ];
 
-    /// Returns whether this processor has the instructions for which the copy of the level is compiled. The
-    /// lists are those of [`Instructions::run`] and [`compiled_for_each`].
+    /// Returns whether this processor has the instructions for which the copy of the level is compiled.
+    /// [`Instructions::run`] and [`compiled_for_each`] have the same lists.
     fn is_here(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         use std::arch::is_x86_feature_detected as has;

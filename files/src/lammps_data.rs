@@ -78,7 +78,7 @@ fn density(mass: f64, radius: f64) -> f64 {
 #[derive(Debug, Default)]
 struct Header<'a> {
     time: Option<f64>,
-    /// Whether the box is periodic in x and in y, if the title says so.
+    /// Periodicity of the box in x and in y, if the title names it.
     periodic: Option<[bool; 2]>,
     atoms: Found<usize>,
     sides: Found<[f64; 2]>,
@@ -132,6 +132,10 @@ impl<'a> Header<'a> {
             [xy, xz, yz, "xy", "xz", "yz"] => {
                 let tilt = |tilt| finite("a tilt of the box", tilt, line);
                 once(&mut self.tilts, [tilt(xy)?, tilt(xz)?, tilt(yz)?], "`xy xz yz`", line)?;
+            }
+            [_, _, _, name @ ("avec" | "bvec" | "cvec")] => {
+                let expected = "`xlo xhi` and `ylo yhi`, the sides of a rectangle";
+                return Err(ReadError::unexpected(line, "the box", expected, format!("the vector `{name}`")));
             }
             [count, what] if OTHERS.contains(&what) && count != "0" => {
                 self.other = Some((what, line));

@@ -1,4 +1,4 @@
-//! What walls receive: stress, and arrivals of disks.
+//! Stress that walls receive, and arrivals of disks at them.
 
 use glam::DVec2;
 

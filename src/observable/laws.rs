@@ -140,7 +140,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
             let collision = collision(self.now, self.collisions);
             self.observer.on_collision(&collision);
             if self.next_sample()? == self.now {
-                // A collision may ask for a sample at once.
+                // A collision may ask for a sample immediately.
                 self.wanted = self.now;
                 return self.goes_on();
             }

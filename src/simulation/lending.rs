@@ -42,7 +42,7 @@ thread_local! {
 /// A run that has the engine of another simulation, and returns it at the end, even if a part panics.
 struct Loan<'a> {
     run: Option<Erased<'a>>,
-    /// Where the engine belongs; the spare one until then.
+    /// The owner's place for the engine, which holds the spare one until the engine returns.
     owner: &'a mut Held,
 }
 

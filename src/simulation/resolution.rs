@@ -271,7 +271,7 @@ fn kinetic_energy(body: &Body, mass: f64, inertia: f64) -> f64 {
 }
 
 /// Largest number of pushes, each twice as strong as the last, with which two partners are made to part. If
-/// these fail, the pushes remain: some 1e-9 of the speeds.
+/// these fail, the pushes remain: about 4e-9 of the speeds.
 const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, relative to the speeds of the disks, above which it is not a rounding

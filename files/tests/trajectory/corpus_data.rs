@@ -82,7 +82,7 @@ fn data_of_lammps_by_sections_and_styles() {
         ),
         (
             data("2 atoms\n8 0 0 avec\n0 6 0 bvec\n0 0 1 cvec", &format!("Atoms{ATOMS}")),
-            "refused: line 8: `xlo xhi` is missing".into(),
+            "refused: line 4: the box must be `xlo xhi` and `ylo yhi`, the sides of a rectangle, but is \"the vector `avec`\"".into(),
         ),
         // Labels, comments, line breaks.
         (

@@ -18,7 +18,7 @@ const SAMPLES: u32 = 200;
 struct Search {
     flight: Flight,
     until: f64,
-    /// How much later the times are than in the first search, since they count from an earlier origin.
+    /// Amount by which all times are later than in the first search: they count from an earlier origin.
     shift: f64,
 }
 

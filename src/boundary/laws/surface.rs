@@ -32,7 +32,7 @@ pub(super) fn check_surface(trial: &Trial<'_>, meeting: &Meeting) -> Result<(), 
     let is_possible = *radius != 0.0 && !radius.is_nan() && *mass > 0.0;
     require!(PART, "surface", is_possible; "wall {wall} has the radius {radius:?} and the mass {mass:?}");
     let nearest = trial.gap().nearest(*place, REACH * trial.radius, *time);
-    // Where two walls meet, the gap is that of another wall.
+    // Two walls may meet here: the gap then belongs to another wall.
     if nearest.is_none_or(|(nearest, _)| meeting.is_with(trial, nearest)) {
         check_slopes(trial, meeting)?;
         check_radius(trial, meeting)?;

@@ -53,7 +53,7 @@ pub(super) struct Trial<'a> {
     pub(super) boundary: &'a mut dyn Boundary,
     pub(super) domain: Domain,
     pub(super) wall_count: usize,
-    /// The radius of the largest disks, and that of the present one.
+    /// The radii of the largest disks and of the present disk.
     pub(super) largest: f64,
     pub(super) radius: f64,
     pub(super) kind: Kind,

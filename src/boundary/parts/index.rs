@@ -30,7 +30,7 @@ pub(super) struct Index {
 /// A brick, or one of its periodic images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Entry {
-    /// Index of the brick among those of all parts.
+    /// Index of the brick in the list of all parts' bricks.
     pub(super) brick: u32,
     /// Displacement of the image; zero for the brick itself.
     pub(super) image: DVec2,
